@@ -1,0 +1,31 @@
+# Everything a person types here; what each target does is in `make help`.
+.DEFAULT_GOAL := help
+.PHONY: run test install lint clean help
+
+export PYTHON
+BIN := .venv/bin
+PYTEST_ARGS ?=
+
+run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
+	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
+
+test:  ## run the whole test suite; PYTEST_ARGS="-m 'not system'" for the quick part
+	@scripts/install test
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
+	@scripts/install
+
+lint:  ## check style, format and the import rules
+	@scripts/install test
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/lint-imports
+
+clean:  ## remove .venv and whatever builds and tests left behind
+	rm -rf .venv .colcon build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf *.egg-info src/*/*.egg-info
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+help:  ## show this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s%s\n", $$1, $$2 }' Makefile
