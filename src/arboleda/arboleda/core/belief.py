@@ -1,0 +1,92 @@
+"""What the plant knows of one robot, merged from its reports."""
+
+from __future__ import annotations
+
+from .messages import Failure, Reason, Report
+from .model import Arm, Evidence, MotionState, Robot
+
+MERGED = ("epoch", "boot_id", "accepted", "done", "state", "q", "node", "homed", "effector", "piece")
+
+
+class Belief:
+    """The last word of a robot on everything it reports; None means it never said."""
+
+    def __init__(self, robot: Robot, stale_after_s: float) -> None:
+        self.robot = robot
+        self.stale_after_s = stale_after_s
+        self.heard_at: float | None = None
+        self.stale = False
+        self.epoch: int | None = None
+        self.boot_id: int | None = None
+        self.accepted: str | None = None
+        self.done: str | None = None
+        self.state: MotionState | None = None
+        self.q: tuple[float, ...] | None = None
+        self.node: int | None = None
+        self.position_at = 0.0
+        self.homed: bool | None = None
+        self.effector: bool | None = None
+        self.piece: bool | None = None
+
+    def merge(self, report: Report) -> None:
+        """Take over what the report says; what it leaves out stays."""
+        for name in MERGED:
+            value = getattr(report, name)
+            if value is not None:
+                setattr(self, name, value)
+        if report.q is not None or report.node is not None:
+            self.position_at = report.at
+        if report.state is not MotionState.NO_LINK:
+            self.heard_at = report.at
+            self.stale = False
+
+    @property
+    def supervised(self) -> bool:
+        """Whether silence means anything: a robot at `state` speaks only when it moves."""
+        return self.robot.evidence is not Evidence.STATE
+
+    @property
+    def stale_at(self) -> float | None:
+        """When silence will have lasted too long; None where that cannot happen (again)."""
+        if not self.supervised or self.stale or self.heard_at is None:
+            return None
+        return self.heard_at + self.stale_after_s
+
+    @property
+    def online(self) -> bool:
+        if self.state is MotionState.NO_LINK or self.stale:
+            return False
+        return self.heard_at is not None or not self.supervised
+
+    @property
+    def position(self) -> tuple[float, ...] | int | None:
+        return self.q if isinstance(self.robot, Arm) else self.node
+
+    @property
+    def known_q(self) -> tuple[float, ...] | None:
+        """The joints, where they can be believed: online and not unhomed."""
+        return self.q if self.online and self.homed is not False else None
+
+    @property
+    def known_node(self) -> int | None:
+        return self.node if self.online and self.homed is not False else None
+
+    def obstacle(self) -> Failure | None:
+        """Why no command may go to this robot; None where it is ready."""
+        if not self.online:
+            said = "is offline" if self.heard_at is not None else "was not heard yet"
+            return self._failure(Reason.LINK_LOST, said)
+        if self.homed is False:
+            return self._failure(Reason.NOT_HOMED, "is not homed")
+        return self._failure(*OBSTACLES[self.state]) if self.state in OBSTACLES else None
+
+    def _failure(self, reason: Reason, said: str) -> Failure:
+        return Failure(reason=reason, sentence=f"{self.robot.name} {said}")
+
+
+OBSTACLES: dict[MotionState | None, tuple[Reason, str]] = {
+    MotionState.MOVING: (Reason.REJECTED, "is still moving"),
+    MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
+    MotionState.NOT_HOMED: (Reason.NOT_HOMED, "is not homed"),
+    MotionState.STOP_LATCHED: (Reason.STOPPED, "is stopped (latched)"),
+}

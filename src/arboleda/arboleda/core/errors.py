@@ -1,0 +1,44 @@
+"""The error tree.
+
+ArboledaError            one sentence for a person; never shown as a traceback
+├── TextError            a task text that names something the plant does not have
+├── QueueFull            a valid task that the cell's queue has no room for
+├── IllegalTransition    a state table was fed a pair it does not list
+├── ConfigError          a plant file or a robot file, all problems at once
+├── PayloadError         bytes or a message that break the wire contract
+└── StartError           a part of the plant cannot start (port taken, library missing, ...)
+"""
+
+from __future__ import annotations
+
+
+class ArboledaError(Exception):
+    """Any error Arboleda reports: `str(error)` is one sentence an operator can act on."""
+
+
+class TextError(ArboledaError):
+    """The task text is refused; the sentence names the wrong word and what is allowed."""
+
+
+class QueueFull(ArboledaError):
+    """The cell's queue is at its limit; the sentence says how many wait."""
+
+
+class IllegalTransition(ArboledaError):
+    """A state table has no row for this pair; nothing changed."""
+
+
+class ConfigError(ArboledaError):
+    """A file is refused as a whole; `problems` is a tuple of `file:line:column: sentence` lines."""
+
+    def __init__(self, problems: tuple[str, ...]) -> None:
+        super().__init__("\n".join(problems))
+        self.problems = problems
+
+
+class PayloadError(ArboledaError):
+    """A message from outside breaks the contract and is refused whole."""
+
+
+class StartError(ArboledaError):
+    """A part of the plant cannot start; the sentence says what to do."""

@@ -1,0 +1,202 @@
+"""Truth about motion: what a report proves about an open command, by the robot's declared evidence.
+
+Each rule looks at one open command, what was believed before the report, and the belief after it,
+and returns the feed it proves, or None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .belief import Belief
+from .ledger import Entry, Feed, State
+from .messages import Failure, FollowPath, Home, MoveJoints, Reason, Report, SetEffector
+from .model import Arm, Evidence, MotionState
+
+REFUSALS: dict[str, Reason] = {
+    "no_link": Reason.LINK_LOST,
+    "paro": Reason.STOPPED,
+    "sin_ref": Reason.NOT_HOMED,
+}
+STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED})
+JITTER_S = 0.1  # one telemetry period: two reports may arrive closer together than they were made
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What a report proves: a feed for the ledger, with its cause where it is a failure."""
+
+    feed: Feed
+    failure: Failure | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Before:
+    """What was believed just before the report under judgement."""
+
+    epoch: int | None
+    boot_id: int | None
+    q: tuple[float, ...] | None
+    node: int | None
+    position_at: float
+
+    @classmethod
+    def of(cls, belief: Belief) -> Before:
+        return cls(
+            epoch=belief.epoch,
+            boot_id=belief.boot_id,
+            q=belief.q,
+            node=belief.node,
+            position_at=belief.position_at,
+        )
+
+
+def judge(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    """The strongest feed that `report` proves about `entry`; None where it proves nothing new."""
+    broken = _broken_link(entry, before, report) or _reboot(entry, before, belief, report)
+    if broken is not None or report.at < entry.sent_at:
+        return broken
+    _look(entry, report)
+    return _device(entry, report) or _stopping(entry, belief, report) or _progress(entry, belief, report)
+
+
+def _look(entry: Entry, report: Report) -> None:
+    """Keep what a report shows about the command since it was sent."""
+    seen = entry.seen
+    has_position = report.q is not None or report.node is not None
+    seen.position = seen.position or has_position
+    seen.moving = seen.moving or report.state is MotionState.MOVING
+    seen.position_since_state = has_position or (seen.position_since_state and report.state is None)
+
+
+def reached(entry: Entry, belief: Belief) -> bool:
+    """Whether the believed position is the command's quantised target."""
+    command = entry.command
+    if isinstance(command, MoveJoints) and isinstance(belief.robot, Arm):
+        return belief.q is not None and belief.robot.reached(belief.q, belief.robot.quantised(command.q))
+    return isinstance(command, FollowPath) and belief.node == command.nodes[-1]
+
+
+def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
+    sentence = f"{entry.command.robot}: {what} while {entry.doing}"
+    return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))
+
+
+def _broken_link(entry: Entry, before: Before, report: Report) -> Verdict | None:
+    if report.state is MotionState.NO_LINK:
+        return _failed(entry, Reason.LINK_LOST, "the link was lost")
+    if before.epoch is not None and report.epoch is not None and report.epoch != before.epoch:
+        return _failed(entry, Reason.LINK_LOST, "the bridge restarted")
+    if report.rejected == entry.command.id:
+        word = report.refusal or "no reason given"
+        reason = REFUSALS.get(word, Reason.REJECTED)
+        sentence = f"{entry.command.robot}: refused the command for {entry.doing} ({word})"
+        return Verdict(feed=Feed.REJECTED, failure=Failure(reason=reason, sentence=sentence))
+    return None
+
+
+def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    evidence = belief.robot.evidence
+    new_boot = None not in (before.boot_id, report.boot_id) and before.boot_id != report.boot_id
+    if evidence is Evidence.IDS and new_boot:
+        return _failed(entry, Reason.REBOOTED, "the board rebooted")
+    if evidence is Evidence.JOINTS and _jumped(before, belief, report):
+        return _failed(entry, Reason.REBOOTED, "the joints jumped, the board must have rebooted,")
+    return None
+
+
+def _jumped(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether the joints moved further between two reports than the limits allow."""
+    if before.q is None or report.q is None or not isinstance(belief.robot, Arm):
+        return False
+    elapsed = report.at - before.position_at + JITTER_S
+    rows = zip(belief.robot.joints, before.q, report.q, strict=True)
+    return any(abs(now - then) > joint.speed * elapsed + 2 * joint.step for joint, then, now in rows)
+
+
+def _device(entry: Entry, report: Report) -> Verdict | None:
+    if report.state is MotionState.FAULT:
+        return _failed(entry, Reason.DEVICE_FAULT, "the board reports a fault")
+    if isinstance(entry.command, Home) or not entry.is_motion:
+        return None
+    if report.state is MotionState.NOT_HOMED:
+        return _failed(entry, Reason.NOT_HOMED, "the position is unknown, the robot is not homed,")
+    if report.state is MotionState.STOP_LATCHED and entry.state is not State.CANCELLING:
+        sentence = f"{entry.command.robot}: stopped and latched while {entry.doing}"
+        return Verdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=sentence))
+    return None
+
+
+def _stopping(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """A halt is confirmed by a still code and, from `joints` up, equal positions in two reports."""
+    if entry.cancelled_at is None or report.at < entry.cancelled_at or not entry.is_motion:
+        return None
+    seen = entry.seen
+    if report.state is not None:
+        seen.still = report.state in STILL
+    position = report.q if isinstance(belief.robot, Arm) else report.node
+    rested = position is not None and position == seen.rest
+    seen.rest = seen.rest if position is None else position
+    confirmed = seen.still and (rested or belief.robot.evidence is Evidence.STATE)
+    return Verdict(feed=Feed.HALTED) if confirmed else None
+
+
+def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    rule = RULES.get((type(entry.command), belief.robot.evidence))
+    return rule(entry, belief, report) if rule else None
+
+
+def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    finished = report.done == entry.command.id
+    if report.state is MotionState.STOPPED and finished:
+        return Verdict(feed=Feed.DONE) if reached(entry, belief) else _off_target(entry)
+    if entry.accepted_at is None:
+        return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
+    if report.state is MotionState.STOPPED and not reached(entry, belief):
+        return _short(entry)
+    return None
+
+
+def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    seen, stopped = entry.seen, belief.state is MotionState.STOPPED
+    if stopped and seen.position and reached(entry, belief):
+        return Verdict(feed=Feed.DONE)
+    if stopped and seen.moving and seen.position_since_state:
+        return _short(entry)
+    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    if entry.seen.moving and report.state is MotionState.STOPPED:
+        return Verdict(feed=Feed.DONE)
+    return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
+
+
+def _effector_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """UInt8 commands carry no id over ROS 2: the value the robot reports confirms them."""
+    command = entry.command
+    if isinstance(command, SetEffector) and report.effector is command.on:
+        return Verdict(feed=Feed.DONE)
+    return None
+
+
+def _off_target(entry: Entry) -> Verdict:
+    return _failed(entry, Reason.NOT_REACHED, "reported the move done but stands off its target")
+
+
+def _short(entry: Entry) -> Verdict:
+    return _failed(entry, Reason.STOPPED_SHORT, "stopped before its target")
+
+
+Rule = Callable[[Entry, Belief, Report], "Verdict | None"]
+RULES: dict[tuple[type, Evidence], Rule] = {
+    (MoveJoints, Evidence.IDS): _move_by_ids,
+    (FollowPath, Evidence.IDS): _move_by_ids,
+    (MoveJoints, Evidence.JOINTS): _move_by_joints,
+    (FollowPath, Evidence.JOINTS): _move_by_joints,
+    (MoveJoints, Evidence.STATE): _move_by_state,
+    (FollowPath, Evidence.STATE): _move_by_state,
+    (SetEffector, Evidence.IDS): _effector_reported,
+    (SetEffector, Evidence.JOINTS): _effector_reported,
+}

@@ -1,0 +1,144 @@
+"""Every command the plant sent: id -> state, by one table, with deadlines."""
+
+from __future__ import annotations
+
+from collections import Counter
+from enum import Enum
+
+from .errors import IllegalTransition
+from .messages import Command, Failure, FollowPath, Home, MoveJoints
+
+
+class State(str, Enum):
+    """The life of a command."""
+
+    SENT = "sent"
+    RUNNING = "running"
+    CANCELLING = "cancelling"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+class Feed(str, Enum):
+    """What can happen to a command; HALTED is an end by halt or stop."""
+
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+    DONE = "done"
+    FAILED = "failed"
+    HALTED = "halted"
+    CANCEL = "cancel"
+
+
+OPEN = frozenset({State.SENT, State.RUNNING, State.CANCELLING})
+TABLE: dict[tuple[State, Feed], State] = {
+    (State.SENT, Feed.ACCEPTED): State.RUNNING,
+    (State.SENT, Feed.REJECTED): State.FAILED,
+    (State.SENT, Feed.DONE): State.DONE,
+    (State.SENT, Feed.FAILED): State.FAILED,
+    (State.SENT, Feed.HALTED): State.FAILED,
+    (State.SENT, Feed.CANCEL): State.CANCELLING,
+    (State.RUNNING, Feed.ACCEPTED): State.RUNNING,
+    (State.RUNNING, Feed.REJECTED): State.FAILED,
+    (State.RUNNING, Feed.DONE): State.DONE,
+    (State.RUNNING, Feed.FAILED): State.FAILED,
+    (State.RUNNING, Feed.HALTED): State.FAILED,
+    (State.RUNNING, Feed.CANCEL): State.CANCELLING,
+    (State.CANCELLING, Feed.ACCEPTED): State.CANCELLING,
+    (State.CANCELLING, Feed.REJECTED): State.CANCELLED,
+    (State.CANCELLING, Feed.DONE): State.DONE,
+    (State.CANCELLING, Feed.FAILED): State.FAILED,
+    (State.CANCELLING, Feed.HALTED): State.CANCELLED,
+    (State.CANCELLING, Feed.CANCEL): State.CANCELLING,
+}
+
+
+class Seen:
+    """What reports have shown since a command was sent and, for the last two, since it was cancelled."""
+
+    def __init__(self) -> None:
+        self.moving = False
+        self.position = False
+        self.position_since_state = False
+        self.still = False
+        self.rest: tuple[float, ...] | int | None = None
+
+
+class Entry:
+    """One command's life; times in s of the plant's clock; `doing` is a phrase such as "moving home"."""
+
+    def __init__(self, command: Command, *, cell: str, doing: str, sent_at: float, deadline: float) -> None:
+        self.command = command
+        self.cell = cell
+        self.doing = doing
+        self.sent_at = sent_at
+        self.deadline = deadline
+        self.settles_at: float | None = None
+        self.state = State.SENT
+        self.accepted_at: float | None = None
+        self.cancelled_at: float | None = None
+        self.failure: Failure | None = None
+        self.seen = Seen()
+
+    @property
+    def open(self) -> bool:
+        return self.state in OPEN
+
+    @property
+    def is_motion(self) -> bool:
+        return isinstance(self.command, MoveJoints | FollowPath | Home)
+
+    @property
+    def next_deadline(self) -> float:
+        return self.deadline if self.settles_at is None else min(self.deadline, self.settles_at)
+
+    def refuse(self, failure: Failure) -> None:
+        """End a command that never left: it must not be opened in a ledger."""
+        self.state, self.failure = State.FAILED, failure
+
+
+class Ledger:
+    """The open commands by id, and which cells must look again."""
+
+    def __init__(self) -> None:
+        self.entries: dict[str, Entry] = {}
+        self.changed: set[str] = set()
+        self.ignored: Counter[str] = Counter()
+
+    def open(self, entry: Entry) -> None:
+        self.entries[entry.command.id] = entry
+        self.changed.add(entry.cell)
+
+    def of_robot(self, robot: str) -> list[Entry]:
+        """The open commands of a robot, oldest first."""
+        return [entry for entry in self.entries.values() if entry.command.robot == robot]
+
+    def feed(self, id: str, feed: Feed, now: float, failure: Failure | None = None) -> None:
+        """Apply one feed; an unknown or finished id is counted and ignored."""
+        entry = self.entries.get(id)
+        if entry is None:
+            self.ignored[feed.value] += 1
+            return
+        self._apply(entry, feed, now)
+        if entry.state is State.FAILED:
+            entry.failure = failure
+        if not entry.open:
+            del self.entries[id]
+
+    def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
+        after = TABLE.get((entry.state, feed))
+        if after is None:
+            what = f"command {entry.command.id} is {entry.state.value}"
+            raise IllegalTransition(f"{what}: no {feed.value} there")
+        if after is not entry.state:
+            self.changed.add(entry.cell)
+        entry.state = after
+        if feed is Feed.ACCEPTED and entry.accepted_at is None:
+            entry.accepted_at = now
+        if feed is Feed.CANCEL and entry.cancelled_at is None:
+            entry.cancelled_at = now
+
+    @property
+    def next_deadline(self) -> float | None:
+        return min((entry.next_deadline for entry in self.entries.values()), default=None)

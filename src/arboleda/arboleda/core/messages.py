@@ -1,0 +1,186 @@
+"""What crosses the core's border: commands and notices out, events in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .model import MotionState
+
+
+class Reason(str, Enum):
+    """Why something failed; one per failure."""
+
+    LINK_LOST = "link_lost"
+    REBOOTED = "rebooted"
+    NOT_HOMED = "not_homed"
+    REJECTED = "rejected"
+    DEADLINE = "deadline"
+    STOPPED_SHORT = "stopped_short"
+    NOT_REACHED = "not_reached"
+    DEVICE_FAULT = "device_fault"
+    STOP_UNCONFIRMED = "stop_unconfirmed"
+    STOPPED = "stopped"
+    CANCELLED = "cancelled"
+    NO_PIECE = "no_piece"
+    NOT_GRIPPED = "not_gripped"
+    PART_LOST = "part_lost"
+    ZONE_UNAVAILABLE = "zone_unavailable"
+    INTERRUPTED = "interrupted"
+    INTERNAL = "internal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Failure:
+    """One reason and one sentence for the operator."""
+
+    reason: Reason
+    sentence: str
+
+
+class TaskState(str, Enum):
+    """The life of a task as `/task_status` tells it."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+    REFUSED = "refused"
+
+
+class StopMode(int, Enum):
+    """The `stop_cmd` / `paro` values."""
+
+    CLEAR = 0
+    LATCH = 1
+    HALT = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveJoints:
+    """Drive an arm to `q` (rad; m for a prismatic joint)."""
+
+    id: str
+    robot: str
+    q: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowPath:
+    """Drive a mobile robot over grid nodes."""
+
+    id: str
+    robot: str
+    nodes: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetEffector:
+    """Switch an arm's effector."""
+
+    id: str
+    robot: str
+    on: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop:
+    """Halt the running move, stop and latch, or clear the latch."""
+
+    id: str
+    robot: str
+    mode: StopMode
+
+
+@dataclass(frozen=True, kw_only=True)
+class Home:
+    """Run the homing routine."""
+
+    id: str
+    robot: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heartbeat:
+    """The plant is alive; `epoch` names this start of it."""
+
+    epoch: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class SystemStart:
+    """A cell starts a task."""
+
+    cell: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskChanged:
+    """One change of a task; `request` is the token of the request that caused it, if one did."""
+
+    task: str
+    text: str
+    cell: str | None
+    state: TaskState
+    reason: Reason | None = None
+    sentence: str = ""
+    request: str | None = None
+
+
+Motion = MoveJoints | FollowPath | Home
+Command = MoveJoints | FollowPath | SetEffector | Stop | Home
+Notice = Heartbeat | SystemStart | TaskChanged
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report:
+    """What a robot said, in SI units; None means it did not say.
+
+    `epoch` names the bridge's start, `boot_id` the board's; `accepted`, `done` and `rejected` are
+    command ids, the last of each; `refusal` is the word that came with `rejected`.
+    """
+
+    at: float
+    robot: str
+    epoch: int | None = None
+    boot_id: int | None = None
+    accepted: str | None = None
+    done: str | None = None
+    rejected: str | None = None
+    refusal: str | None = None
+    state: MotionState | None = None
+    q: tuple[float, ...] | None = None
+    node: int | None = None
+    homed: bool | None = None
+    effector: bool | None = None
+    piece: bool | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskRequest:
+    """Somebody asks for a task; `request` comes back in the TaskChanged that answers it."""
+
+    at: float
+    text: str
+    request: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Undelivered:
+    """A command could not leave this process; `sentence` says why."""
+
+    at: float
+    id: str
+    robot: str
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shutdown:
+    """The plant is asked to end: no new task, whatever moves is halted."""
+
+    at: float
+
+
+Event = Report | TaskRequest | Undelivered | Shutdown

@@ -1,0 +1,256 @@
+"""What a plant is: frozen values in SI units (rad, m, s), built once from the plant file."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+
+class Evidence(str, Enum):
+    """How much a robot can prove about its motion."""
+
+    IDS = "ids"
+    JOINTS = "joints"
+    STATE = "state"
+
+
+class Link(str, Enum):
+    """How a robot is reached: MQTT through the bridge, or directly on ROS 2 topics."""
+
+    MQTT = "mqtt"
+    ROS = "ros"
+
+
+class MotionState(int, Enum):
+    """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
+
+    STOPPED = 0
+    MOVING = 1
+    FAULT = 2
+    NOT_HOMED = 3
+    STOP_LATCHED = 4
+    NO_LINK = 255
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """One axis: position in rad (revolute) or m (prismatic); `step` is one motor step in that unit."""
+
+    name: str
+    lower: float
+    upper: float
+    speed: float
+    acceleration: float
+    step: float
+    pinion_radius_m: float | None = None  # None: revolute; else the rack pinion of a prismatic axis
+
+    @property
+    def unit(self) -> str:
+        return "rad" if self.pinion_radius_m is None else "m"
+
+    def steps(self, value: float) -> int:
+        """The whole motor step nearest to `value`, halves away from zero."""
+        return math.floor(abs(value) / self.step + 0.5) * (1 if value >= 0 else -1)
+
+    def quantised(self, value: float) -> float:
+        """`value` as the motor can hold it."""
+        return self.steps(value) * self.step
+
+    def travel_s(self, distance: float) -> float:
+        """Time of a rest-to-rest move over `distance` with constant acceleration."""
+        distance = abs(distance)
+        ramp = self.speed**2 / self.acceleration
+        if distance < ramp:
+            return 2 * math.sqrt(distance / self.acceleration)
+        return distance / self.speed + self.speed / self.acceleration
+
+
+@dataclass(frozen=True, kw_only=True)
+class Placement:
+    """A pose on the floor of the `world` frame: m, m, rad."""
+
+    x: float
+    y: float
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """A rows x columns grid of nodes, numbered row by row from 0; `pitch` m between neighbours."""
+
+    origin: Placement
+    pitch: float
+    rows: int = 3
+    columns: int = 3
+
+    @property
+    def size(self) -> int:
+        return self.rows * self.columns
+
+    def neighbours(self, node: int) -> tuple[int, ...]:
+        """The nodes one 4-neighbour edge away, ascending."""
+        row, column = divmod(node, self.columns)
+        around = ((row - 1, column), (row, column - 1), (row, column + 1), (row + 1, column))
+        return tuple(r * self.columns + c for r, c in around if 0 <= r < self.rows and 0 <= c < self.columns)
+
+    def route(self, start: int, goal: int) -> tuple[int, ...]:
+        """A shortest way over 4-neighbours, both ends included; ties go to the lower node."""
+        came_from = {start: start}
+        frontier = deque([start])
+        while goal not in came_from:
+            node = frontier.popleft()
+            for nearby in self.neighbours(node):
+                if nearby not in came_from:
+                    came_from[nearby] = node
+                    frontier.append(nearby)
+        way = [goal]
+        while way[-1] != start:
+            way.append(came_from[way[-1]])
+        return tuple(reversed(way))
+
+    def position(self, node: int) -> tuple[float, float]:
+        """x, y of a node in the grid frame, m."""
+        row, column = divmod(node, self.columns)
+        return (column * self.pitch, row * self.pitch)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """What every robot declares: its names, its link and what it can prove."""
+
+    name: str
+    mqtt: str
+    link: Link
+    evidence: Evidence
+    timeout_s: float
+    assume_homed: bool = False
+    has_stop: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm(Robot):
+    """An arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
+
+    model: str
+    twin: str
+    base: Placement
+    joints: tuple[Joint, ...]
+    tolerance: tuple[float, ...] | None = None
+
+    @cached_property
+    def tolerances(self) -> tuple[float, ...]:
+        return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
+
+    def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(joint.quantised(value) for joint, value in zip(self.joints, q, strict=True))
+
+    def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
+        """Whether reported joints `q` lie within tolerance of a quantised target."""
+        rows = zip(q, target, self.tolerances, strict=True)
+        return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
+
+    def travel_s(self, start: tuple[float, ...] | None, goal: tuple[float, ...]) -> float:
+        """Time of a joint move; from an unknown start the longest possible one."""
+        if start is None:
+            return max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
+        rows = zip(self.joints, start, goal, strict=True)
+        return max(joint.travel_s(there - here) for joint, here, there in rows)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mobile(Robot):
+    """A mobile robot on a grid; `speed` in m/s."""
+
+    grid: Grid
+    speed: float
+
+    def travel_s(self, nodes: tuple[int, ...]) -> float:
+        """Time of a path; one edge is added for a robot that starts elsewhere."""
+        return len(nodes) * self.grid.pitch / self.speed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """A named arm pose; `above` is the point over it where the pose has an approach height."""
+
+    name: str
+    q: tuple[float, ...]
+    above: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Path:
+    """A coded way of the mobile over its grid, node by node."""
+
+    code: str
+    nodes: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Palletizing:
+    """The fixed pick and place of a cell's palletizing recipe."""
+
+    pick: Pose
+    place: Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """One arm, one mobile robot, one storage rack."""
+
+    name: str
+    arm: Arm
+    mobile: Mobile
+    home: Pose
+    pickup: Pose
+    stations: tuple[Pose, ...]
+    paths: tuple[Path, ...]
+    palletizing: Palletizing
+    queue_limit: int
+    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
+
+    def path(self, code: str) -> Path:
+        return next(path for path in self.paths if path.code == code)
+
+    @property
+    def robots(self) -> tuple[Robot, ...]:
+        return (self.arm, self.mobile)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """The plant's waiting times in seconds; `deadline_factor` multiplies a computed motion time."""
+
+    dwell_s: float = 0.2
+    effector_settle_s: float = 0.2
+    effector_timeout_s: float = 5.0
+    stale_after_s: float = 1.5
+    stop_timeout_s: float = 5.0
+    deadline_factor: float = 1.5
+    deadline_floor_s: float = 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantModel:
+    """The whole plant as its file describes it."""
+
+    name: str
+    cells: tuple[Cell, ...]
+    timing: Timing = Timing()
+    mqtt_version: int = 4  # paho's protocol number of MQTT 3.1.1; 5 for MQTT 5
+
+    def cell(self, name: str) -> Cell:
+        return next(cell for cell in self.cells if cell.name == name)
+
+    @cached_property
+    def robots(self) -> dict[str, Robot]:
+        """Every robot by name, in the order of the file."""
+        return {robot.name: robot for cell in self.cells for robot in cell.robots}
+
+    @cached_property
+    def cell_of(self) -> dict[str, Cell]:
+        """The cell of each robot, by robot name."""
+        return {robot.name: cell for cell in self.cells for robot in cell.robots}

@@ -1,0 +1,65 @@
+"""A task and the states it passes through."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .errors import IllegalTransition
+from .messages import Failure, TaskState
+from .model import Path, Pose
+
+
+class Recipe(str, Enum):
+    """The recipes a task text can ask for."""
+
+    STORAGE = "storage"
+    PALLETIZING = "palletizing"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """A parsed task text: canonical words, and the id the user gave after `#`, if any."""
+
+    text: str
+    cell: str
+    recipe: Recipe
+    id: str | None = None
+    path: Path | None = None
+    station: Pose | None = None
+
+
+LEGAL: dict[TaskState, frozenset[TaskState]] = {
+    TaskState.QUEUED: frozenset({TaskState.RUNNING, TaskState.CANCELLED}),
+    TaskState.RUNNING: frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED}),
+    TaskState.DONE: frozenset(),
+    TaskState.FAILED: frozenset(),
+    TaskState.CANCELLED: frozenset(),
+}
+
+
+class Task:
+    """An accepted order on its way through the plant; times in s of the plant's clock."""
+
+    def __init__(self, id: str, order: Order, now: float) -> None:
+        self.id = id
+        self.order = order
+        self.state = TaskState.QUEUED
+        self.failure: Failure | None = None
+        self.queued_at = now
+        self.started_at: float | None = None
+        self.ended_at: float | None = None
+
+    def become(self, state: TaskState, now: float) -> None:
+        """Move to `state`; IllegalTransition where the table has no such step."""
+        if state not in LEGAL[self.state]:
+            raise IllegalTransition(f"task {self.id} cannot go from {self.state.value} to {state.value}")
+        self.state = state
+        if state is TaskState.RUNNING:
+            self.started_at = now
+        else:
+            self.ended_at = now
+
+    def fail(self, failure: Failure) -> None:
+        """Keep the first cause of a failure; later ones are consequences."""
+        self.failure = self.failure or failure

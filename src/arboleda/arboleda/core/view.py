@@ -1,0 +1,131 @@
+"""The plant as plain data (dicts, lists, str, numbers, None) for screens; read only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from .belief import Belief
+from .cell import CellRun
+from .messages import TaskChanged
+from .model import Arm
+from .plant import Plant
+from .task import Task
+
+
+def snapshot(plant: Plant) -> dict[str, Any]:
+    """Everything a screen shows, as of the plant's last step; positions in rad and m."""
+    return {
+        "plant": plant.model.name,
+        "epoch": plant.epoch,
+        "at": plant.now,
+        "ending": plant.intake.closed,
+        "cells": [_cell(cell, plant.now) for cell in plant.cells.values()],
+        "robots": [_robot(belief, plant.now) for belief in plant.dispatcher.beliefs.values()],
+        "tasks": [_task(task, plant.now) for task in plant.intake.tasks.values()],
+        "ignored": dict(plant.dispatcher.ledger.ignored),
+    }
+
+
+def change(changed: TaskChanged) -> dict[str, Any]:
+    """One line of `/task_status`."""
+    return {
+        "id": changed.task,
+        "text": changed.text,
+        "cell": changed.cell,
+        "state": changed.state.value,
+        "reason": changed.reason.value if changed.reason else None,
+        "sentence": changed.sentence,
+    }
+
+
+def step_of(tree: Behaviour | None) -> str | None:
+    """The name of the step that runs: the deepest running node, a step's own parts left out."""
+    running = [node for node in tree.iterate() if node.status.value == "RUNNING"] if tree else []
+    named = [node for node in running if node.parent is None or node.parent.parent is None]
+    return named[0].name if named else None
+
+
+def _cell(cell: CellRun, now: float) -> dict[str, Any]:
+    return {
+        "name": cell.cell.name,
+        "state": cell.state.value,
+        "arm": cell.cell.arm.name,
+        "mobile": cell.cell.mobile.name,
+        "task": _task(cell.task, now) if cell.task else None,
+        "step": step_of(cell.tree),
+        "queue": [task.id for task in cell.queue],
+        "waiting_for": cell.waiting_for() if cell.queue else None,
+        "tree": _nodes(cell.tree, "") if cell.tree else [],
+    }
+
+
+def _task(task: Task, now: float) -> dict[str, Any]:
+    started = task.started_at
+    ended = task.ended_at if task.ended_at is not None else now
+    return {
+        "id": task.id,
+        "text": task.order.text,
+        "cell": task.order.cell,
+        "state": task.state.value,
+        "reason": task.failure.reason.value if task.failure else None,
+        "sentence": task.failure.sentence if task.failure else "",
+        "elapsed_s": None if started is None else ended - started,
+    }
+
+
+def _robot(belief: Belief, now: float) -> dict[str, Any]:
+    robot, obstacle = belief.robot, belief.obstacle()
+    return {
+        "name": robot.name,
+        "mqtt": robot.mqtt,
+        "online": belief.online,
+        "obstacle": obstacle.sentence if obstacle else None,
+        "state": belief.state.value if belief.state is not None else None,
+        "age_s": None if belief.heard_at is None else now - belief.heard_at,
+        "q": belief.q,
+        "units": [joint.unit for joint in robot.joints] if isinstance(robot, Arm) else None,
+        "node": belief.node,
+        "homed": belief.homed,
+        "effector": belief.effector,
+        "piece": belief.piece,
+        "boot_id": belief.boot_id,
+    }
+
+
+def _nodes(node: Behaviour, path: str) -> list[dict[str, Any]]:
+    """A tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
+    here = {
+        "path": path or "root",
+        "name": node.name,
+        "status": node.status.value,
+        "feedback": node.feedback_message,
+    }
+    children = [_nodes(child, f"{path}.{i}".lstrip(".")) for i, child in enumerate(node.children)]
+    return [here, *(row for rows in children for row in rows)]
+
+
+Diagnostic = tuple[str, str, int, str, dict[str, str]]
+OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
+
+
+def diagnostics(snapshot: dict[str, Any]) -> list[Diagnostic]:
+    """One (name, hardware id, level, message, values) per robot and cell of a snapshot."""
+    return [_robot_diagnostic(robot) for robot in snapshot["robots"]] + [
+        _cell_diagnostic(cell) for cell in snapshot["cells"]
+    ]
+
+
+def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
+    level = OK if robot["online"] else STALE
+    if robot["online"] and robot["state"] not in (None, 0, 1):
+        level = ERROR
+    values = {key: str(value) for key, value in robot.items() if value is not None}
+    return (f"arboleda: {robot['name']}", robot["mqtt"], level, robot["obstacle"] or "ready", values)
+
+
+def _cell_diagnostic(cell: dict[str, Any]) -> Diagnostic:
+    level = WARN if cell["state"] == "held" else OK
+    values = {"state": cell["state"], "queued": str(len(cell["queue"])), "step": cell["step"] or ""}
+    return (f"arboleda: {cell['name']}", "", level, cell["waiting_for"] or cell["state"], values)

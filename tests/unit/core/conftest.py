@@ -1,0 +1,82 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.core.messages import Report, TaskChanged, TaskRequest
+from arboleda.core.model import Evidence, MotionState, PlantModel
+from arboleda.core.plant import Plant
+
+
+@pytest.fixture(scope="session")
+def shipped() -> PlantModel:
+    return load(None)
+
+
+class Hand:
+    """One plant driven by hand: every report is typed, every second is moved."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self.now = 100.0
+        self.plant = Plant(model, epoch=7, now=self.now)
+        self.out: list[Any] = []
+        self._step([])
+
+    def _step(self, events: list[Any]) -> list[Any]:
+        out = self.plant.step(self.now, events)
+        self.out += out
+        assert self.plant.sleepers() == []
+        return out
+
+    def submit(self, text: str) -> list[Any]:
+        return self._step([TaskRequest(at=self.now, text=text)])
+
+    def tell(self, robot: str, after: float = 0.05, **said: Any) -> list[Any]:
+        self.now += after
+        return self._step([Report(at=self.now, robot=robot, **said)])
+
+    def wait(self, seconds: float) -> list[Any]:
+        """Let time pass, deadline by deadline, with nobody saying anything."""
+        until, out = self.now + seconds, []
+        while self.plant.next_deadline <= until:
+            self.now = max(self.now, self.plant.next_deadline)
+            out += self._step([])
+        self.now = until
+        return out
+
+    def awake(self, **standing: tuple[float, ...]) -> None:
+        """Have every robot report that it stands still, at home unless `standing` says where."""
+        for cell in self.plant.model.cells:
+            self._awake(cell.arm.name, q=standing.get(cell.arm.name, cell.home.q))
+            self._awake(cell.mobile.name, node=0)
+
+    def _awake(self, robot: str, **where: Any) -> None:
+        by_ids = self.plant.model.robots[robot].evidence is Evidence.IDS
+        ids = {"epoch": 1, "boot_id": 11, "homed": True} if by_ids else {}
+        self.tell(robot, after=0.0, state=MotionState.STOPPED, **where, **ids)
+
+    def commands(self, kind: type) -> list[Any]:
+        return [message for message in self.out if isinstance(message, kind)]
+
+    def states(self) -> list[str]:
+        return [message.state.value for message in self.commands(TaskChanged)]
+
+
+@pytest.fixture
+def hand(shipped: PlantModel) -> Callable[[Evidence], Hand]:
+    """A hand-driven plant whose robots all prove what `evidence` says."""
+
+    def make(evidence: Evidence) -> Hand:
+        cells = tuple(
+            replace(
+                cell, arm=replace(cell.arm, evidence=evidence), mobile=replace(cell.mobile, evidence=evidence)
+            )
+            for cell in shipped.cells
+        )
+        return Hand(replace(shipped, cells=cells))
+
+    return make

@@ -1,0 +1,283 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arboleda.core import recipes
+from arboleda.core.messages import (
+    FollowPath,
+    Heartbeat,
+    MoveJoints,
+    Reason,
+    SetEffector,
+    Shutdown,
+    Stop,
+    StopMode,
+    SystemStart,
+    TaskChanged,
+    TaskRequest,
+)
+from arboleda.core.model import Evidence, MotionState
+from arboleda.core.plant import Plant
+from arboleda.core.view import snapshot
+
+MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
+
+
+def driven_to_the_arm(
+    hand: Callable[[Evidence], Any], evidence: Evidence, *, at_goal: bool = False
+) -> tuple[Any, MoveJoints]:
+    """A storage task whose mobile arrived and whose arm was just sent to its pick-up pose."""
+    plant = hand(evidence)
+    pickup = plant.plant.model.cell("sis_a").pickup.q
+    plant.awake(**({"ra1": pickup} if at_goal else {}))
+    plant.submit("sis_a 0B 7")
+    plant.wait(0.2)
+    (path,) = plant.commands(FollowPath)
+    plant.tell("rm_sis_a", state=MOVING, accepted=path.id)
+    plant.tell("rm_sis_a", state=STILL, node=7, accepted=path.id, done=path.id)
+    (move,) = plant.commands(MoveJoints)
+    return plant, move
+
+
+def last_change(plant: Any) -> TaskChanged:
+    return plant.commands(TaskChanged)[-1]
+
+
+def test_a_storage_task_sends_its_commands_in_order(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.IDS)
+    q = move.q
+    plant.tell("ra1", state=STILL, q=q, accepted=move.id, done=move.id, effector=False)
+    plant.tell("ra1", state=STILL, q=q, effector=True)
+    plant.wait(0.2)
+    away = plant.commands(MoveJoints)[-1]
+    plant.tell("ra1", state=STILL, q=away.q, accepted=away.id, done=away.id)
+    plant.tell("ra1", state=STILL, q=away.q, effector=False)
+    plant.wait(0.2)
+    home = plant.commands(MoveJoints)[-1]
+    plant.tell("ra1", state=STILL, q=home.q, accepted=home.id, done=home.id)
+    assert plant.states() == ["queued", "running", "done"]
+    assert [command.on for command in plant.commands(SetEffector)] == [True, False]
+    cell = plant.plant.model.cell("sis_a")
+    assert (q, away.q, home.q) == (cell.pickup.q, cell.stations[7].q, cell.home.q)
+    assert len(plant.commands(SystemStart)) == 1 and not plant.commands(Stop)
+
+
+@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
+def test_a_robot_already_at_its_goal_is_done_by_its_next_report(hand: Any, evidence: Evidence) -> None:
+    plant, move = driven_to_the_arm(hand, evidence, at_goal=True)
+    plant.tell("ra1", state=STILL, q=move.q, accepted=move.id, done=move.id)
+    assert plant.commands(SetEffector)
+
+
+def test_by_state_a_move_is_done_only_after_it_was_seen_moving(hand: Any) -> None:
+    plant, _ = driven_to_the_arm(hand, Evidence.STATE)
+    plant.tell("ra1", state=STILL)
+    assert not plant.commands(SetEffector)
+    plant.tell("ra1", state=MOVING)
+    plant.tell("ra1", state=STILL)
+    assert plant.commands(SetEffector)
+
+
+SHORT = (0.3, 0.0, 0.0)
+FAULTS: dict[str, tuple[Evidence, list[dict[str, Any]], Reason]] = {
+    "ids: bridge restarted": (Evidence.IDS, [{"state": MOVING, "epoch": 2}], Reason.LINK_LOST),
+    "ids: board rebooted": (Evidence.IDS, [{"state": STILL, "boot_id": 12}], Reason.REBOOTED),
+    "ids: link lost": (Evidence.IDS, [{"state": MotionState.NO_LINK}], Reason.LINK_LOST),
+    "ids: rejected": (
+        Evidence.IDS,
+        [{"state": STILL, "rejected": "ID", "refusal": "limite"}],
+        Reason.REJECTED,
+    ),
+    "ids: not sent": (Evidence.IDS, [{"rejected": "ID", "refusal": "no_link"}], Reason.LINK_LOST),
+    "ids: fault": (Evidence.IDS, [{"state": MotionState.FAULT}], Reason.DEVICE_FAULT),
+    "ids: not homed": (Evidence.IDS, [{"state": MotionState.NOT_HOMED}], Reason.NOT_HOMED),
+    "ids: latched": (Evidence.IDS, [{"state": MotionState.STOP_LATCHED}], Reason.STOPPED),
+    "ids: short": (
+        Evidence.IDS,
+        [{"state": MOVING, "accepted": "ID"}, {"state": STILL, "q": SHORT, "accepted": "ID"}],
+        Reason.STOPPED_SHORT,
+    ),
+    "ids: done off target": (
+        Evidence.IDS,
+        [{"state": STILL, "q": SHORT, "accepted": "ID", "done": "ID"}],
+        Reason.NOT_REACHED,
+    ),
+    "joints: short": (
+        Evidence.JOINTS,
+        [{"state": MOVING, "q": (0.05, 0.0, 0.0)}, {"state": STILL, "q": (0.1, 0.0, 0.0)}],
+        Reason.STOPPED_SHORT,
+    ),
+    "joints: jumped": (
+        Evidence.JOINTS,
+        [{"state": MOVING, "q": (0.05, 0.0, 0.0)}, {"state": STILL, "q": (0.9, 0.0, 0.0)}],
+        Reason.REBOOTED,
+    ),
+    "state: link lost": (Evidence.STATE, [{"state": MotionState.NO_LINK}], Reason.LINK_LOST),
+    "state: fault": (Evidence.STATE, [{"state": MotionState.FAULT}], Reason.DEVICE_FAULT),
+}
+
+
+@pytest.mark.parametrize(("evidence", "reports", "reason"), FAULTS.values(), ids=FAULTS)
+def test_a_fault_fails_the_task_with_its_reason(
+    hand: Any, evidence: Evidence, reports: list[dict[str, Any]], reason: Reason
+) -> None:
+    plant, move = driven_to_the_arm(hand, evidence)
+    for report in reports:
+        plant.tell("ra1", **{key: move.id if value == "ID" else value for key, value in report.items()})
+    change = last_change(plant)
+    assert (change.state.value, change.reason) == ("failed", reason)
+    assert "ra1" in change.sentence and "pick-up" in change.sentence
+    assert not plant.commands(SetEffector)
+    assert plant.plant.at_rest
+
+
+@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
+def test_a_silent_robot_fails_its_move_and_is_halted(hand: Any, evidence: Evidence) -> None:
+    plant, _ = driven_to_the_arm(hand, evidence)
+    plant.wait(1.6)
+    assert last_change(plant).sentence == "ra1: no telemetry for 1.5 s while moving to pick-up"
+    assert last_change(plant).reason is Reason.LINK_LOST
+    assert [(stop.robot, stop.mode) for stop in plant.commands(Stop)] == [("ra1", StopMode.HALT)]
+
+
+@pytest.mark.parametrize("evidence", list(Evidence))
+def test_a_move_that_never_ends_meets_its_deadline(hand: Any, evidence: Evidence) -> None:
+    plant, move = driven_to_the_arm(hand, evidence)
+    for _ in range(120):
+        plant.tell("ra1", after=0.1, state=MOVING, q=SHORT, accepted=move.id)
+    assert last_change(plant).reason is Reason.DEADLINE
+    assert [stop.mode for stop in plant.commands(Stop)] == [StopMode.HALT]
+
+
+def test_a_report_stamped_by_the_deadline_counts(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.STATE)
+    (entry,) = plant.plant.dispatcher.ledger.entries.values()
+    plant.tell("ra1", after=entry.deadline - plant.now - 1, state=MOVING)
+    plant.tell("ra1", after=1, state=STILL)
+    assert plant.now == entry.deadline
+    assert plant.commands(SetEffector)
+
+
+def test_a_report_stamped_after_the_deadline_is_too_late(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.STATE)
+    plant.tell("ra1", state=MOVING)
+    plant.tell("ra1", after=60, state=STILL)
+    assert last_change(plant).reason is Reason.DEADLINE
+
+
+def test_a_task_for_a_busy_cell_waits_and_delays_no_other(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.submit("sis_a 0B 7")
+    plant.submit("sis_a 0A 1")
+    assert "sis_a is busy" in last_change(plant).sentence
+    plant.submit("sis_b 1C 3")
+    running = [change.text for change in plant.commands(TaskChanged) if change.state.value == "running"]
+    assert running == ["sis_a 0B 7", "sis_b 1C 3"]
+
+
+def test_a_full_queue_refuses_with_its_limit(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    limit = plant.plant.model.cell("sis_a").queue_limit
+    for _ in range(limit + 1):
+        plant.submit("sis_a 0B 7")
+    assert last_change(plant).state.value == "refused"
+    assert f"{limit} tasks waiting" in last_change(plant).sentence
+
+
+def test_a_task_waits_for_robots_that_were_never_heard_and_says_so(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.submit("sis_a 0B 7")
+    assert last_change(plant).sentence == "ra1 was not heard yet"
+    plant.awake()
+    assert plant.states()[-1] == "running"
+
+
+def test_the_same_id_and_text_is_the_same_task(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.submit("sis_a 0B 7 #lot42")
+    plant.submit("SIS_A 0b 7 #lot42")
+    assert [change.task for change in plant.commands(TaskChanged)] == ["lot42", "lot42"]
+    assert len(plant.plant.cells["sis_a"].queue) == 1
+    plant.submit("sis_a 0B 8 #lot42")
+    assert last_change(plant).state.value == "refused"
+    assert "already the id of 'sis_a 0B 7'" in last_change(plant).sentence
+
+
+def test_a_refused_text_changes_nothing(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    before = snapshot(plant.plant)
+    plant.submit("sis_z 0B 7")
+    assert last_change(plant).state.value == "refused"
+    assert snapshot(plant.plant) == before
+
+
+def test_a_failed_cell_is_held_and_the_others_go_on(hand: Any) -> None:
+    plant, _ = driven_to_the_arm(hand, Evidence.IDS)
+    plant.tell("ra1", state=MotionState.FAULT)
+    plant.submit("sis_a 0B 7")
+    assert last_change(plant).state.value == "queued" and "held" in last_change(plant).sentence
+    plant.submit("sis_b 1C 3")
+    assert last_change(plant).state.value == "running"
+
+
+def test_a_leaf_that_raises_fails_its_task_and_halts_its_robot(
+    hand: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def raises(*args: Any) -> None:
+        raise ZeroDivisionError("in a leaf")
+
+    plant = hand(Evidence.IDS)
+    monkeypatch.setattr(recipes.Act, "update", raises)
+    plant.awake()
+    plant.submit("sis_a 0B 7")
+    plant.wait(0.2)
+    assert last_change(plant).reason is Reason.INTERNAL
+    assert "ZeroDivisionError" in last_change(plant).sentence
+    assert [(stop.robot, stop.mode) for stop in plant.commands(Stop)] == [("rm_sis_a", StopMode.HALT)]
+    plant.submit("sis_b 1C 3")
+    assert last_change(plant).state.value == "running"
+
+
+@pytest.mark.parametrize("evidence", list(Evidence))
+def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
+    hand: Any, evidence: Evidence
+) -> None:
+    plant, move = driven_to_the_arm(hand, evidence)
+    plant.tell("ra1", state=MOVING, q=(0.05, 0.0, 0.0), accepted=move.id)
+    plant.plant.step(plant.now, [Shutdown(at=plant.now)])
+    assert not plant.plant.at_rest
+    for _ in range(2):
+        plant.tell("ra1", state=STILL, q=(0.08, 0.0, 0.0), accepted=move.id)
+    assert plant.plant.at_rest
+    assert plant.plant.intake.tasks.popitem()[1].failure.reason is Reason.INTERRUPTED
+
+
+def test_a_mobile_elsewhere_is_driven_to_the_start_first(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.tell("rm_sis_a", state=STILL, node=4)
+    plant.submit("sis_a 0B 7")
+    plant.wait(0.2)
+    (there,) = plant.commands(FollowPath)
+    assert there.nodes == (4, 1, 0)
+    plant.tell("rm_sis_a", state=STILL, node=0, accepted=there.id, done=there.id)
+    assert plant.commands(FollowPath)[-1].nodes == (0, 3, 4, 7)
+
+
+def test_the_heartbeat_names_the_epoch_every_quarter_second(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.wait(1.0)
+    assert plant.commands(Heartbeat) == [Heartbeat(epoch=7)] * 5
+
+
+def test_the_same_inputs_give_the_same_outputs(shipped: Any) -> None:
+    def run() -> list[Any]:
+        plant = Plant(shipped, epoch=3, now=0.0)
+        return [plant.step(0.1 * n, [TaskRequest(at=0.1 * n, text="sis_a 0B 7")]) for n in range(5)]
+
+    assert run() == run()
