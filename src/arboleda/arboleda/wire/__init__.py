@@ -1,0 +1,1 @@
+"""Bytes without sockets: topics, payloads, units at the device edge, and the bridge's state machine."""

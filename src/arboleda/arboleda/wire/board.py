@@ -1,0 +1,189 @@
+"""One robot as the bridge sees it: commands to its board, what its board says, its stop latch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Command, Report, Stop, StopMode
+from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
+
+from . import goals
+from .labels import Labels
+from .link import BoardLink, Heard
+from .motion import Motion
+from .payloads import Beat, Payload, Presence, Telemetry, decode, encode
+from .topics import Channel, topic
+from .transport import Delivery, Publication
+from .units import from_wire
+
+Message = Publication | Report
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counters:
+    """Messages that were not used: refused whole, or overtaken; `last` is the last refusal's sentence."""
+
+    refused: int = 0
+    old: int = 0
+    last: str = ""
+
+
+class Board:
+    """Commands in, reports out; a command leaves only while the link is up and no latch forbids it."""
+
+    def __init__(self, robot: Robot, *, epoch: int, stale_after_s: float) -> None:
+        supervised = robot.evidence is not Evidence.STATE
+        self.robot = robot
+        self.labels = Labels(epoch)
+        self.link = BoardLink(stale_after_s if supervised else None)
+        self.counters = Counters()
+        self._axes = len(robot.joints) if isinstance(robot, Arm) else None
+        self._motion: Motion | None = None
+        self._latched = False
+
+    @property
+    def in_motion(self) -> bool:
+        """Whether a motion command is open."""
+        return self._motion is not None
+
+    def connection(self, at: float, up: bool) -> list[Message]:
+        self.link.connection(up)
+        return [] if up else self.lose(at)
+
+    def lose(self, at: float) -> list[Message]:
+        """The link is gone, and with it whatever was open; nothing is sent again."""
+        was_up, self.link.up = self.link.up, False
+        self._motion = None
+        return [self.no_link(at)] if was_up else []
+
+    def no_link(self, at: float) -> Report:
+        return self._report(at, state=MotionState.NO_LINK)
+
+    def command(self, at: float, command: Command) -> list[Message]:
+        """Send it, or report the word that refuses it; an id that came before is ignored."""
+        if self.labels.repeated(command.id):
+            return []
+        if isinstance(command, Stop) and command.mode is not StopMode.HALT:
+            self._latched = command.mode is StopMode.LATCH
+        word = self._refusal(command)
+        return self.refuse(at, command, word) if word else self._send(at, command)
+
+    def refuse(self, at: float, command: Command, word: str) -> list[Message]:
+        self._count(f"{type(command).__name__} {command.id or '(no id)'} is refused: {word}")
+        self.labels.refuse(command.id, word)
+        if not command.id:
+            return []
+        return [self._report(at, state=None if self.link.up else MotionState.NO_LINK)]
+
+    def beat(self) -> Publication:
+        """`latido`: who commands this board is alive."""
+        return self._publication(Channel.BEAT, Beat(epoch=self.labels.epoch), qos=0)
+
+    def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
+        """A message from the board; what breaks the contract is counted and changes nothing."""
+        try:
+            said = decode(channel, delivery.payload, axes=self._axes)
+            self._check(said, delivery)
+        except PayloadError as error:
+            self._count(f"{delivery.topic}: {error}")
+            return []
+        if isinstance(said, Presence):
+            return self._presence(delivery.at, said.online)
+        return self._telemetry(delivery.at, said) if isinstance(said, Telemetry) else []
+
+    def _check(self, said: Payload, delivery: Delivery) -> None:
+        if not isinstance(said, (Presence, Telemetry)):
+            raise PayloadError("a command is not for the bridge")
+        if delivery.retain and isinstance(said, Telemetry):
+            raise PayloadError("telemetry is retained: nobody knows how old it is")
+        size = self.robot.grid.size if isinstance(self.robot, Mobile) else 0
+        if isinstance(said, Telemetry) and said.node is not None and said.node >= size:
+            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {size - 1}")
+
+    def _presence(self, at: float, online: bool) -> list[Message]:
+        self.link.presence(online)
+        if not online:
+            return self.lose(at)
+        return self._stop_again(at) if self.link.up else []
+
+    def _telemetry(self, at: float, said: Telemetry) -> list[Message]:
+        heard = self.link.hear(at, said)
+        if heard is Heard.OLD:
+            self.counters = replace(self.counters, old=self.counters.old + 1)
+        if heard is Heard.ABSENT:
+            self._count("telemetry of a board whose conexion is 0")
+        if heard in (Heard.LATE, Heard.ABSENT, Heard.OLD):
+            return []
+        if heard is Heard.REBOOT:
+            self.labels.reboot()
+            self._motion = None
+        q, ended = self._joints(said), self.labels.hear(said)
+        if self._motion and self._motion.ended(said, q, ended):
+            self._motion = None
+        return [self._told(at, said, q), *([] if heard is Heard.NEWS else self._stop_again(at))]
+
+    def _refusal(self, command: Command) -> str | None:
+        if not self.link.up:
+            return "no_link"
+        return goals.refusal(self.robot, command) or (
+            "paro" if self._latched and goals.needs_clear(command) else None
+        )
+
+    def _send(self, at: float, command: Command) -> list[Message]:
+        seq = self.labels.issue(command.id)
+        numbered = self.robot.evidence is Evidence.IDS
+        stamp = {"seq": seq, "epoch": self.labels.epoch} if numbered else {"seq": None, "epoch": None}
+        channel, goal = goals.goal(self.robot, command, **stamp)
+        try:
+            publication = self._publication(channel, goal)
+        except PayloadError:
+            return self.refuse(at, command, "formato")
+        if goals.starts_motion(command):
+            self._motion = Motion(robot=self.robot, command=command, seq=seq)
+            return [self.beat(), publication]
+        if isinstance(command, Stop) and command.mode is not StopMode.CLEAR and self._motion:
+            self._motion.stopping = True
+        return [publication]
+
+    def _stop_again(self, at: float) -> list[Message]:
+        """A board that comes back may have forgotten its latch; the operator has not."""
+        if not self._latched or not self.robot.has_stop:
+            return []
+        return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))
+
+    def _joints(self, said: Telemetry) -> tuple[float, ...] | None:
+        if said.q is None or not isinstance(self.robot, Arm):
+            return None
+        return tuple(from_wire(joint, value) for joint, value in zip(self.robot.joints, said.q, strict=True))
+
+    def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None) -> Report:
+        return self._report(
+            at,
+            state=said.state,
+            accepted=self.labels.accepted,
+            done=self.labels.done,
+            q=q,
+            node=said.node,
+            homed=said.homed,
+            effector=said.effector,
+            piece=said.piece,
+        )
+
+    def _report(self, at: float, **said: object) -> Report:
+        rejected, word = self.labels.rejected or (None, None)
+        return Report(
+            at=at,
+            robot=self.robot.name,
+            epoch=self.labels.epoch,
+            boot_id=self.link.boot_id,
+            rejected=rejected,
+            refusal=word,
+            **said,  # type: ignore[arg-type]
+        )
+
+    def _publication(self, channel: Channel, payload: Payload, qos: int = 1) -> Publication:
+        return Publication(topic=topic(self.robot.mqtt, channel), payload=encode(payload), qos=qos)
+
+    def _count(self, sentence: str) -> None:
+        self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)

@@ -1,0 +1,162 @@
+"""The bridge: commands of the plant to MQTT, telemetry of the boards to reports.
+
+A pure machine; one `Board` per robot does the work, this file routes and keeps what all share:
+the plant's epoch and the heartbeat.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Command, Heartbeat, Report, Stop, StopMode
+from arboleda.core.model import Link, PlantModel
+
+from . import topics
+from .board import Board, Counters, Message
+from .topics import Channel
+from .transport import Connection, Delivery
+
+BEAT_S = 0.25
+_ID = re.compile(r"(\d{1,10})-\d{1,10}", re.ASCII)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FromPlant:
+    """What the plant's side says to the bridge."""
+
+    at: float
+    message: Command | Heartbeat
+
+
+Event = FromPlant | Delivery | Connection
+
+
+class Bridge:
+    """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own."""
+
+    def __init__(self, model: PlantModel, *, epoch: int, now: float) -> None:
+        stale_after_s = model.timing.stale_after_s
+        robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
+        self._boards = {
+            robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
+        }
+        self._named = {board.robot.mqtt: board for board in self._boards.values()}
+        self._epoch = epoch
+        self._started_at: float | None = now
+        self._plant_epoch = 0
+        self._plant_beats = False
+        self._beat_at: float | None = None
+        self._strays = Counters()
+
+    @property
+    def subscriptions(self) -> tuple[str, ...]:
+        """The topics to subscribe to, of every robot that speaks MQTT."""
+        heard = (Channel.TELEMETRY, Channel.PRESENCE)
+        return tuple(topics.topic(name, channel) for name in self._named for channel in heard)
+
+    @property
+    def counters(self) -> dict[str, Counters]:
+        """What was refused or dropped, by robot; "" counts topics that belong to none."""
+        return {"": self._strays, **{name: board.counters for name, board in self._boards.items()}}
+
+    @property
+    def next_deadline(self) -> float | None:
+        """When `step` must be called even without events; None: never."""
+        times = [self._started_at, self._beat_at, *(board.link.stale_at for board in self._boards.values())]
+        return min((time for time in times if time is not None), default=None)
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Message]:
+        """Publications for MQTT and reports for the plant, in the order they must leave."""
+        out = self._start(now)
+        for event in events:
+            out += self._take(event)
+        for board in self._boards.values():
+            if board.link.stale_at is not None and now >= board.link.stale_at:
+                out += board.lose(now)
+        return out + self._own_beats(now)
+
+    def _start(self, now: float) -> list[Message]:
+        if self._started_at is None:
+            return []
+        self._started_at = None
+        return [board.no_link(now) for board in self._boards.values()]
+
+    def _take(self, event: Event) -> list[Message]:
+        if isinstance(event, Delivery):
+            return self._deliver(event)
+        if isinstance(event, Connection):
+            changed = [board.connection(event.at, event.up) for board in self._boards.values()]
+            return [message for messages in changed for message in messages]
+        if isinstance(event.message, Heartbeat):
+            return self._relay(event.message)
+        return self._command(event.at, event.message)
+
+    def _deliver(self, delivery: Delivery) -> list[Message]:
+        try:
+            name, channel = topics.parse(delivery.topic)
+        except PayloadError as error:
+            return self._stray(str(error))
+        board = self._named.get(name)
+        return board.deliver(delivery, channel) if board else self._stray(f"{name} is no robot of this plant")
+
+    def _stray(self, sentence: str) -> list[Message]:
+        self._strays = Counters(refused=self._strays.refused + 1, last=sentence)
+        return []
+
+    def _command(self, at: float, command: Command) -> list[Message]:
+        board = self._boards.get(command.robot)
+        if board is None:
+            return self._nobody(at, command)
+        word = self._fence(command)
+        return board.refuse(at, command, word) if word else board.command(at, command)
+
+    def _nobody(self, at: float, command: Command) -> list[Message]:
+        self._stray(f"{command.robot!a} is no robot that this bridge reaches")
+        return [
+            Report(
+                at=at,
+                robot=command.robot,
+                epoch=self._epoch,
+                rejected=command.id or None,
+                refusal="no_link" if command.id else None,
+            )
+        ]
+
+    def _fence(self, command: Command) -> str | None:
+        """The word that refuses a superseded plant; never a stop, nor an unlabelled command."""
+        if not command.id:
+            return None
+        match = _ID.fullmatch(command.id)
+        if match is None:
+            return "formato"
+        epoch = int(match[1])
+        if epoch < self._plant_epoch and not (
+            isinstance(command, Stop) and command.mode is not StopMode.CLEAR
+        ):
+            return "old_epoch"
+        self._plant_epoch = max(self._plant_epoch, epoch)
+        return None
+
+    def _relay(self, heartbeat: Heartbeat) -> list[Message]:
+        if heartbeat.epoch < self._plant_epoch:
+            return []
+        self._plant_epoch = heartbeat.epoch
+        self._plant_beats = True
+        return self._beat_all()
+
+    def _beat_all(self) -> list[Message]:
+        return [board.beat() for board in self._boards.values() if board.in_motion]
+
+    def _own_beats(self, now: float) -> list[Message]:
+        """For an orchestrator that knows no heartbeat: the bridge answers for it while it is there itself."""
+        open_motion = any(board.in_motion for board in self._boards.values())
+        if self._plant_beats or not open_motion:
+            self._beat_at = None
+            return []
+        if self._beat_at is not None and now < self._beat_at:
+            return []
+        due, self._beat_at = self._beat_at is not None, now + BEAT_S
+        return self._beat_all() if due else []

@@ -1,0 +1,105 @@
+"""Command id <-> (epoca, seq) of one board: what it accepted, finished and rejected, by name."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import TypeVar
+
+from .payloads import Telemetry
+from .strict import UINT32
+
+K = TypeVar("K")
+V = TypeVar("V")
+
+REMEMBERED = 256  # commands per board; an open one is never that old
+
+
+class Labels:
+    """The one seq counter of a board, and the commands behind its numbers.
+
+    `rejected` is the last rejected command and its word, whether the board or the bridge rejected it.
+    """
+
+    def __init__(self, epoch: int) -> None:
+        self.epoch = epoch
+        self.accepted: str | None = None
+        self.done: str | None = None
+        self.rejected: tuple[str, str] | None = None
+        self._seq = 0
+        self._ids: OrderedDict[int, str] = OrderedDict()
+        self._known: OrderedDict[str, None] = OrderedDict()
+        self._spoken = False
+        self._raised = False
+        self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
+
+    def repeated(self, command_id: str) -> bool:
+        """Whether this id came before; it counts as known from now on. Unlabelled ones never repeat."""
+        if command_id in self._known:
+            return True
+        if command_id:
+            _remember(self._known, command_id, None)
+        return False
+
+    def issue(self, command_id: str) -> int:
+        """The next seq, given to this command."""
+        self._seq += 1
+        self._spoken = True
+        _remember(self._ids, self._seq, command_id)
+        return self._seq
+
+    def refuse(self, command_id: str, word: str) -> None:
+        """The bridge itself rejects a command."""
+        if command_id:
+            self.rejected = (command_id, word)
+
+    def reboot(self) -> None:
+        """The board forgot everything; what it says from now on is new."""
+        self.accepted = self.done = self.rejected = None
+        self._heard_refusal = None
+
+    def hear(self, said: Telemetry) -> frozenset[int]:
+        """Take over what telemetry says about our commands; the seqs that it reports ended."""
+        if not self._spoken and said.ack_epoch is not None and said.ack_epoch >= self.epoch:
+            self._raise_above(said.ack_epoch)
+        refused = self._refused(said)
+        ours = said.ack_epoch == self.epoch
+        self.accepted = self._name(said.ack) if ours else None
+        self.done = self._name(said.done) if ours else None
+        done = {said.done} if ours and said.done is not None else set()
+        return frozenset(done | ({refused} if refused is not None else set()))
+
+    def _refused(self, said: Telemetry) -> int | None:
+        """The seq of ours that is newly rejected; a board repeats its last refusal in every message."""
+        heard = (said.ack_epoch, said.refused_seq, said.refusal)
+        if heard == self._heard_refusal:
+            return None
+        self._heard_refusal = heard
+        if said.refusal is None or said.refused_seq is None or not self._concerns_us(said):
+            return None
+        self.refuse(self._ids[said.refused_seq], said.refusal)
+        if said.ack_epoch is not None and said.ack_epoch > self.epoch and not self._raised:
+            self._raised = True
+            self._raise_above(said.ack_epoch)
+        return said.refused_seq
+
+    def _concerns_us(self, said: Telemetry) -> bool:
+        if said.refused_seq not in self._ids:
+            return False
+        if said.refusal != "viejo":
+            return said.ack_epoch == self.epoch
+        # an accepted seq that is refused as old came twice (QoS 1), and the first one counts
+        repeated = said.ack_epoch == self.epoch and said.refused_seq == said.ack
+        return said.ack_epoch is not None and said.ack_epoch >= self.epoch and not repeated
+
+    def _raise_above(self, epoch: int) -> None:
+        self.epoch = min(epoch + 1, UINT32)
+        self._ids.clear()
+
+    def _name(self, seq: int | None) -> str | None:
+        return self._ids.get(seq) or None if seq is not None else None
+
+
+def _remember(table: OrderedDict[K, V], key: K, value: V) -> None:
+    table[key] = value
+    if len(table) > REMEMBERED:
+        table.popitem(last=False)

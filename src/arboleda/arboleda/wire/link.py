@@ -1,0 +1,67 @@
+"""Is there a board at the other end? Broker, presence, fresh telemetry, and which boot it is."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from .payloads import Telemetry
+
+
+class Heard(Enum):
+    """What a telemetry message means for the link."""
+
+    LATE = "late"  # it left the broker before the connection was lost
+    ABSENT = "absent"  # the board's presence says that nobody is there
+    OLD = "old"  # overtaken by a newer one of the same boot
+    NEWS = "news"
+    ARRIVAL = "arrival"  # the link came up with it
+    REBOOT = "reboot"  # so did another boot of the board
+
+
+class BoardLink:
+    """Up = broker reached, presence not "0", telemetry heard within `stale_after_s` (None: any time ago)."""
+
+    def __init__(self, stale_after_s: float | None) -> None:
+        self.up = False
+        self.boot_id: int | None = None
+        self._stale_after_s = stale_after_s
+        self._connected = False
+        self._absent = False
+        self._heard_at = 0.0
+        self._seq: int | None = None
+
+    @property
+    def stale_at(self) -> float | None:
+        """When silence will have lasted too long; None while down, and where silence means nothing."""
+        if not self.up or self._stale_after_s is None:
+            return None
+        return self._heard_at + self._stale_after_s
+
+    def connection(self, up: bool) -> None:
+        self._connected = up
+        self._absent = False  # the broker tells the retained presence again at the next subscription
+
+    def presence(self, online: bool) -> None:
+        """A board that never says so counts as present."""
+        self._absent = not online
+
+    def hear(self, at: float, said: Telemetry) -> Heard:
+        """Take over one telemetry message."""
+        if not self._connected:
+            return Heard.LATE
+        if self._absent:
+            return Heard.ABSENT
+        if self._overtaken(said):
+            return Heard.OLD
+        rebooted = None not in (said.boot_id, self.boot_id) and said.boot_id != self.boot_id
+        arrived, self.up = not self.up, True
+        self._heard_at, self._seq = at, said.seq
+        self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
+        if rebooted:
+            return Heard.REBOOT
+        return Heard.ARRIVAL if arrived else Heard.NEWS
+
+    def _overtaken(self, said: Telemetry) -> bool:
+        if said.boot_id is None or said.boot_id != self.boot_id:
+            return False
+        return said.seq is not None and self._seq is not None and said.seq <= self._seq

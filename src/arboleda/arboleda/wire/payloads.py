@@ -1,0 +1,191 @@
+"""Bytes <-> values of MQTT: strict both ways, a message is taken whole or refused whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import StopMode
+from arboleda.core.model import MotionState
+
+from . import strict
+from .topics import Channel
+from .values import (
+    Beat,
+    EffectorGoal,
+    Goal,
+    HomeGoal,
+    JointsGoal,
+    PathGoal,
+    Payload,
+    Presence,
+    StopGoal,
+    Telemetry,
+)
+
+__all__ = [
+    "REFUSALS",
+    "Beat",
+    "EffectorGoal",
+    "Goal",
+    "HomeGoal",
+    "JointsGoal",
+    "PathGoal",
+    "Payload",
+    "Presence",
+    "StopGoal",
+    "Telemetry",
+    "decode",
+    "encode",
+]
+
+REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"})
+"""The words a board may give as `rechazo`."""
+
+MAX_ANGLE_DEG = 1e6  # far beyond any robot, and exact enough for a board's binary32
+_DECIMALS = 4
+
+
+def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
+    """The message `raw` on `channel` of an arm with `axes` joints (None: a mobile), else PayloadError.
+
+    Unknown extra keys are allowed: a newer board may say more.
+    """
+    if channel is Channel.PRESENCE:
+        return _presence(raw)
+    return _READERS[channel](strict.read(raw), axes)
+
+
+def encode(payload: Payload) -> bytes:
+    """Compact JSON of at most 512 bytes, angles with 4 decimals; PayloadError for what cannot be said."""
+    if isinstance(payload, Presence):
+        return b"1" if payload.online else b"0"
+    body = _WRITERS[type(payload)](payload)
+    return strict.write({key: value for key, value in body.items() if value is not None})
+
+
+def _presence(raw: bytes) -> Presence:
+    if raw not in (b"0", b"1"):
+        raise PayloadError(f"conexion is {raw[:20]!r}; allowed: 0, 1")
+    return Presence(online=raw == b"1")
+
+
+def _stamp(fields: strict.Fields) -> dict[str, int | None]:
+    fields.together("seq", "epoca")
+    return {"seq": fields.optional("seq"), "epoch": fields.optional("epoca")}
+
+
+def _joint_keys(axes: int | None, suffix: str = "") -> tuple[str, ...]:
+    if axes is None:
+        raise PayloadError("a mobile robot has no joints")
+    return tuple(f"q{index + 1}{suffix}" for index in range(axes))
+
+
+def _joints(fields: strict.Fields, axes: int | None) -> JointsGoal:
+    q = tuple(fields.number(key, MAX_ANGLE_DEG) for key in _joint_keys(axes))
+    return JointsGoal(q=q, **_stamp(fields))
+
+
+def _path(fields: strict.Fields, axes: int | None) -> PathGoal:
+    if axes is not None:
+        raise PayloadError("an arm drives no path")
+    return PathGoal(nodes=fields.integers("nodos"), **_stamp(fields))
+
+
+def _effector(fields: strict.Fields, axes: int | None) -> EffectorGoal:
+    return EffectorGoal(on=fields.integer("efector", 1) == 1, **_stamp(fields))
+
+
+def _stop(fields: strict.Fields, axes: int | None) -> StopGoal:
+    return StopGoal(mode=StopMode(fields.integer("paro", 2)), **_stamp(fields))
+
+
+def _home(fields: strict.Fields, axes: int | None) -> HomeGoal:
+    fields.integer("ref", top=1, bottom=1)
+    return HomeGoal(**_stamp(fields))
+
+
+def _beat(fields: strict.Fields, axes: int | None) -> Beat:
+    return Beat(epoch=fields.integer("epoca"))
+
+
+def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
+    fields.together("rechazo", "rechazo_seq")
+    keys = () if axes is None else _joint_keys(axes, "_mov")
+    return Telemetry(
+        q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if keys else None,
+        node=fields.integer("nodo") if axes is None else None,
+        state=MotionState(fields.integer("estado", MotionState.STOP_LATCHED.value)),
+        seq=fields.optional("seq"),
+        ack_epoch=fields.optional("epoca_ack"),
+        ack=fields.optional("ack"),
+        done=fields.optional("hecho"),
+        refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,
+        refused_seq=fields.optional("rechazo_seq"),
+        boot_id=fields.optional("arranque"),
+        homed=fields.flag("ref"),
+        effector=fields.flag("efector"),
+        piece=fields.flag("pieza"),
+    )
+
+
+_READERS: dict[Channel, Callable[[strict.Fields, int | None], Payload]] = {
+    Channel.JOINTS: _joints,
+    Channel.PATH: _path,
+    Channel.EFFECTOR: _effector,
+    Channel.STOP: _stop,
+    Channel.HOME: _home,
+    Channel.BEAT: _beat,
+    Channel.TELEMETRY: _telemetry,
+}
+
+
+def _angles(q: tuple[float, ...], suffix: str = "") -> dict[str, object]:
+    keys = _joint_keys(len(q), suffix)
+    return {key: _angle(key, value) for key, value in zip(keys, q, strict=True)}
+
+
+def _angle(key: str, value: float) -> float:
+    # + 0.0 turns -0.0 into 0.0: a sign that means nothing is not worth a byte
+    return round(strict.number(key, value, MAX_ANGLE_DEG), _DECIMALS) + 0.0
+
+
+def _stamped(body: dict[str, object], goal: Goal) -> dict[str, object]:
+    if (goal.seq is None) != (goal.epoch is None):
+        raise PayloadError("seq and epoca go together")
+    return {**body, "seq": goal.seq, "epoca": goal.epoch}
+
+
+def _telemetry_body(said: Telemetry) -> dict[str, object]:
+    if (said.refusal is None) != (said.refused_seq is None):
+        raise PayloadError("rechazo and rechazo_seq go together")
+    return {
+        **_angles(said.q or (), "_mov"),
+        "nodo": said.node,
+        "estado": strict.integer("estado", said.state.value, MotionState.STOP_LATCHED.value),
+        "seq": said.seq,
+        "epoca_ack": said.ack_epoch,
+        "ack": said.ack,
+        "hecho": said.done,
+        "rechazo": said.refusal,
+        "rechazo_seq": said.refused_seq,
+        "arranque": said.boot_id,
+        "ref": _bit(said.homed),
+        "efector": _bit(said.effector),
+        "pieza": _bit(said.piece),
+    }
+
+
+def _bit(value: bool | None) -> int | None:
+    return None if value is None else int(value)
+
+
+_WRITERS: dict[type, Callable[..., dict[str, object]]] = {
+    JointsGoal: lambda goal: _stamped(_angles(goal.q), goal),
+    PathGoal: lambda goal: _stamped({"nodos": list(goal.nodes)}, goal),
+    EffectorGoal: lambda goal: _stamped({"efector": int(goal.on)}, goal),
+    StopGoal: lambda goal: _stamped({"paro": goal.mode.value}, goal),
+    HomeGoal: lambda goal: _stamped({"ref": 1}, goal),
+    Beat: lambda beat: {"epoca": beat.epoch},
+    Telemetry: _telemetry_body,
+}

@@ -1,0 +1,159 @@
+"""A Report as `/{robot}/status` carries it, and the label that carries a command id over ROS 2.
+
+The values are strings: integers in decimal, `q` in rad or m separated by commas, flags as true or
+false; what the robot did not say has no key. Keys this version does not know are allowed.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Report
+from arboleda.core.model import Arm, Mobile, MotionState, Robot
+
+from .strict import UINT32
+
+OK, WARN, ERROR, STALE = range(4)
+"""The levels of DiagnosticStatus."""
+
+_LABEL = "id="
+_NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
+_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
+_FLAGS = {"true": True, "false": False}
+_SAID = {
+    MotionState.STOPPED: (OK, "stopped"),
+    MotionState.MOVING: (OK, "moving"),
+    MotionState.FAULT: (ERROR, "fault"),
+    MotionState.NOT_HOMED: (WARN, "not homed"),
+    MotionState.STOP_LATCHED: (WARN, "stop latched"),
+    MotionState.NO_LINK: (STALE, "no link"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Status:
+    """The plain content of a DiagnosticStatus; `level` is one of OK, WARN, ERROR, STALE."""
+
+    name: str
+    hardware_id: str
+    level: int
+    message: str
+    values: dict[str, str]
+
+
+def to_status(robot: Robot, report: Report) -> Status:
+    """What the bridge publishes for one report; a report without a state tells of a refused command."""
+    level, message = (WARN, "command refused") if report.state is None else _SAID[report.state]
+    values = {
+        key: write(getattr(report, name)) for key, (name, _, write) in _ROWS.items() if _said(report, name)
+    }
+    return Status(name=_name(robot), hardware_id=robot.mqtt, level=level, message=message, values=values)
+
+
+def from_status(at: float, robot: Robot, status: Status) -> Report:
+    """The report behind a status that came in at `at`; PayloadError names the key that is wrong."""
+    if status.name != _name(robot):
+        raise PayloadError(f"status name is {status.name!a}; allowed: {_name(robot)!a}")
+    said = {
+        name: read(key, status.values[key]) for key, (name, read, _) in _ROWS.items() if key in status.values
+    }
+    report = Report(at=at, robot=robot.name, **said)  # type: ignore[arg-type]
+    _fits(robot, report)
+    return report
+
+
+def to_label(command_id: str) -> str:
+    """`layout.dim[0].label` of a command: `id=<command id>`."""
+    return _LABEL + command_id
+
+
+def from_label(label: str) -> str:
+    """The command id of a label; "" for a label that is not ours, PayloadError for a broken id."""
+    if not label.startswith(_LABEL):
+        return ""
+    return _id("label", label[len(_LABEL) :])
+
+
+def _name(robot: Robot) -> str:
+    return f"arboleda: {robot.name}"
+
+
+def _said(report: Report, name: str) -> bool:
+    return getattr(report, name) is not None
+
+
+def _fits(robot: Robot, report: Report) -> None:
+    axes = len(robot.joints) if isinstance(robot, Arm) else 0
+    if report.q is not None and len(report.q) != axes:
+        raise PayloadError(f"q has {len(report.q)} values; {robot.name} has {axes} joints")
+    nodes = robot.grid.size if isinstance(robot, Mobile) else 0
+    if report.node is not None and report.node >= nodes:
+        raise PayloadError(f"node is {report.node}; {robot.name} knows {nodes} nodes")
+    if (report.rejected is None) != (report.refusal is None):
+        raise PayloadError("rejected and reason go together")
+
+
+def _id(key: str, text: str) -> str:
+    if not _ID.fullmatch(text):
+        raise PayloadError(f"{key} is {text[:40]!a}; 1 to 64 of A-Z a-z 0-9 _ . - are needed")
+    return text
+
+
+def _count(key: str, text: str) -> int:
+    if not re.fullmatch(r"\d{1,10}", text, re.ASCII) or int(text) > UINT32:
+        raise PayloadError(f"{key} is {text[:40]!a}; an integer of 0 to {UINT32} is needed")
+    return int(text)
+
+
+def _state(key: str, text: str) -> MotionState:
+    try:
+        return MotionState(_count(key, text))
+    except ValueError:
+        allowed = ", ".join(str(state.value) for state in MotionState)
+        raise PayloadError(f"{key} is {text!a}; allowed: {allowed}") from None
+
+
+def _joints(key: str, text: str) -> tuple[float, ...]:
+    parts = text.split(",")
+    if not all(_NUMBER.fullmatch(part) and math.isfinite(float(part)) for part in parts):
+        raise PayloadError(f"{key} is {text[:40]!a}; finite numbers separated by commas are needed")
+    return tuple(float(part) for part in parts)
+
+
+def _flag(key: str, text: str) -> bool:
+    if text not in _FLAGS:
+        raise PayloadError(f"{key} is {text[:40]!a}; allowed: true, false")
+    return _FLAGS[text]
+
+
+def _write_state(state: MotionState) -> str:
+    return str(state.value)
+
+
+def _write_joints(q: tuple[float, ...]) -> str:
+    return ",".join(repr(float(value)) for value in q)
+
+
+def _write_flag(value: bool) -> str:
+    return "true" if value else "false"
+
+
+_ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] = {
+    "epoch": ("epoch", _count, str),
+    "boot_id": ("boot_id", _count, str),
+    "accepted": ("accepted", _id, str),
+    "done": ("done", _id, str),
+    "rejected": ("rejected", _id, str),
+    "reason": ("refusal", _id, str),
+    "state": ("state", _state, _write_state),
+    "q": ("q", _joints, _write_joints),
+    "node": ("node", _count, str),
+    "homed": ("homed", _flag, _write_flag),
+    "effector": ("effector", _flag, _write_flag),
+    "piece": ("piece", _flag, _write_flag),
+}
+"""Key of the status -> (field of the Report, how it is read, how it is written)."""

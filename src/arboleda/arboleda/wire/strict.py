@@ -1,0 +1,125 @@
+"""Strict JSON: one small object, every value of exactly the declared kind, or PayloadError."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Collection
+
+from arboleda.core.errors import PayloadError
+
+LIMIT_BYTES = 512
+UINT32 = 2**32 - 1
+
+
+def read(raw: bytes) -> Fields:
+    """The object that `raw` holds; PayloadError says what is wrong with the bytes."""
+    if len(raw) > LIMIT_BYTES:
+        raise PayloadError(f"the message has {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
+    try:
+        text = raw.decode("utf-8")
+        value = json.loads(text, object_pairs_hook=_unique, parse_constant=_no_constant)
+    except UnicodeDecodeError:
+        raise PayloadError("the message is not UTF-8") from None
+    except RecursionError:
+        raise PayloadError("the message is nested too deeply") from None
+    except ValueError as error:
+        raise PayloadError(f"the message is not JSON: {error}") from None
+    if not isinstance(value, dict):
+        raise PayloadError('the message is not a JSON object, e.g. {"estado": 0}')
+    return Fields(value)
+
+
+def write(values: dict[str, object]) -> bytes:
+    """Compact JSON; PayloadError when it would exceed the limit that `read` allows."""
+    raw = json.dumps(values, separators=(",", ":"), allow_nan=False).encode()
+    if len(raw) > LIMIT_BYTES:
+        raise PayloadError(f"the message would have {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
+    return raw
+
+
+def integer(key: str, value: object, top: int = UINT32, bottom: int = 0) -> int:
+    """`value` if it is an int within bottom..top; a bool is none."""
+    if type(value) is not int:
+        raise PayloadError(f"{key} is {_shown(value)}; an integer is needed")
+    if not bottom <= value <= top:
+        raise PayloadError(f"{key} is {_shown(value)}; allowed: {bottom} to {top}")
+    return value
+
+
+def number(key: str, value: object, bound: float) -> float:
+    """`value` as a finite float within +-bound; neither a bool nor a string is a number."""
+    if type(value) not in (int, float):
+        raise PayloadError(f"{key} is {_shown(value)}; a number is needed")
+    # compared before it becomes a float: an int of 500 digits does not fit one
+    if not -bound <= value <= bound:  # type: ignore[operator]
+        raise PayloadError(f"{key} is {_shown(value)}; allowed: {-bound:.0f} to {bound:.0f}")
+    return float(value)  # type: ignore[arg-type]
+
+
+class Fields:
+    """The keys of one object; a getter returns a checked value or raises PayloadError naming the key."""
+
+    def __init__(self, values: dict[str, object]) -> None:
+        self._values = values
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._values
+
+    def integer(self, key: str, top: int = UINT32, bottom: int = 0) -> int:
+        return integer(key, self._get(key), top, bottom)
+
+    def number(self, key: str, bound: float) -> float:
+        return number(key, self._get(key), bound)
+
+    def integers(self, key: str) -> tuple[int, ...]:
+        """A list of at least one integer."""
+        values = self._get(key)
+        if not isinstance(values, list) or not values:
+            raise PayloadError(f"{key} is {_shown(values)}; a list of integers is needed")
+        return tuple(integer(f"{key}[{index}]", value) for index, value in enumerate(values))
+
+    def word(self, key: str, allowed: Collection[str]) -> str:
+        value = self._get(key)
+        if not isinstance(value, str) or value not in allowed:
+            raise PayloadError(f"{key} is {_shown(value)}; allowed: {', '.join(sorted(allowed))}")
+        return value
+
+    def optional(self, key: str, top: int = UINT32) -> int | None:
+        """An integer that may be absent; `null` is not absent."""
+        return self.integer(key, top) if key in self else None
+
+    def flag(self, key: str) -> bool | None:
+        """0 or 1 that may be absent."""
+        value = self.optional(key, 1)
+        return None if value is None else value == 1
+
+    def together(self, first: str, second: str) -> None:
+        """Two keys that only make sense as a pair."""
+        for here, there in ((first, second), (second, first)):
+            if here in self and there not in self:
+                raise PayloadError(f"{there} is missing: it goes with {here}")
+
+    def _get(self, key: str) -> object:
+        if key not in self._values:
+            raise PayloadError(f"{key} is missing")
+        return self._values[key]
+
+
+def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise PayloadError(f"{_shown(twice)} appears twice")
+    return values
+
+
+def _no_constant(name: str) -> object:
+    raise PayloadError(f"{name} is not a number that JSON knows")
+
+
+def _shown(value: object) -> str:
+    """A short pure-ASCII picture of a foreign value, safe in any log."""
+    text = ascii(value) if not isinstance(value, float) or math.isfinite(value) else "too large"
+    return text if len(text) <= 40 else text[:37] + "..."

@@ -1,0 +1,95 @@
+"""What goes over MQTT: one frozen value per message, angles in degrees as on the wire.
+
+`seq` and `epoch` of a command are both present, or both None for boards that know neither.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.core.messages import StopMode
+from arboleda.core.model import MotionState
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointsGoal:
+    """`juntas`: absolute joint targets."""
+
+    q: tuple[float, ...]
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathGoal:
+    """`camino`: grid nodes in driving order."""
+
+    nodes: tuple[int, ...]
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffectorGoal:
+    """`efector`."""
+
+    on: bool
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopGoal:
+    """`paro`."""
+
+    mode: StopMode
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class HomeGoal:
+    """`referencia`: run the homing routine."""
+
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beat:
+    """`latido`: who commands is alive."""
+
+    epoch: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Telemetry:
+    """`sensores`: `q` of an arm or `node` of a mobile; the rest None where the board does not say it.
+
+    `seq` counts telemetry since boot; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`.
+    """
+
+    state: MotionState
+    q: tuple[float, ...] | None
+    node: int | None
+    seq: int | None = None
+    ack_epoch: int | None = None
+    ack: int | None = None
+    done: int | None = None
+    refusal: str | None = None
+    refused_seq: int | None = None
+    boot_id: int | None = None
+    homed: bool | None = None
+    effector: bool | None = None
+    piece: bool | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Presence:
+    """`conexion`, retained; False is the board's last will."""
+
+    online: bool
+
+
+Goal = JointsGoal | PathGoal | EffectorGoal | StopGoal | HomeGoal
+Payload = Goal | Beat | Telemetry | Presence

@@ -1,0 +1,191 @@
+"""A small plant and a bridge whose time, plant, broker and boards are moved by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.messages import Command, Heartbeat, Report
+from arboleda.core.model import (
+    Arm,
+    Cell,
+    Evidence,
+    Grid,
+    Joint,
+    Link,
+    Mobile,
+    MotionState,
+    Palletizing,
+    Path,
+    Placement,
+    PlantModel,
+    Pose,
+)
+from arboleda.wire.bridge import Bridge, FromPlant, Message
+from arboleda.wire.payloads import Payload, Presence, Telemetry, decode, encode
+from arboleda.wire.topics import Channel, parse, topic
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+EPOCH = 1_000
+PINION_M = 0.0225
+
+
+def scara_joint(name: str, limit_deg: float, step_deg: float) -> Joint:
+    return Joint(
+        name=name,
+        lower=-math.radians(limit_deg),
+        upper=math.radians(limit_deg),
+        speed=math.radians(90),
+        acceleration=math.radians(180),
+        step=math.radians(step_deg),
+    )
+
+
+SCARA = (
+    scara_joint("brazo_joint", 150, 0.01929),
+    scara_joint("antebrazo_joint", 135, 0.9),
+    Joint(
+        name="efector_joint",
+        lower=0.0,
+        upper=0.1,
+        speed=0.06,
+        acceleration=0.2,
+        step=math.radians(0.9) * PINION_M,
+        pinion_radius_m=PINION_M,
+    ),
+)
+
+
+def plant(evidence: Evidence, *, has_stop: bool = True) -> PlantModel:
+    """Cell sis_a with ra1 and rm_sis_a, both at this evidence."""
+    common = {"link": Link.MQTT, "evidence": evidence, "has_stop": has_stop}
+    floor = Placement(x=0.0, y=0.0)
+    arm = Arm(
+        name="ra1", mqtt="ra_1", timeout_s=10.0, model="scara", twin="r1", base=floor, joints=SCARA, **common
+    )
+    grid = Grid(origin=floor, pitch=0.2)
+    mobile = Mobile(name="rm_sis_a", mqtt="rm_sis_a", timeout_s=20.0, grid=grid, speed=0.2, **common)
+    home = Pose(name="home", q=(0.0, 0.0, 0.0))
+    cell = Cell(
+        name="sis_a",
+        arm=arm,
+        mobile=mobile,
+        home=home,
+        pickup=home,
+        stations=(home,),
+        paths=(Path(code="0A", nodes=(0, 3, 6)),),
+        palletizing=Palletizing(pick=home, place=home),
+        queue_limit=4,
+    )
+    return PlantModel(name="bench", cells=(cell,))
+
+
+class Bench:
+    """Drives a bridge and remembers what came out of it; `now` only moves where a test says so."""
+
+    def __init__(self, evidence: Evidence = Evidence.IDS, *, has_stop: bool = True) -> None:
+        self.model = plant(evidence, has_stop=has_stop)
+        self.now = 100.0
+        self.bridge = Bridge(self.model, epoch=EPOCH, now=self.now)
+        self._told: dict[str, Telemetry] = {}
+        self.start = self.step()
+
+    def step(self, *events: object) -> list[Message]:
+        return self.bridge.step(self.now, events)  # type: ignore[arg-type]
+
+    def wait(self, seconds: float) -> list[Message]:
+        self.now += seconds
+        return self.step()
+
+    def connect(self, up: bool = True) -> list[Message]:
+        return self.step(Connection(at=self.now, client="bridge", up=up))
+
+    def order(self, *commands: Command) -> list[Message]:
+        return self.step(*(FromPlant(at=self.now, message=command) for command in commands))
+
+    def heartbeat(self, epoch: int = 7) -> list[Message]:
+        return self.step(FromPlant(at=self.now, message=Heartbeat(epoch=epoch)))
+
+    def deliver(self, address: str, payload: bytes, *, retain: bool = False) -> list[Message]:
+        return self.step(Delivery(at=self.now, topic=address, payload=payload, retain=retain))
+
+    def presence(self, online: bool, robot: str = "ra_1") -> list[Message]:
+        return self.deliver(topic(robot, Channel.PRESENCE), encode(Presence(online=online)), retain=True)
+
+    def tell(self, robot: str = "ra_1", **changes: object) -> list[Message]:
+        """The board's next telemetry: what it said last time, with these changes, 100 ms later."""
+        self.now += 0.1
+        said = replace(self._told.get(robot, self._first(robot)), **changes)  # type: ignore[arg-type]
+        if said.seq is not None and "seq" not in changes:
+            said = replace(said, seq=said.seq + 1)
+        self._told[robot] = said
+        return self.deliver(topic(robot, Channel.TELEMETRY), encode(said))
+
+    def _first(self, robot: str) -> Telemetry:
+        arm = robot.startswith("ra")
+        ids = self.model.robots["ra1"].evidence is Evidence.IDS
+        return Telemetry(
+            state=MotionState.STOPPED,
+            q=(0.0, 0.0, 0.0) if arm else None,
+            node=None if arm else 0,
+            seq=0 if ids else None,
+            boot_id=1 if ids else None,
+            homed=True if ids else None,
+        )
+
+
+def reports(messages: list[Message]) -> list[Report]:
+    return [message for message in messages if isinstance(message, Report)]
+
+
+def sent(messages: list[Message]) -> list[tuple[str, Payload]]:
+    """The publications as (board/channel, payload)."""
+    out = []
+    for message in messages:
+        if isinstance(message, Publication):
+            board, channel = parse(message.topic)
+            axes = 3 if board.startswith("ra") else None
+            out.append((message.topic, decode(channel, message.payload, axes=axes)))
+    return out
+
+
+@pytest.fixture
+def bench() -> Bench:
+    """A bridge that has just started: not connected, nothing heard."""
+    return Bench()
+
+
+@pytest.fixture
+def linked() -> Bench:
+    """Connected, both robots heard."""
+    return link(Bench())
+
+
+@pytest.fixture(scope="session")
+def make_linked() -> Callable[..., Bench]:
+    return lambda *args, **kwargs: link(Bench(*args, **kwargs))
+
+
+def link(bench: Bench) -> Bench:
+    bench.connect()
+    bench.tell("ra_1")
+    bench.tell("rm_sis_a")
+    return bench
+
+
+@pytest.fixture(scope="session", name="reports")
+def _reports() -> Callable[[list[Message]], list[Report]]:
+    return reports
+
+
+@pytest.fixture(scope="session", name="sent")
+def _sent() -> Callable[[list[Message]], list[tuple[str, Payload]]]:
+    return sent
+
+
+@pytest.fixture(scope="session")
+def make_plant() -> Callable[..., PlantModel]:
+    return plant

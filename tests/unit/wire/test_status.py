@@ -1,0 +1,131 @@
+"""`/{robot}/status`: a report survives the hop, and a foreign status is refused by key."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Report
+from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status
+
+
+@pytest.fixture(scope="module")
+def robots(make_plant) -> dict[str, Robot]:
+    return make_plant(Evidence.IDS).robots
+
+
+UINT = st.integers(0, 2**32 - 1)
+IDS = st.none() | st.from_regex(r"[0-9]{1,10}-[0-9]{1,6}", fullmatch=True)
+FLAG = st.none() | st.booleans()
+SAID = {
+    "epoch": st.none() | UINT,
+    "boot_id": st.none() | UINT,
+    "accepted": IDS,
+    "done": IDS,
+    "state": st.none() | st.sampled_from(MotionState),
+    "homed": FLAG,
+    "effector": FLAG,
+    "piece": FLAG,
+}
+JOINTS = st.none() | st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3)
+REJECTED = st.sampled_from([{}, {"rejected": "7-1", "refusal": "sin_ref"}])
+
+
+@given(said=st.fixed_dictionaries(SAID), q=JOINTS, rejected=REJECTED)
+def test_a_report_of_an_arm_comes_back(robots, said: dict, q: tuple | None, rejected: dict) -> None:
+    report = Report(at=3.0, robot="ra1", q=q, **said, **rejected)
+    assert from_status(3.0, robots["ra1"], to_status(robots["ra1"], report)) == report
+
+
+@given(said=st.fixed_dictionaries(SAID), node=st.none() | st.integers(0, 8))
+def test_a_report_of_a_mobile_comes_back(robots, said: dict, node: int | None) -> None:
+    report = Report(at=3.0, robot="rm_sis_a", node=node, **said)
+    assert from_status(3.0, robots["rm_sis_a"], to_status(robots["rm_sis_a"], report)) == report
+
+
+def test_it_reads_like_a_diagnostic(robots) -> None:
+    report = Report(
+        at=3.0,
+        robot="ra1",
+        epoch=9,
+        state=MotionState.MOVING,
+        q=(0.5, -0.25, 0.0),
+        homed=True,
+        accepted="7-1",
+    )
+    assert to_status(robots["ra1"], report) == Status(
+        name="arboleda: ra1",
+        hardware_id="ra_1",
+        level=0,
+        message="moving",
+        values={"epoch": "9", "accepted": "7-1", "state": "1", "q": "0.5,-0.25,0.0", "homed": "true"},
+    )
+
+
+def test_a_robot_without_link_is_stale(robots) -> None:
+    status = to_status(robots["ra1"], Report(at=0.0, robot="ra1", state=MotionState.NO_LINK))
+    assert (status.level, status.message) == (STALE, "no link")
+
+
+BAD = {
+    "epoch not a number": {"epoch": "nine"},
+    "epoch in other digits": {"epoch": "٣"},
+    "epoch too large": {"epoch": "4294967296"},
+    "boot_id negative": {"boot_id": "-1"},
+    "an empty id": {"accepted": ""},
+    "an id with a blank": {"done": "7 1"},
+    "an unknown state": {"state": "7"},
+    "q too short": {"q": "0.0,0.0"},
+    "q not finite": {"q": "0.0,0.0,nan"},
+    "q infinite by size": {"q": "0.0,0.0,1e999"},
+    "q with an underscore": {"q": "0.0,0.0,1_0"},
+    "q empty": {"q": ""},
+    "node of an arm": {"node": "1"},
+    "homed as a number": {"homed": "1"},
+    "piece in capitals": {"piece": "True"},
+    "rejected alone": {"rejected": "7-1"},
+}
+
+
+@pytest.mark.parametrize("values", BAD.values(), ids=BAD.keys())
+def test_a_wrong_value_is_refused_by_key(robots, values: dict[str, str]) -> None:
+    good = to_status(robots["ra1"], Report(at=0.0, robot="ra1", state=MotionState.STOPPED))
+    with pytest.raises(PayloadError, match=next(iter(values))):
+        from_status(0.0, robots["ra1"], replace(good, values={**good.values, **values}))
+
+
+def test_the_status_of_another_robot_is_refused(robots) -> None:
+    status = to_status(robots["rm_sis_a"], Report(at=0.0, robot="rm_sis_a"))
+    with pytest.raises(PayloadError, match="rm_sis_a"):
+        from_status(0.0, robots["ra1"], status)
+
+
+@given(values=st.dictionaries(st.sampled_from(["epoch", "q", "node", "state", "homed", "done"]), st.text()))
+def test_whatever_the_values_the_answer_is_a_report_or_a_payload_error(robots, values: dict) -> None:
+    status = Status(name="arboleda: ra1", hardware_id="", level=0, message="", values=values)
+    try:
+        sentence = repr(from_status(0.0, robots["ra1"], status))
+    except PayloadError as error:
+        sentence = str(error)
+    assert sentence.isprintable()
+
+
+def test_a_label_carries_a_command_id() -> None:
+    assert to_label("7-1") == "id=7-1"
+    assert from_label("id=7-1") == "7-1"
+
+
+@pytest.mark.parametrize("label", ["", "rows", "ID=7-1"])
+def test_a_label_of_somebody_else_is_no_id(label: str) -> None:
+    assert from_label(label) == ""
+
+
+@pytest.mark.parametrize("label", ["id=", "id=7 1", "id=" + "7" * 65])
+def test_a_broken_label_is_refused(label: str) -> None:
+    with pytest.raises(PayloadError, match="label"):
+        from_label(label)

@@ -1,0 +1,47 @@
+"""The golden messages of wire_vectors/, which the firmware reads too."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+
+from arboleda.core.errors import PayloadError
+from arboleda.wire.payloads import decode, encode
+from arboleda.wire.topics import Channel
+
+VECTORS = Path(__file__).parents[3] / "wire_vectors"
+
+
+def rows(name: str) -> list:
+    read = json.loads((VECTORS / name).read_text(encoding="ascii"))
+    return [pytest.param(row, id=row["name"]) for row in read]
+
+
+def raw(row: dict) -> bytes:
+    return bytes.fromhex(row["hex"]) if "hex" in row else row["bytes"].encode()
+
+
+def value(payload: object) -> dict:
+    """The fields that were said, as JSON knows them."""
+    said = {key: field for key, field in asdict(payload).items() if field is not None}  # type: ignore[call-overload]
+    return json.loads(json.dumps(said))
+
+
+@pytest.mark.parametrize("row", rows("messages.json") + rows("accepted.json"))
+def test_bytes_mean_their_value(row: dict) -> None:
+    assert value(decode(Channel(row["channel"]), raw(row), axes=row["axes"])) == row["value"]
+
+
+@pytest.mark.parametrize("row", rows("messages.json"))
+def test_a_value_is_written_as_these_bytes(row: dict) -> None:
+    payload = decode(Channel(row["channel"]), raw(row), axes=row["axes"])
+    assert encode(payload) == raw(row)
+
+
+@pytest.mark.parametrize("row", rows("refused.json"))
+def test_bytes_are_refused_by_name(row: dict) -> None:
+    with pytest.raises(PayloadError, match=row["names"]):
+        decode(Channel(row["channel"]), raw(row), axes=row["axes"])
