@@ -1,0 +1,1 @@
+"""Virtual devices: boards that speak the wire contract and move as time is handed to them."""

@@ -1,0 +1,124 @@
+"""The axes, effector and virtual piece of an arm's board."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from arboleda.core.model import Arm, Joint, MotionState
+from arboleda.wire import units
+from arboleda.wire.payloads import JointsGoal, Telemetry
+from arboleda.wire.topics import Channel
+
+from .stepper import Stepper
+
+FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
+STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
+WIRE_ROUNDING_DEG = 1e-4
+
+
+class ArmBody:
+    """One stepper per joint; `start` and `pickups` are joint positions in rad and m.
+
+    The piece sensor sees the piece that lies ready at each pick-up, and the one the effector holds.
+    """
+
+    channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
+
+    def __init__(self, arm: Arm, *, start: tuple[float, ...], pickups: Collection[tuple[float, ...]]) -> None:
+        self.axes: int | None = len(arm.joints)
+        self._joints = arm.joints
+        self._step_deg = tuple(units.to_wire(joint, joint.step) for joint in arm.joints)
+        self._pickups = {self._steps(pickup) for pickup in pickups}
+        self.reset()
+        for stepper, position in zip(self._steppers, self._steps(start), strict=True):
+            stepper.set_current_position(position)
+
+    def reset(self) -> None:
+        """Position counters 0, effector off, as a board comes up."""
+        self._steppers = tuple(_axis(joint) for joint in self._joints)
+        self._still_us: int | None = None
+        self._now_us = 0
+        self._effector = False
+        self._holding = False
+
+    @property
+    def moving(self) -> bool:
+        return self._still_us is not None
+
+    @property
+    def next_change_us(self) -> int | None:
+        return self._still_us
+
+    @property
+    def position(self) -> tuple[int, ...]:
+        """Motor steps per joint."""
+        return tuple(stepper.position for stepper in self._steppers)
+
+    def admits(self, goal: JointsGoal) -> bool:
+        return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
+
+    def start(self, now_us: int, goal: JointsGoal) -> None:
+        values = (units.from_wire(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
+        self._head_for(now_us, self._steps(tuple(values)))
+
+    def home(self, now_us: int) -> None:
+        self._head_for(now_us, (0,) * len(self._joints))
+
+    def stop(self, now_us: int) -> None:
+        for stepper in self._steppers:
+            stepper.stop()
+        self._plan(now_us)
+
+    def advance(self, now_us: int) -> None:
+        if self._still_us is None:
+            return
+        for stepper in self._steppers:
+            stepper.advance(self._now_us, now_us)
+        self._now_us = now_us
+        if now_us >= self._still_us:
+            self._still_us = None
+            self._grip()
+
+    def switch_effector(self, on: bool) -> None:
+        self._effector = on
+        self._holding = self._holding and on
+        self._grip()
+
+    def tell(self) -> Telemetry:
+        q = tuple(steps * step for steps, step in zip(self.position, self._step_deg, strict=True))
+        piece = self._holding or self._at_pickup()
+        return Telemetry(state=MotionState.STOPPED, q=q, node=None, effector=self._effector, piece=piece)
+
+    def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
+        return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))
+
+    def _head_for(self, now_us: int, targets: tuple[int, ...]) -> None:
+        for stepper, target in zip(self._steppers, targets, strict=True):
+            stepper.move_to(target)
+        self._plan(now_us)
+
+    def _plan(self, now_us: int) -> None:
+        """Work out when the slowest axis comes to rest; even no way at all takes a moment."""
+        self._now_us = now_us
+        self._still_us = max(now_us + 1, *(stepper.still_at_us(now_us) for stepper in self._steppers))
+
+    def _at_pickup(self) -> bool:
+        return not self.moving and self.position in self._pickups
+
+    def _grip(self) -> None:
+        self._holding = self._holding or (self._effector and self._at_pickup())
+
+
+def _axis(joint: Joint) -> Stepper:
+    stepper = Stepper()
+    stepper.set_max_speed(min(joint.speed / joint.step, FASTEST))
+    stepper.set_acceleration(min(joint.acceleration / joint.step, STEEPEST))
+    return stepper
+
+
+def _within(joint: Joint, angle: float) -> bool:
+    """Whether a target lies within the limits, or on the motor step that stands for one."""
+    lower = min(joint.lower, joint.quantised(joint.lower))
+    upper = max(joint.upper, joint.quantised(joint.upper))
+    least, most = units.to_wire(joint, lower), units.to_wire(joint, upper)
+    return least - WIRE_ROUNDING_DEG <= angle <= most + WIRE_ROUNDING_DEG

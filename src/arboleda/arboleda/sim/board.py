@@ -1,0 +1,245 @@
+"""The virtual ESP32: one board's command rules, stop latch, heartbeat watch and telemetry."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import StopMode
+from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.wire import strict
+from arboleda.wire.payloads import (
+    Beat,
+    EffectorGoal,
+    Goal,
+    HomeGoal,
+    JointsGoal,
+    PathGoal,
+    Presence,
+    StopGoal,
+    Telemetry,
+    decode,
+)
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Delivery, Publication
+
+from .body import Body
+from .receipts import Receipts
+from .uplink import Uplink
+
+SILENCE_US = 1_000_000  # without beat or command while moving: ramp to a stop
+
+
+class Board:
+    """One board as a pure machine: calls in, publications collected until `take`.
+
+    It says what its robot's declared evidence level says, and only at `ids` it knows command numbers.
+    """
+
+    def __init__(self, robot: Robot, body: Body, *, boot_id: int, now_us: int) -> None:
+        self.body = body
+        self.refusals = 0  # messages rejected whole since power-up
+        self._numbered = robot.evidence is Evidence.IDS
+        self._assume_homed = robot.assume_homed
+        heard = body.channels if robot.has_stop else body.channels - {Channel.STOP}
+        self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
+        self._now_us = now_us
+        self._uplink = Uplink(robot.mqtt)
+        self._boot(boot_id, homed=True)
+
+    def _boot(self, boot_id: int, *, homed: bool) -> None:
+        self.boot_id = boot_id
+        self.homed = homed
+        self.latched = False
+        self._job: Goal | None = None  # the motion that will count as done when the body comes to rest
+        self._receipts = Receipts()
+        self._uplink.told = 0
+        self._beaten = False
+        self._alive_us = self._now_us
+
+    @property
+    def subscriptions(self) -> tuple[str, ...]:
+        return tuple(self._channels)
+
+    @property
+    def state(self) -> MotionState:
+        if self.body.moving:
+            return MotionState.MOVING
+        if self.latched:
+            return MotionState.STOP_LATCHED
+        return MotionState.STOPPED if self.homed else MotionState.NOT_HOMED
+
+    @property
+    def next_deadline_us(self) -> int | None:
+        return _earliest(self.body.next_change_us, self._silence_us, self._uplink.due_us)
+
+    def take(self) -> list[Publication]:
+        """What the board published since the last call, in order."""
+        return self._uplink.take()
+
+    def connect(self, now_us: int, up: bool) -> None:
+        """The board's MQTT client reached or lost its broker."""
+        self.advance(now_us)
+        self._uplink.connected = up
+        self._announce()
+
+    def reboot(self, now_us: int, boot_id: int) -> None:
+        """Power lost and back: numbers, position, latch and grip are gone."""
+        self.advance(now_us)
+        self.body.reset()
+        self._boot(boot_id, homed=self._assume_homed)
+        self._announce()
+
+    def advance(self, now_us: int) -> None:
+        """Let time pass; a time before the last one seen counts as that."""
+        now_us = max(now_us, self._now_us)
+        while (due := self._next_motion_us()) is not None and due <= now_us:
+            self._now_us = max(due, self._now_us)
+            self._move_on()
+        self._now_us = now_us
+        self.body.advance(now_us)
+        if self._uplink.period_over(now_us):
+            self._tell()
+
+    def receive(self, now_us: int, delivery: Delivery) -> None:
+        """One message of a subscribed topic; whatever is wrong with it changes nothing but the refusal."""
+        self.advance(now_us)
+        channel = self._channels.get(delivery.topic)
+        if channel is None:
+            return
+        try:
+            message = decode(channel, delivery.payload, axes=self.body.axes)
+        except PayloadError:
+            self._refuse("formato", *_numbers_in(delivery.payload))
+            return
+        if delivery.retain:
+            self._refuse("retenido", *_numbers_in(delivery.payload))
+        elif isinstance(message, Beat):
+            self._hear(message)
+        elif not isinstance(message, (Telemetry, Presence)):
+            self._obey(message)
+
+    def _hear(self, beat: Beat) -> None:
+        if self._receipts.epoch is None or beat.epoch >= self._receipts.epoch:
+            self._beaten = True
+            self._alive_us = self._now_us
+
+    def _obey(self, goal: Goal) -> None:
+        if isinstance(goal, StopGoal) and goal.mode is not StopMode.CLEAR:
+            self._stop(latch=goal.mode is StopMode.LATCH)
+        if self._numbered and self._receipts.repeats(goal):
+            self._tell()
+            return
+        objection = self._receipts.objection(goal) if self._numbered else None
+        refusal = objection or self._refusal(goal)
+        if refusal:
+            self._refuse(refusal, goal.seq, goal.epoch)
+        else:
+            self._accept(goal)
+
+    def _accept(self, goal: Goal) -> None:
+        self._alive_us = self._now_us
+        self._receipts.accept(goal)
+        self._act(goal)
+        self._tell()
+
+    def _refusal(self, goal: Goal) -> str | None:
+        """The word for a well-numbered command that the board must not carry out now."""
+        if isinstance(goal, StopGoal) or (isinstance(goal, EffectorGoal) and not goal.on):
+            return None
+        if self.latched:
+            return "paro"
+        if isinstance(goal, EffectorGoal):
+            return None
+        if isinstance(self._job, HomeGoal):
+            return "ocupado"
+        if isinstance(goal, HomeGoal):
+            return None
+        if not self.homed:
+            return "sin_ref"
+        return None if self.body.admits(goal) else "limite"
+
+    def _act(self, goal: Goal) -> None:
+        if isinstance(goal, (JointsGoal, PathGoal)):
+            self.body.start(self._now_us, goal)
+            self._job = goal
+        elif isinstance(goal, HomeGoal):
+            self.body.home(self._now_us)
+            self._job = goal
+            self.homed = False
+        elif isinstance(goal, EffectorGoal):
+            self.body.switch_effector(goal.on)
+        elif goal.mode is StopMode.CLEAR:
+            self.latched = False
+
+    def _stop(self, *, latch: bool) -> None:
+        self._job = None
+        self.latched = self.latched or latch
+        if self.body.moving:
+            self.body.stop(self._now_us)
+
+    @property
+    def _silence_us(self) -> int | None:
+        """When the silence gets too long; None unless it is watched."""
+        watched = self._beaten and self.body.moving and self._job is not None
+        return self._alive_us + SILENCE_US if watched else None
+
+    def _next_motion_us(self) -> int | None:
+        return _earliest(self.body.next_change_us, self._silence_us)
+
+    def _move_on(self) -> None:
+        """An arrival or the end of patience, at the time the board has reached."""
+        self.body.advance(self._now_us)
+        if not self.body.moving:
+            self._finish()
+        elif self._silence_us is not None and self._silence_us <= self._now_us:
+            self._stop(latch=False)
+        self._tell()
+
+    def _finish(self) -> None:
+        job, self._job = self._job, None
+        if job is None:
+            return
+        self._receipts.finish(job)
+        self.homed = self.homed or isinstance(job, HomeGoal)
+
+    def _refuse(self, word: str, seq: int | None, epoch: int | None) -> None:
+        self.refusals += 1
+        self._receipts.refuse(word, seq, epoch)
+        self._tell()
+
+    def _announce(self) -> None:
+        self._uplink.announce(self._now_us)
+        self._tell()
+
+    def _tell(self) -> None:
+        self._uplink.tell(self._telemetry())
+
+    def _telemetry(self) -> Telemetry:
+        told = replace(self.body.tell(), state=self.state)
+        if not self._numbered:
+            return replace(told, effector=None, piece=None)
+        return replace(
+            told,
+            seq=self._uplink.told + 1,
+            ack_epoch=self._receipts.epoch,
+            ack=self._receipts.accepted,
+            done=self._receipts.finished,
+            refusal=self._receipts.refusal,
+            refused_seq=self._receipts.refused,
+            boot_id=self.boot_id,
+            homed=self.homed,
+        )
+
+
+def _earliest(*times: int | None) -> int | None:
+    return min((time for time in times if time is not None), default=None)
+
+
+def _numbers_in(raw: bytes) -> tuple[int | None, int | None]:
+    """seq and epoca of a message that is refused whole, as far as they can be read."""
+    try:
+        fields = strict.read(raw)
+        return fields.optional("seq"), fields.optional("epoca")
+    except PayloadError:
+        return None, None

@@ -1,0 +1,45 @@
+"""What a board drives: the axes of an arm, or a mobile robot on its grid."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from arboleda.wire.payloads import Telemetry
+from arboleda.wire.topics import Channel
+
+
+class Body(Protocol):
+    """Every time is in microseconds and never earlier than the one before."""
+
+    axes: int | None
+    channels: frozenset[Channel]
+
+    @property
+    def moving(self) -> bool: ...
+
+    @property
+    def next_change_us(self) -> int | None:
+        """When it arrives somewhere if nobody interferes; None while still."""
+
+    def admits(self, goal: Any) -> bool:
+        """Whether a goal, of the type that `decode` makes for this body, is within its limits."""
+
+    def start(self, now_us: int, goal: Any) -> None:
+        """Head for an admitted goal; even no way at all takes a moment."""
+
+    def home(self, now_us: int) -> None:
+        """Head for the reference position."""
+
+    def stop(self, now_us: int) -> None:
+        """Come to rest as soon as the ramp, or the next node, allows."""
+
+    def advance(self, now_us: int) -> None:
+        """Move on to where it is at this time."""
+
+    def switch_effector(self, on: bool) -> None: ...
+
+    def reset(self) -> None:
+        """Everything as a board without memory comes up."""
+
+    def tell(self) -> Telemetry:
+        """Where it is and what it holds; the state is the board's to say."""

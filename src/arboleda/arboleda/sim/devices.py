@@ -1,0 +1,92 @@
+"""All virtual boards of a plant as one machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from arboleda.core.model import Arm, Link, Mobile, PlantModel, Robot
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+from .arm import ArmBody
+from .board import Board
+from .body import Body
+from .mobile import MobileBody
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToBoard:
+    """What a board's own MQTT client received or noticed; `board` is the MQTT name."""
+
+    board: str
+    event: Delivery | Connection
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reboot:
+    """A board loses power and comes back at once."""
+
+    at: float
+    board: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FromBoard:
+    """What a board publishes with its own MQTT client."""
+
+    board: str
+    publication: Publication
+
+
+class Devices:
+    """The boards of every robot with `link: mqtt`; `boot_ids` gives each boot its id (uint32)."""
+
+    def __init__(self, model: PlantModel, *, now: float, boot_ids: Callable[[], int]) -> None:
+        self._boot_ids = boot_ids
+        self.boards: dict[str, Board] = {
+            robot.mqtt: Board(robot, _body(model, robot), boot_id=boot_ids(), now_us=_us(now))
+            for robot in model.robots.values()
+            if robot.link is Link.MQTT
+        }
+
+    def subscriptions(self, board: str) -> tuple[str, ...]:
+        """The topics a board listens to."""
+        return self.boards[board].subscriptions
+
+    @property
+    def next_deadline(self) -> float | None:
+        due = (board.next_deadline_us for board in self.boards.values())
+        return min((time / 1e6 for time in due if time is not None), default=None)
+
+    def step(self, now: float, events: Sequence[ToBoard | Reboot]) -> list[FromBoard]:
+        """Feed the events in order, let the time pass, and collect what the boards publish."""
+        for event in events:
+            self._feed(event)
+        out = []
+        for name, board in self.boards.items():
+            board.advance(_us(now))
+            out += [FromBoard(board=name, publication=publication) for publication in board.take()]
+        return out
+
+    def _feed(self, event: ToBoard | Reboot) -> None:
+        board = self.boards[event.board]
+        if isinstance(event, Reboot):
+            board.reboot(_us(event.at), self._boot_ids())
+        elif isinstance(event.event, Connection):
+            board.connect(_us(event.event.at), event.event.up)
+        else:
+            board.receive(_us(event.event.at), event.event)
+
+
+def _body(model: PlantModel, robot: Robot) -> Body:
+    """The body of an arm standing at its home pose, or of a mobile at the start of its first path."""
+    cell = model.cell_of[robot.name]
+    if isinstance(robot, Arm):
+        return ArmBody(robot, start=cell.home.q, pickups=(cell.pickup.q, cell.palletizing.pick.q))
+    if isinstance(robot, Mobile):
+        return MobileBody(robot, start_node=cell.paths[0].nodes[0])
+    raise TypeError(f"{robot.name} is neither an arm nor a mobile robot")
+
+
+def _us(seconds: float) -> int:
+    return round(seconds * 1e6)

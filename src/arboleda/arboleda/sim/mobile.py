@@ -1,0 +1,81 @@
+"""The drive of a mobile robot's board: node to node over its grid."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from arboleda.core.model import Mobile, MotionState
+from arboleda.wire.payloads import PathGoal, Telemetry
+from arboleda.wire.topics import Channel
+
+
+class MobileBody:
+    """At a node, or on an edge that it always drives to its end; each takes pitch / speed."""
+
+    channels = frozenset({Channel.PATH, Channel.STOP, Channel.HOME, Channel.BEAT})
+    axes: int | None = None
+
+    def __init__(self, mobile: Mobile, *, start_node: int) -> None:
+        self._grid = mobile.grid
+        self._edge_us = max(1, round(mobile.grid.pitch / mobile.speed * 1e6))
+        self._start_node = start_node
+        self.reset()
+
+    def reset(self) -> None:
+        """At its start node, as a board comes up."""
+        self.node = self._start_node
+        self._way: tuple[int, ...] = ()  # nodes ahead; the first one ends the edge it is on
+        self._arrival_us: int | None = None
+
+    @property
+    def moving(self) -> bool:
+        return self._arrival_us is not None
+
+    @property
+    def next_change_us(self) -> int | None:
+        return self._arrival_us
+
+    def admits(self, goal: PathGoal) -> bool:
+        """Whether the path starts here or next door and never leaves the grid's edges."""
+        way = self._ahead(goal.nodes)
+        nodes_exist = all(node < self._grid.size for node in goal.nodes)
+        edges = pairwise((self._next_node, *way))
+        return nodes_exist and all(there in self._grid.neighbours(here) for here, there in edges)
+
+    def start(self, now_us: int, goal: PathGoal) -> None:
+        self._drive(now_us, self._ahead(goal.nodes))
+
+    def home(self, now_us: int) -> None:
+        self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
+
+    def stop(self, now_us: int) -> None:
+        self._way = self._way[:1]
+
+    def advance(self, now_us: int) -> None:
+        while self._arrival_us is not None and self._arrival_us <= now_us:
+            if self._way:
+                self.node, *ahead = self._way
+                self._way = tuple(ahead)
+            self._arrival_us = self._arrival_us + self._edge_us if self._way else None
+
+    def switch_effector(self, on: bool) -> None:
+        raise NotImplementedError("a mobile robot has no effector and no topic for one")
+
+    def tell(self) -> Telemetry:
+        return Telemetry(state=MotionState.STOPPED, q=None, node=self.node)
+
+    @property
+    def _next_node(self) -> int:
+        """Where the next edge can begin."""
+        return self._way[0] if self._way else self.node
+
+    def _ahead(self, nodes: tuple[int, ...]) -> tuple[int, ...]:
+        return nodes[1:] if nodes[0] == self._next_node else nodes
+
+    def _drive(self, now_us: int, ahead: tuple[int, ...]) -> None:
+        """Finish the edge it is on, then go `ahead`; even no way at all takes a moment."""
+        if self._way:
+            self._way = (self._way[0], *ahead)
+            return
+        self._way = ahead
+        self._arrival_us = now_us + (self._edge_us if ahead else 1)

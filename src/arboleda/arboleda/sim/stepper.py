@@ -1,0 +1,180 @@
+"""The boards' stepper ramp, step for step (D. Austin, 2005; DESIGN section 11)."""
+
+from __future__ import annotations
+
+import copy
+import math
+from struct import Struct
+
+CLOCK_MASK = 0xFFFFFFFF
+FOREVER_US = 2**63
+_FLOAT = Struct("f")
+_store, _load = _FLOAT.pack, _FLOAT.unpack  # the fastest rounding to binary32 in the standard library
+
+
+class Stepper:
+    """One stepper axis; lengths in motor steps, times in microseconds of a clock that wraps at 2^32.
+
+    `position`, `target`, `speed` (steps/s, signed) and `interval` (us to the next step; 0 = still)
+    are for reading.
+    """
+
+    __slots__ = (
+        "_clockwise",
+        "_exact_interval",
+        "_first_interval",
+        "_last_step_us",
+        "_ramp",
+        "_shortest_interval",
+        "acceleration",
+        "interval",
+        "max_speed",
+        "position",
+        "speed",
+        "target",
+    )
+
+    def __init__(self) -> None:
+        self.position = self.target = self.interval = 0
+        self.speed = self.max_speed = self.acceleration = 0.0
+        self._last_step_us = 0
+        self._first_interval = self._exact_interval = 0.0
+        self._shortest_interval = 1.0
+        self._ramp = 0  # number of the next step in the ramp: > 0 speeding up, < 0 slowing down
+        self._clockwise = False
+        self.set_acceleration(1.0)
+        self.set_max_speed(1.0)
+
+    def set_acceleration(self, value: float) -> None:
+        """Set the acceleration in steps/s2; 0 is ignored."""
+        value = _magnitude(value)
+        if value in (0.0, self.acceleration):
+            return
+        self._ramp = int(_binary32(self._ramp * _binary32(self.acceleration / value)))
+        self._first_interval = _binary32(0.676 * math.sqrt(2.0 / value) * 1e6)
+        self.acceleration = value
+        self._compute()
+
+    def set_max_speed(self, value: float) -> None:
+        """Set the speed limit in steps/s."""
+        value = _magnitude(value)
+        if value == 0.0:
+            raise ValueError("the speed limit of a stepper must not be 0")
+        if value == self.max_speed:
+            return
+        self.max_speed = value
+        self._shortest_interval = _binary32(1e6 / value)
+        if self._ramp > 0:
+            self._ramp = self._stopping_distance()
+            self._compute()
+
+    def move_to(self, target: int) -> None:
+        """Head for an absolute position."""
+        if target != self.target:
+            self.target = target
+            self._compute()
+
+    def stop(self) -> None:
+        """Head for the nearest position that the deceleration allows."""
+        if self.speed != 0.0:
+            way = self._stopping_distance() + 1
+            self.move_to(self.position + (way if self.speed > 0.0 else -way))
+
+    def set_current_position(self, position: int) -> None:
+        """Stand still here and call it `position`."""
+        self.position = self.target = position
+        self._ramp = self.interval = 0
+        self.speed = 0.0
+
+    def run(self, now_us: int) -> bool:
+        """Poll once: take one step if one is due; whether it did."""
+        if not self.interval or (now_us - self._last_step_us) & CLOCK_MASK < self.interval:
+            return False
+        self._step(now_us)
+        return True
+
+    def next_step_us(self, now_us: int) -> int | None:
+        """The first of the polls at `now_us`, +1, +2, ... that will step; None while still."""
+        if not self.interval:
+            return None
+        return now_us + max(0, self.interval - ((now_us - self._last_step_us) & CLOCK_MASK))
+
+    def advance(self, since_us: int, until_us: int) -> None:
+        """Poll every microsecond from `since_us` to `until_us`, both included."""
+        due = self.next_step_us(since_us)
+        while due is not None and due <= until_us:
+            if self._exact_interval == self._shortest_interval:
+                due = self._cruise(due, until_us)
+                if due > until_us:
+                    return
+            self._step(due)
+            due = due + self.interval if self.interval else None
+
+    def still_at_us(self, now_us: int) -> int:
+        """The time of the last step of this move; `now_us` while still."""
+        if not self.interval:
+            return now_us
+        ahead = copy.copy(self)
+        ahead.advance(now_us, FOREVER_US)
+        return ahead._last_step_us
+
+    def _step(self, now_us: int) -> None:
+        self.position += 1 if self._clockwise else -1
+        self._last_step_us = now_us
+        self._compute()
+
+    def _cruise(self, due: int, until_us: int) -> int:
+        """Take at once the steps from `due` on that change nothing but the position; when the next is due."""
+        way = self.target - self.position
+        if self._ramp <= 0 or self._clockwise != (way > 0):
+            return due
+        steps = min(abs(way) - self._stopping_distance() - 1, (until_us - due) // self.interval + 1)
+        if steps <= 0:
+            return due
+        self.position += steps if self._clockwise else -steps
+        self._ramp += steps
+        self._last_step_us = due + (steps - 1) * self.interval
+        return due + steps * self.interval
+
+    def _stopping_distance(self) -> int:
+        return int(_load(_store(self.speed * self.speed))[0] / (2.0 * self.acceleration))
+
+    def _compute(self) -> None:
+        """Choose the next interval and speed; one piece, as it runs once per step."""
+        distance = self.target - self.position
+        stopping = int(_load(_store(self.speed * self.speed))[0] / (2.0 * self.acceleration))
+        if distance == 0 and stopping <= 1:
+            self.interval = self._ramp = 0
+            self.speed = 0.0
+            return
+        ramp = self._ramp
+        if distance != 0:
+            towards = self._clockwise == (distance > 0)
+            if ramp > 0 and (stopping >= abs(distance) or not towards):
+                ramp = -stopping
+            elif ramp < 0 and stopping < abs(distance) and towards:
+                ramp = -ramp
+        if ramp == 0:
+            interval = self._first_interval
+            self._clockwise = distance > 0
+        else:
+            interval = self._exact_interval
+            interval = _load(_store(interval - 2.0 * interval / (4.0 * ramp + 1.0)))[0]
+            if interval < self._shortest_interval:
+                interval = self._shortest_interval
+        self._ramp = ramp + 1
+        self._exact_interval = interval
+        self.interval = int(interval)
+        speed = _load(_store(1e6 / interval))[0]
+        self.speed = speed if self._clockwise else -speed
+
+
+def _binary32(value: float) -> float:
+    return _load(_store(value))[0]
+
+
+def _magnitude(value: float) -> float:
+    """|value| in binary32; ValueError for what is not a finite number."""
+    if not math.isfinite(value):
+        raise ValueError(f"{value} is not a finite number")
+    return _binary32(abs(value))

@@ -1,0 +1,53 @@
+"""A board's way to the broker: presence, and telemetry in time."""
+
+from __future__ import annotations
+
+from arboleda.wire.payloads import Payload, Presence, Telemetry, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+PERIOD_US = 100_000
+
+
+class Uplink:
+    """Collects what the board publishes while it is connected; `told` counts telemetry since boot."""
+
+    def __init__(self, name: str) -> None:
+        self.connected = False
+        self.told = 0
+        self._name = name
+        self._due_us = 0
+        self._outbox: list[Publication] = []
+
+    @property
+    def due_us(self) -> int | None:
+        """When the next periodic telemetry is due; None while not connected."""
+        return self._due_us if self.connected else None
+
+    def take(self) -> list[Publication]:
+        """What was published since the last call, in order."""
+        taken, self._outbox = self._outbox, []
+        return taken
+
+    def announce(self, now_us: int) -> None:
+        """Presence; the telemetry that follows it starts the rhythm."""
+        self._due_us = now_us + PERIOD_US
+        self._publish(Channel.PRESENCE, Presence(online=True), qos=1, retain=True)
+
+    def tell(self, telemetry: Telemetry) -> None:
+        if self.connected:
+            self.told += 1
+            self._publish(Channel.TELEMETRY, telemetry)
+
+    def period_over(self, now_us: int) -> bool:
+        """Whether periodic telemetry is due; missed periods are not made up for, as on a blocked board."""
+        late_us = now_us - self._due_us
+        if not self.connected or late_us < 0:
+            return False
+        self._due_us += PERIOD_US * (late_us // PERIOD_US + 1)
+        return True
+
+    def _publish(self, channel: Channel, payload: Payload, *, qos: int = 0, retain: bool = False) -> None:
+        if self.connected:
+            address = topic(self._name, channel)
+            self._outbox.append(Publication(topic=address, payload=encode(payload), qos=qos, retain=retain))

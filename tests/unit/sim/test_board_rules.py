@@ -1,0 +1,322 @@
+"""Which command a board obeys: numbers, refusals, stop latch, heartbeat, reboot."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.messages import StopMode
+from arboleda.core.model import Evidence, MotionState
+from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, StopGoal
+from arboleda.wire.topics import Channel
+
+BOARD = "ra_1"
+EPOCH = 50
+
+
+def move(bench, seq, q=(45.0, 9.0, 0.0), epoch=EPOCH, **how):
+    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=q, seq=seq, epoch=epoch), **how)
+
+
+def stop(bench, seq, mode=StopMode.HALT, epoch=EPOCH):
+    bench.send(BOARD, Channel.STOP, StopGoal(mode=mode, seq=seq, epoch=epoch))
+
+
+def home(bench, seq, epoch=EPOCH):
+    bench.send(BOARD, Channel.HOME, HomeGoal(seq=seq, epoch=epoch))
+
+
+def effector(bench, seq, on, epoch=EPOCH):
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=on, seq=seq, epoch=epoch))
+
+
+def beat(bench, epoch=EPOCH):
+    bench.send(BOARD, Channel.BEAT, Beat(epoch=epoch))
+
+
+def refusal(bench):
+    said = bench.last(BOARD)
+    return said.refusal, said.refused_seq
+
+
+def test_power_up_is_homed_still_and_without_numbers(bench):
+    said = bench.last(BOARD)
+    assert (said.state, said.homed, said.effector, said.piece) == (MotionState.STOPPED, True, False, False)
+    assert (said.ack_epoch, said.ack, said.done, said.refusal) == (None, None, None, None)
+    assert (said.seq, said.boot_id, said.q) == (1, 100, (0.0, 0.0, 0.0))
+
+
+def test_an_accepted_move_is_acknowledged_moving_and_done_at_its_end(bench):
+    move(bench, 7)
+    said = bench.last(BOARD)
+    assert (said.state, said.ack_epoch, said.ack, said.done) == (MotionState.MOVING, EPOCH, 7, None)
+    bench.run(5)
+    said = bench.last(BOARD)
+    assert (said.state, said.ack, said.done) == (MotionState.STOPPED, 7, 7)
+
+
+@pytest.mark.parametrize(
+    ("epoch", "seq"), [(EPOCH, 6), (EPOCH, 0), (EPOCH - 1, 8)], ids=["lower seq", "seq 0", "lower epoch"]
+)
+def test_a_number_not_greater_than_the_last_is_old(bench, epoch, seq):
+    move(bench, 7)
+    move(bench, seq, q=(-45.0, 0.0, 0.0), epoch=epoch)
+    assert refusal(bench) == ("viejo", seq)
+    assert (bench.last(BOARD).ack_epoch, bench.last(BOARD).ack) == (EPOCH, 7)
+    bench.run(5)
+    assert bench.last(BOARD).q[0] == pytest.approx(45, abs=0.01)
+
+
+def test_a_second_delivery_of_the_accepted_command_is_no_refusal(bench):
+    move(bench, 7)
+    move(bench, 7)
+    assert refusal(bench) == (None, None)
+    bench.run(5)
+    assert bench.last(BOARD).done == 7
+
+
+def test_a_greater_epoch_begins_its_own_numbers(bench):
+    move(bench, 7)
+    effector(bench, 1, on=True, epoch=EPOCH + 1)
+    said = bench.last(BOARD)
+    assert (said.ack_epoch, said.ack, said.done) == (EPOCH + 1, 1, None)
+    bench.run(5)
+    assert bench.last(BOARD).done is None
+
+
+def test_a_refusal_under_a_greater_epoch_counts_for_that_epoch(bench):
+    move(bench, 7)
+    bench.run(5)
+    move(bench, 1, q=(151.0, 0.0, 0.0), epoch=EPOCH + 1)
+    said = bench.last(BOARD)
+    assert (said.ack_epoch, said.ack, said.done) == (EPOCH + 1, None, None)
+    assert refusal(bench) == ("limite", 1)
+
+
+def test_a_retained_command_is_refused_and_the_next_one_accepted(bench):
+    move(bench, 1, retain=True)
+    assert refusal(bench) == ("retenido", 1)
+    assert bench.last(BOARD).state is MotionState.STOPPED
+    move(bench, 1)
+    assert bench.last(BOARD).ack == 1
+
+
+def test_a_retained_command_of_another_epoch_cannot_be_taken_for_ours(bench):
+    move(bench, 7)
+    move(bench, 7, epoch=EPOCH - 1, retain=True)
+    assert refusal(bench) == ("retenido", 0)
+    assert bench.last(BOARD).state is MotionState.MOVING
+
+
+@pytest.mark.parametrize(
+    ("raw", "seq"),
+    [
+        (b'{"q1":1,"q2":1,"seq":3,"epoca":50}', 3),
+        (b'{"q1":true,"q2":1,"q3":1,"seq":3,"epoca":50}', 3),
+        (b'{"q1":NaN,"q2":1,"q3":1,"seq":3,"epoca":50}', 0),
+        (b'{"q1":1,"q2":1,"q3":1}', 0),
+        (b'{"q1":1,"q2":1,"q3":1,"seq":3}', 3),
+        (b"\xff", 0),
+    ],
+    ids=["missing joint", "bool", "NaN", "no numbers", "no epoch", "no text"],
+)
+def test_a_malformed_message_is_refused_whole_and_counted(bench, raw, seq):
+    bench.send(BOARD, Channel.JOINTS, raw)
+    assert refusal(bench) == ("formato", seq)
+    said = bench.last(BOARD)
+    assert (said.state, said.ack, said.q) == (MotionState.STOPPED, None, (0.0, 0.0, 0.0))
+    assert bench.devices.boards[BOARD].refusals == 1
+
+
+@pytest.mark.parametrize("q", [(150.1, 0, 0), (-150.1, 0, 0), (0, 135.1, 0), (0, 0, -1.0), (0, 0, 255.6)])
+def test_a_goal_beyond_a_limit_is_refused(bench, q):
+    move(bench, 1, q=q)
+    assert refusal(bench) == ("limite", 1)
+
+
+@pytest.mark.parametrize(
+    "q", [(150.0, 0, 0), (-150.0, 0, 0), (0, -135.0, 0), (0, 0, 254.6479), (0, 0, 254.7)]
+)
+def test_a_goal_on_its_limit_or_on_its_last_motor_step_is_accepted(bench, q):
+    move(bench, 1, q=q)
+    assert bench.last(BOARD).ack == 1
+
+
+def test_halt_ends_a_move_without_done_and_keeps_no_latch(bench):
+    move(bench, 1)
+    bench.run(0.4)
+    stop(bench, 2)
+    assert (bench.last(BOARD).ack, bench.last(BOARD).state) == (2, MotionState.MOVING)
+    bench.run(3)
+    said = bench.last(BOARD)
+    assert (said.state, said.done) == (MotionState.STOPPED, None)
+    assert 0 < said.q[0] < 45
+    move(bench, 3)
+    bench.run(3)
+    assert bench.last(BOARD).done == 3
+
+
+def test_stop_latches_when_still_until_it_is_cleared(bench):
+    move(bench, 1)
+    bench.run(0.4)
+    stop(bench, 2, StopMode.LATCH)
+    assert bench.last(BOARD).state is MotionState.MOVING
+    bench.run(3)
+    assert bench.last(BOARD).state is MotionState.STOP_LATCHED
+    for seq, act in ((3, move), (4, home)):
+        act(bench, seq)
+        assert refusal(bench) == ("paro", seq)
+    effector(bench, 5, on=True)
+    assert refusal(bench) == ("paro", 5)
+    stop(bench, 6, StopMode.CLEAR)
+    assert bench.last(BOARD).state is MotionState.STOPPED
+    move(bench, 7)
+    assert bench.last(BOARD).state is MotionState.MOVING
+
+
+def test_a_latched_board_still_releases_its_effector(bench):
+    effector(bench, 1, on=True)
+    stop(bench, 2, StopMode.LATCH)
+    effector(bench, 3, on=False)
+    assert (bench.last(BOARD).ack, bench.last(BOARD).effector) == (3, False)
+
+
+@pytest.mark.parametrize(("epoch", "seq"), [(EPOCH, 3), (EPOCH - 9, 900)], ids=["old seq", "old epoch"])
+@pytest.mark.parametrize("mode", [StopMode.LATCH, StopMode.HALT])
+def test_a_stop_is_obeyed_whatever_its_number(bench, epoch, seq, mode):
+    move(bench, 7)
+    bench.run(0.4)
+    stop(bench, seq, mode, epoch=epoch)
+    assert refusal(bench) == ("viejo", seq)
+    bench.run(3)
+    said = bench.last(BOARD)
+    assert said.q[0] < 45
+    assert said.done is None
+    assert said.state is (MotionState.STOP_LATCHED if mode is StopMode.LATCH else MotionState.STOPPED)
+
+
+def test_a_stop_without_numbers_is_obeyed(bench):
+    move(bench, 7)
+    bench.run(0.4)
+    stop(bench, None, epoch=None)
+    bench.run(3)
+    assert bench.last(BOARD).q[0] < 45
+
+
+def test_an_old_clear_does_not_clear(bench):
+    stop(bench, 7, StopMode.LATCH)
+    stop(bench, 6, StopMode.CLEAR)
+    assert refusal(bench) == ("viejo", 6)
+    assert bench.last(BOARD).state is MotionState.STOP_LATCHED
+
+
+def test_homing_loses_the_reference_first_and_refuses_motion(bench):
+    move(bench, 1)
+    bench.run(3)
+    home(bench, 2)
+    assert (bench.last(BOARD).homed, bench.last(BOARD).state) == (False, MotionState.MOVING)
+    move(bench, 3)
+    assert refusal(bench) == ("ocupado", 3)
+    home(bench, 4)
+    assert refusal(bench) == ("ocupado", 4)
+    bench.run(3)
+    said = bench.last(BOARD)
+    assert (said.homed, said.state, said.done, said.q) == (True, MotionState.STOPPED, 2, (0.0, 0.0, 0.0))
+
+
+def test_a_homing_that_is_halted_leaves_no_reference(bench):
+    move(bench, 1)
+    bench.run(3)
+    home(bench, 2)
+    bench.run(0.3)
+    stop(bench, 3)
+    bench.run(3)
+    said = bench.last(BOARD)
+    assert (said.homed, said.state, said.done) == (False, MotionState.NOT_HOMED, 1)
+    move(bench, 4)
+    assert refusal(bench) == ("sin_ref", 4)
+
+
+def test_a_reboot_forgets_position_reference_numbers_latch_and_grip(bench):
+    effector(bench, 8, on=True)
+    move(bench, 9)
+    bench.run(0.4)
+    bench.reboot(BOARD)
+    said = bench.last(BOARD)
+    assert (said.state, said.homed, said.q) == (MotionState.NOT_HOMED, False, (0.0, 0.0, 0.0))
+    assert (said.ack_epoch, said.ack, said.effector, said.piece) == (None, None, False, False)
+    assert (said.seq, said.boot_id) == (1, 104)
+    move(bench, 1)
+    assert refusal(bench) == ("sin_ref", 1)
+    home(bench, 2)
+    bench.run(1)
+    assert (bench.last(BOARD).homed, bench.last(BOARD).done) == (True, 2)
+
+
+def test_a_board_without_homing_trusts_its_position_after_a_reboot(make_bench):
+    bench = make_bench(assume_homed=True)
+    bench.reboot(BOARD)
+    assert (bench.last(BOARD).homed, bench.last(BOARD).state) == (True, MotionState.STOPPED)
+
+
+def test_one_second_without_a_beat_while_moving_ramps_to_a_stop(bench):
+    beat(bench)
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    bench.run(1.01)
+    assert bench.last(BOARD).state is MotionState.MOVING
+    bench.run(3)
+    said = bench.last(BOARD)
+    assert (said.state, said.done) == (MotionState.STOPPED, None)
+    assert 60 < said.q[0] < 100
+
+
+@pytest.mark.parametrize("epoch", [EPOCH, EPOCH + 1])
+def test_beats_keep_a_move_going(bench, epoch):
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    for _ in range(4):
+        beat(bench, epoch=epoch)
+        bench.run(0.9)
+    assert bench.last(BOARD).done == 1
+
+
+def test_beats_of_an_older_epoch_do_not_count(bench):
+    beat(bench)
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    for _ in range(4):
+        bench.run(0.9)
+        beat(bench, epoch=EPOCH - 1)
+    assert bench.last(BOARD).done is None
+    assert bench.last(BOARD).state is MotionState.STOPPED
+
+
+def test_a_board_that_never_heard_a_beat_moves_on_in_silence(bench):
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    bench.connect(BOARD, up=False)
+    bench.run(5)
+    bench.connect(BOARD)
+    assert bench.last(BOARD).done == 1
+
+
+@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
+def test_an_older_board_obeys_without_numbers_and_tells_only_joints_and_state(make_bench, evidence):
+    bench = make_bench(evidence)
+    move(bench, None, epoch=None)
+    assert bench.last(BOARD).state is MotionState.MOVING
+    bench.run(5)
+    assert set(bench.published[BOARD][-1].payload.split(b'"')[1::2]) == {
+        b"q1_mov",
+        b"q2_mov",
+        b"q3_mov",
+        b"estado",
+    }
+    assert bench.last(BOARD).q[0] == pytest.approx(45, abs=0.01)
+    stop(bench, None, StopMode.LATCH, epoch=None)
+    assert bench.last(BOARD).state is MotionState.STOP_LATCHED
+
+
+def test_a_board_without_paro_does_not_listen_to_it(make_bench):
+    bench = make_bench(has_stop=False)
+    assert "ra_1/paro" not in bench.devices.subscriptions(BOARD)
+    move(bench, 1)
+    stop(bench, 2)
+    bench.run(5)
+    assert bench.last(BOARD).done == 1
