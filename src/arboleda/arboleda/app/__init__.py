@@ -1,0 +1,1 @@
+"""Composition: plant file, parts, command line. The only code that knows everything."""

@@ -1,0 +1,158 @@
+"""The files a person writes: plant file -> PlantModel, users file -> passwords; all problems at once."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from arboleda.core.errors import ConfigError
+from arboleda.core.model import Cell, PlantModel, Timing
+
+from .plant_file import rack
+from .plant_file.document import Document, Place, shown
+from .plant_file.names import check_names
+from .plant_file.paths import paths
+from .plant_file.poses import PoseReader
+from .plant_file.robot_models import ArmModel
+from .plant_file.robots import arm, arm_model, mobile
+from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, TimingShape
+from .plant_file.yaml_marks import LARGEST
+
+SHARED = ("paths", "stations", "palletizing")
+MQTT_PROTOCOL = {"3.1.1": 4, "5": 5}  # paho's numbers
+
+
+def load(path: Path | None = None) -> PlantModel:
+    """The plant that the file describes, None for the shipped one; ConfigError with every problem."""
+    if path is None:
+        document = Document("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
+    else:
+        document = Document(str(path), _bytes(path))
+    plant = _plant(document)
+    document.finish()
+    if plant is None:
+        raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
+    return plant
+
+
+def warnings(plant: PlantModel) -> tuple[str, ...]:
+    """What the plant may do and a person should know before it moves."""
+    return tuple(
+        f'{robot.name}: declared "stop: none", so a stop (software) cannot reach it; '
+        "only the hard-wired button that removes motor power can"
+        for robot in plant.robots.values()
+        if not robot.has_stop
+    )
+
+
+def broker_users(path: Path) -> dict[str, str]:
+    """Passwords by user from lines `NAME:PASSWORD`; ConfigError with every problem, never with a password."""
+    try:
+        lines = _bytes(path).decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise ConfigError((f"{path}: is not UTF-8 text; save it as UTF-8",)) from None
+    users: dict[str, str] = {}
+    problems = []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        name, _, password = line.partition(":")
+        if not (name.strip() and password):
+            problems.append(f"{path}:{number}:1: must be NAME:PASSWORD, neither of them empty")
+        elif name.strip() in users:
+            problems.append(f"{path}:{number}:1: the user {shown(name.strip())} is there twice")
+        users[name.strip()] = password
+    if not users:
+        problems.append(f"{path}: names no user; write lines of NAME:PASSWORD")
+    if problems:
+        raise ConfigError(tuple(problems))
+    return users
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        if path.is_dir():
+            raise ConfigError((f"{path}: is a directory; a file is wanted",))
+        if path.exists() and not path.is_file():
+            raise ConfigError((f"{path}: is not a regular file",))
+        with path.open("rb") as file:
+            return file.read(LARGEST + 1)
+    except FileNotFoundError:
+        raise ConfigError((f"{path}: there is no such file",)) from None
+    except ValueError:
+        raise ConfigError((f"{str(path)!a}: is not the name of a file",)) from None
+    except OSError as error:
+        raise ConfigError((f"{path}: cannot be read: {error.strerror}",)) from None
+
+
+def _plant(document: Document) -> PlantModel | None:
+    shape = document.read(PlantShape)
+    cells = [_cell(document, name) for name in document.keys(("cells",))]
+    timing = document.read(TimingShape, ("timing",)) if document.has(("timing",)) else TimingShape()
+    check_names(document)
+    _check_sections(document)
+    whole = tuple(cell for cell in cells if cell)
+    if shape is None or timing is None or len(whole) < len(cells):
+        return None
+    return PlantModel(
+        name=shape.name,
+        cells=whole,
+        timing=Timing(**timing.model_dump()),
+        mqtt_version=MQTT_PROTOCOL[shape.mqtt_version],
+    )
+
+
+def _cell(document: Document, name: str) -> Cell | None:
+    place: Place = ("cells", name)
+    shape = document.read(CellShape, place)
+    kind = arm_model(document, (*place, "arm"))
+    the_arm = arm(document, (*place, "arm"), kind)
+    the_mobile = mobile(document, (*place, "mobile"))
+    routes = paths(document, _section(document, place, "paths"))
+    poses = _poses(document, place, kind)
+    if not (shape and the_arm and the_mobile and routes and poses):
+        return None
+    return Cell(
+        name=name,
+        arm=the_arm,
+        mobile=the_mobile,
+        paths=routes,
+        queue_limit=shape.queue_limit,
+        drive_to_start=shape.drive_to_start,
+        **poses,
+    )
+
+
+def _poses(document: Document, place: Place, kind: ArmModel | None) -> dict[str, Any]:
+    """What the arm needs to know about places; empty, with the problems kept, where one is wrong."""
+    if kind is None:
+        document.read(PositionShape, (*place, "home"))
+        document.read(PoseShape, (*place, "pickup"))
+        return {}
+    reader = PoseReader(document=document, cell=str(place[1]), model=kind.name, joints=kind.joints)
+    home = reader.home((*place, "home"))
+    pickup = reader.pose((*place, "pickup"), "pick-up")
+    stations = rack.stations(reader, _section(document, place, "stations"), home)
+    section = _section(document, place, "palletizing", needed=False)
+    palletizing = rack.palletizing(reader, section, pickup, stations)
+    whole = home and pickup and stations and palletizing
+    poses = {"home": home, "pickup": pickup, "stations": stations, "palletizing": palletizing}
+    return poses if whole else {}
+
+
+def _section(document: Document, place: Place, key: str, *, needed: bool = True) -> Place:
+    """Where a cell has this section: its own, else the one at the top that cells share."""
+    if document.has((*place, key)):
+        return (*place, key)
+    if needed and not document.has((key,)) and document.has(place):
+        document.problem(place, f'the key "{key}" is missing, here and at the top of the file')
+    return (key,)
+
+
+def _check_sections(document: Document) -> None:
+    names = document.keys(("cells",))
+    for key in SHARED:
+        unused = all(document.has(("cells", name, key)) for name in names)
+        if names and unused and document.has((key,)):
+            document.problem((key,), "every cell has its own, so this section has no effect; delete it")

@@ -1,0 +1,192 @@
+"""One YAML file being read: sections checked one by one, every problem kept with its line and place."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from arboleda.core.errors import ConfigError
+
+from .yaml_marks import Mark, Node, YamlFault, clipped, parse
+
+T = TypeVar("T")
+M = TypeVar("M", bound=BaseModel)
+Place = tuple[str | int, ...]  # keys and positions from the top of the file; () is the file itself
+
+KINDS = {
+    "model_type": "a mapping (key: value)",
+    "dict_type": "a mapping (key: value)",
+    "list_type": "a list [a, b, ...]",
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "text",
+}
+BOUNDS = {
+    "greater_than": ("gt", "more than"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "less than"),
+    "less_than_equal": ("le", "at most"),
+}
+
+
+class Document:
+    """A file by the name people know it by; ConfigError at once where nothing in it can be read."""
+
+    def __init__(self, name: str, raw: bytes) -> None:
+        self.name = name
+        self._problems: dict[tuple[int, int, str], None] = {}
+        try:
+            self._root, faults = parse(raw)
+        except YamlFault as fault:
+            raise ConfigError((self._line(fault.mark.line, fault.mark.column, fault.sentence),)) from None
+        for lesser in faults:
+            self._keep(lesser.mark, lesser.sentence)
+
+    def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
+        """Keeps one problem; its line is that of the deepest known part of `place`, or of the key `at`."""
+        where = dotted(place)
+        mark = self._mark(place) if at is None else self._key_mark(at)
+        self._keep(mark, f"{where}: {sentence}" if where else sentence)
+
+    def unknown(self, place: Place, known: Iterable[str]) -> None:
+        """Keeps the problem that the last key of `place` is not one of `known`."""
+        word, known = str(place[-1]), sorted(known)
+        sentence = f"the key {shown(word)} is not known{nearest(word, known)}; known: {', '.join(known)}"
+        self.problem(place[:-1], sentence, at=place)
+
+    def has(self, place: Place) -> bool:
+        """Whether the file has something there, be it an empty value."""
+        node = self._root
+        for key in place:
+            if key not in node.children:
+                return False
+            node = node.children[key]
+        return True
+
+    def value(self, place: Place) -> Any:
+        """The plain value there; None where there is none."""
+        return self._node(place).value if self.has(place) else None
+
+    def keys(self, place: Place) -> tuple[str, ...]:
+        """The keys of the mapping there; none where there is no mapping."""
+        value = self.value(place)
+        return tuple(value) if isinstance(value, dict) else ()
+
+    def read(self, shape: type[M], place: Place = ()) -> M | None:
+        """A mapping of this shape; None, with its problems kept, where it does not fit or is absent."""
+        return self._read(shape.model_validate, place, tuple(shape.model_fields))
+
+    def read_plain(self, shape: TypeAdapter[T], place: Place) -> T | None:
+        """The same for a value that is not a mapping of known keys."""
+        return self._read(shape.validate_python, place, ())
+
+    def finish(self) -> None:
+        """ConfigError with every problem in the order of the file, if there is one."""
+        if self._problems:
+            raise ConfigError(tuple(self._line(*problem) for problem in sorted(self._problems)))
+
+    def _read(self, validate: Callable[[Any], T], place: Place, known: tuple[str, ...]) -> T | None:
+        if not self.has(place):
+            return None
+        try:
+            return validate(self.value(place))
+        except ValidationError as error:
+            for fault in error.errors(include_url=False):
+                self._fault((*place, *fault["loc"]), fault, known)
+            return None
+
+    def _fault(self, place: Place, fault: Any, known: tuple[str, ...]) -> None:
+        key = str(place[-1]) if place else ""
+        if fault["type"] == "extra_forbidden":
+            self.unknown(place, known)
+        elif fault["type"] == "missing":
+            self.problem(place[:-1], f'the key "{key}" is missing')
+        else:
+            self.problem(place, _sentence(fault))
+
+    def _keep(self, mark: Mark, sentence: str) -> None:
+        self._problems[(mark.line, mark.column, sentence)] = None
+
+    def _line(self, line: int, column: int, sentence: str) -> str:
+        return f"{self.name}:{line}:{column}: {sentence}"
+
+    def _mark(self, place: Place) -> Mark:
+        return self._node(place).mark
+
+    def _key_mark(self, place: Place) -> Mark:
+        return self._node(place[:-1]).keys.get(place[-1], self._mark(place))
+
+    def _node(self, place: Place) -> Node:
+        node = self._root
+        for key in place:
+            if key not in node.children:
+                break
+            node = node.children[key]
+        return node
+
+
+def dotted(place: Place) -> str:
+    """`cells.sis_a.home.deg[1]`."""
+    parts = (f"[{part}]" if isinstance(part, int) else f".{clipped(part)}" for part in place)
+    return "".join(parts).lstrip(".")
+
+
+def shown(value: Any) -> str:
+    """A value as a sentence shows it: short, text in quotes."""
+    if value is None:
+        return "empty"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    if isinstance(value, dict | list):
+        return "a mapping" if isinstance(value, dict) else "a list"
+    text = clipped(str(value))
+    return f'"{text}"' if isinstance(value, str) else text
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """A hint `; did you mean "..."?`, or nothing."""
+    close = get_close_matches(word.lower(), list(known), n=1, cutoff=0.6)
+    return f'; did you mean "{close[0]}"?' if close else ""
+
+
+def choice(words: Iterable[str]) -> str:
+    """`a, b or c`."""
+    *head, tail = words
+    return f"{', '.join(head)} or {tail}" if head else tail
+
+
+def _sentence(fault: Any) -> str:
+    kind, value, context = fault["type"], fault["input"], fault.get("ctx", {})
+    if kind in KINDS:
+        return f"must be {KINDS[kind]}, is {shown(value)}{_unquoted(kind, value)}"
+    if kind in BOUNDS:
+        key, words = BOUNDS[kind]
+        return f"must be {words} {context[key]:g}, is {shown(value)}"
+    if kind in ("too_short", "too_long"):
+        words = "at least" if kind == "too_short" else "at most"
+        bound = context["min_length" if kind == "too_short" else "max_length"]
+        return f"must have {words} {bound} {'value' if bound == 1 else 'values'}, has {len(value)}"
+    if kind in ("literal_error", "enum"):
+        words = context["expected"].replace("'", "")
+        hint = nearest(value, re.split(", | or ", words)) if isinstance(value, str) else ""
+        return f"must be {words}, is {shown(value)}{hint}"
+    return f"{fault['msg']}, is {shown(value)}"
+
+
+def _unquoted(kind: str, value: Any) -> str:
+    if kind not in ("float_type", "int_type") or not isinstance(value, str):
+        return ""
+    try:
+        number = float(value)
+    except ValueError:
+        return ""
+    return f"; write {number:g} without quotes or leading zeros" if math.isfinite(number) else ""

@@ -1,0 +1,52 @@
+"""Which names of a plant must differ: one name, one thing, on ROS 2, on MQTT and in task texts."""
+
+from __future__ import annotations
+
+from .document import Document, Place, dotted, shown
+from .shapes import NAME_RULE, is_name
+
+RESERVED = ("plant", "system")  # first words of the plant's own ROS 2 topics
+
+
+def check_names(document: Document) -> None:
+    """Keeps a problem for each cell name that is none, each reserved word and each name used twice."""
+    cells: list[Place] = [("cells", name) for name in document.keys(("cells",))]
+    arms = [(*cell, "arm") for cell in cells]
+    robots = [place for cell in cells for place in ((*cell, "arm"), (*cell, "mobile"))]
+    names = [(str(cell[-1]), cell) for cell in cells] + _names(document, robots, "name")
+    for name, place in names:
+        at = place if place in cells else None
+        if at and not is_name(name):
+            document.problem(place, f"a cell's name must be {NAME_RULE}", at=at)
+        if name in RESERVED:
+            document.problem(place, f"the name {shown(name)} is taken by topics of the plant itself", at=at)
+    _differ(document, names, "name")
+    _differ(document, _names(document, robots, "mqtt"), "MQTT name")
+    _differ(document, _names(document, arms, "twin"), "twin name")
+    _check_twins(document, arms, names)
+
+
+def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str, Place]]:
+    """Each robot's name under `key`, which is its own name where the key is absent."""
+    found = []
+    for robot in robots:
+        place = (*robot, key) if document.has((*robot, key)) else (*robot, "name")
+        if isinstance(name := document.value(place), str):
+            found.append((name, place))
+    return found
+
+
+def _differ(document: Document, names: list[tuple[str, Place]], what: str) -> None:
+    first: dict[str, Place] = {}
+    for name, place in names:
+        other = first.setdefault(name, place)
+        by_default = what != "name" and place[-1] == other[-1] == "name"
+        if other != place and not by_default:
+            document.problem(place, f"the {what} {shown(name)} is already that of {dotted(other)}")
+
+
+def _check_twins(document: Document, arms: list[Place], names: list[tuple[str, Place]]) -> None:
+    owners = {name: place[:3] for name, place in names if len(place) > 2}
+    for twin, place in _names(document, arms, "twin"):
+        if owners.get(twin, place[:3]) != place[:3]:
+            document.problem(place, f"the twin name {shown(twin)} is already that of {dotted(owners[twin])}")

@@ -1,0 +1,52 @@
+"""The coded ways of a mobile robot over its 3x3 grid."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from arboleda.core.model import Grid, Path, Placement
+
+from .document import Document, Place, choice
+from .shapes import MAPPING, NODES
+
+GRID = Grid(origin=Placement(x=0.0, y=0.0), pitch=1.0)
+CODE = re.compile(r"[0-9A-Za-z]{2}", re.ASCII)
+
+
+def paths(document: Document, place: Place) -> tuple[Path, ...]:
+    """Every path of the section; empty, with the problems kept, where one is wrong."""
+    document.read_plain(MAPPING, place)
+    seen: dict[str, str] = {}
+    found = []
+    for key in document.keys(place):
+        first = seen.setdefault(key.upper(), key)
+        if not CODE.fullmatch(key):
+            document.problem((*place, key), "a path code is two letters or digits", at=(*place, key))
+        elif first != key:
+            document.problem(
+                (*place, key), f'is the same code as "{first}", case does not matter', at=(*place, key)
+            )
+        found.append(_path(document, (*place, key)))
+    return tuple(path for path in found if path) if all(found) else ()
+
+
+def _path(document: Document, place: Place) -> Path | None:
+    nodes = document.read_plain(NODES, place)
+    if nodes is None or not _on_grid(document, place, nodes):
+        return None
+    for index, (node, following) in enumerate(pairwise(nodes), start=1):
+        if following not in GRID.neighbours(node):
+            near = choice(str(neighbour) for neighbour in GRID.neighbours(node))
+            sentence = f"node {following} is no neighbour of node {node} on the grid; allowed: {near}"
+            document.problem((*place, index), sentence)
+            return None
+    return Path(code=str(place[-1]).upper(), nodes=tuple(nodes))
+
+
+def _on_grid(document: Document, place: Place, nodes: list[int]) -> bool:
+    for index, node in enumerate(nodes):
+        if not 0 <= node < GRID.size:
+            sentence = f"must be a node of the grid, 0 to {GRID.size - 1}, is {node}"
+            document.problem((*place, index), sentence)
+    return all(0 <= node < GRID.size for node in nodes)

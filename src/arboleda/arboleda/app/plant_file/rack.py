@@ -1,0 +1,87 @@
+"""The storage stations of a cell, by number or by rule, and what its palletizing picks and places."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+from arboleda.core.model import Palletizing, Pose
+
+from .document import Place, shown
+from .poses import PoseReader
+from .robot_models import TO_SI, millimetres
+from .shapes import PalletizingShape, RackShape
+
+MOST = 9  # task texts name stations 0 to 8
+NUMBER = re.compile(r"[0-9]+", re.ASCII)
+
+
+def stations(reader: PoseReader, place: Place, home: Pose | None) -> tuple[Pose, ...]:
+    """The rack; empty, with the problems kept, where a station cannot be read."""
+    keys = reader.document.keys(place)
+    listed = any(NUMBER.fullmatch(key) for key in keys)
+    poses = _by_number(reader, place, keys) if listed else _by_rule(reader, place, home)
+    return tuple(pose for pose in poses if pose) if all(poses) else ()
+
+
+def palletizing(
+    reader: PoseReader, place: Place, pickup: Pose | None, rack: tuple[Pose, ...]
+) -> Palletizing | None:
+    """The named pick and place; without the section the pick-up and the last station."""
+    shape = reader.document.read(PalletizingShape, place)
+    if pickup is None or not rack:
+        return None
+    if not reader.document.has(place):
+        return Palletizing(pick=pickup, place=rack[-1])
+    if shape is None:
+        return None
+    poses = {"pickup": pickup} | {pose.name: pose for pose in rack}
+    pick = _named(reader, shape.pick, poses, (*place, "pick"))
+    target = _named(reader, shape.place, poses, (*place, "place"))
+    if pick is not None and pick is target:
+        reader.problem((*place, "place"), "must be another pose than pick")
+    return Palletizing(pick=pick, place=target) if pick and target else None
+
+
+def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[Pose | None]:
+    numbers = [str(number) for number in range(min(len(keys), MOST))]
+    for key in keys:
+        if key not in numbers:
+            rule = f"stations are numbered 0, 1, 2, ... without a gap, at most {MOST}"
+            reader.problem((*place, key), f"is not a station here; {rule}", at=(*place, key))
+    return [
+        reader.pose((*place, number), f"station {number}") if number in keys else None for number in numbers
+    ]
+
+
+def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose | None]:
+    """Row by row: q1 by column, q2 by row, the other joints as in `home`."""
+    shape = reader.document.read(RackShape, place)
+    if shape is None or home is None or not reader.mm_fits(place, needed=False):
+        return []
+    columns, rows = shape.columns_q1_deg, shape.rows_q2_deg
+    if len(columns) * len(rows) > MOST:
+        count = f"{len(rows)} rows x {len(columns)} columns are more than {MOST} stations"
+        reader.problem(place, count)
+        return []
+    height = millimetres(shape.mm) if reader.document.has((*place, "mm")) else None
+    rest = tuple(
+        value if joint.unit == "rad" or height is None else height
+        for joint, value in list(zip(reader.joints, home.q, strict=True))[2:]
+    )
+    others = tuple((*place, "mm") for _ in rest)
+    poses: list[Pose | None] = []
+    for row, column in product(range(len(rows)), range(len(columns))):
+        q = (TO_SI["deg"](columns[column]), TO_SI["deg"](rows[row]), *rest)
+        places = ((*place, "columns_q1_deg", column), (*place, "rows_q2_deg", row), *others)
+        pose = reader.checked(f"station {len(poses)}", q, places)
+        poses.append(reader.lifted(pose, shape.approach_mm, place) if pose else None)
+    return poses
+
+
+def _named(reader: PoseReader, text: str, poses: dict[str, Pose], place: Place) -> Pose | None:
+    pose = poses.get(" ".join(text.lower().split()))
+    if pose is None:
+        allowed = f'"pickup", or "station 0" to "{list(poses)[-1]}"'
+        reader.problem(place, f"must be {allowed}, is {shown(text)}")
+    return pose

@@ -1,0 +1,161 @@
+"""The robot models of `arboleda_description/robots/*.yaml`, in SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from arboleda.core.model import Joint
+
+from .document import Document, Place, choice
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmModel:
+    """A kind of arm: its joints from the base outwards."""
+
+    name: str
+    joints: tuple[Joint, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MobileModel:
+    """A kind of mobile robot; `speed` in m/s."""
+
+    name: str
+    speed: float
+
+
+def millimetres(value: float) -> float:
+    """mm -> m."""
+    return value / 1000
+
+
+TO_SI: dict[str, Callable[[float], float]] = {"deg": math.radians, "rad": float, "mm": millimetres}
+
+
+class Shape(BaseModel):
+    """A mapping of known keys; text is no number and a number no text."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class ArmFile(Shape):
+    """`kind: arm`; `links_m`, `link_masses_kg` and `sources` are for the drawing and the reader."""
+
+    model: str
+    kind: Literal["arm"]
+    joints: list[Any]
+    sources: dict[str, str]
+    links_m: list[Positive] = []
+    link_masses_kg: list[Positive] = []
+
+
+class MobileFile(Shape):
+    """`kind: mobile`."""
+
+    model: str
+    kind: Literal["mobile"]
+    speed_mm_s: Positive
+    sources: dict[str, str]
+
+
+class JointFile(Shape):
+    """One joint; limits and speed in the unit their source gives, `step_deg` of the motor or its pinion."""
+
+    name: str
+    type: Literal["revolute", "prismatic"]
+    step_deg: Positive
+    pinion_radius_mm: Positive = math.inf
+    limits_deg: Pair = []
+    limits_rad: Pair = []
+    limits_mm: Pair = []
+    speed_deg_s: Positive = 0.0
+    speed_rad_s: Positive = 0.0
+    speed_mm_s: Positive = 0.0
+    acceleration_deg_s2: Positive = 0.0
+    acceleration_mm_s2: Positive = 0.0
+    axis: Triple = []
+    origin_xyz_m: Triple = []
+    origin_rpy_rad: Triple = []
+
+
+@cache
+def arm_models() -> dict[str, ArmModel]:
+    """Every described arm by model name; ConfigError if a file is damaged."""
+    return {name: _arm(document) for name, document in _documents("arm").items()}
+
+
+@cache
+def mobile_models() -> dict[str, MobileModel]:
+    """Every described mobile robot by model name; ConfigError if a file is damaged."""
+    return {name: _mobile(document) for name, document in _documents("mobile").items()}
+
+
+def _documents(kind: str) -> dict[str, Document]:
+    robots = sorted(files("arboleda_description").joinpath("robots").iterdir(), key=lambda entry: entry.name)
+    found = [
+        Document(f"robots/{entry.name}", entry.read_bytes())
+        for entry in robots
+        if entry.name.endswith(".yaml")
+    ]
+    return {document.value(("model",)): document for document in found if document.value(("kind",)) == kind}
+
+
+def _arm(document: Document) -> ArmModel:
+    shape = document.read(ArmFile)
+    places: list[Place] = [("joints", index) for index in range(len(shape.joints))] if shape else []
+    joints = [_joint(document, place) for place in places]
+    document.finish()
+    return ArmModel(name=document.value(("model",)), joints=tuple(joint for joint in joints if joint))
+
+
+def _mobile(document: Document) -> MobileModel:
+    shape = document.read(MobileFile)
+    document.finish()
+    return MobileModel(name=document.value(("model",)), speed=millimetres(shape.speed_mm_s if shape else 0.0))
+
+
+def _joint(document: Document, place: Place) -> Joint | None:
+    shape = document.read(JointFile, place)
+    if shape is None:
+        return None
+    units = ("deg", "rad") if shape.type == "revolute" else ("mm",)
+    limits = _quantity(document, place, "limits_{}", units)
+    speed = _quantity(document, place, "speed_{}_s", units)
+    acceleration = _quantity(document, place, "acceleration_{}_s2", units[:1])
+    if not (limits and speed and acceleration):
+        return None
+    pinion = None if shape.type == "revolute" else millimetres(shape.pinion_radius_mm)
+    step = math.radians(shape.step_deg) * (1.0 if pinion is None else pinion)
+    return Joint(
+        name=shape.name,
+        lower=limits[0],
+        upper=limits[1],
+        speed=speed[0],
+        acceleration=acceleration[0],
+        step=step,
+        pinion_radius_m=pinion,
+    )
+
+
+def _quantity(document: Document, place: Place, key: str, units: tuple[str, ...]) -> tuple[float, ...]:
+    """The numbers under the one key that is given, in SI; empty, with the problem kept, if not one is."""
+    keys = {key.format(unit): TO_SI[unit] for unit in units}
+    given = [name for name in keys if document.has((*place, name))]
+    if len(given) != 1:
+        document.problem(place, f"needs {choice(keys)}, one of them")
+        return ()
+    value = document.value((*place, given[0]))
+    return tuple(keys[given[0]](each) for each in (value if isinstance(value, list) else [value]))

@@ -1,0 +1,147 @@
+"""The arms and mobile robots of a plant file: the model's numbers, narrowed by the file and never widened."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from arboleda.core.model import Arm, Grid, Joint, Mobile, Placement
+
+from .document import Document, Place, choice, nearest, shown
+from .poses import PoseReader, in_file_unit, span
+from .robot_models import TO_SI, ArmModel, arm_models, millimetres, mobile_models
+from .shapes import LIMITS, MAPPING, SPEED, ArmShape, BaseShape, GridShape, MobileShape, RobotShape
+
+T = TypeVar("T")
+
+
+def arm_model(document: Document, place: Place) -> ArmModel | None:
+    """The model that `arm:` names, its joints narrowed by `limits:` and `speeds:`."""
+    model = _model(document, (*place, "model"), arm_models())
+    if model is None:
+        return None
+    narrowed = tuple(
+        _narrowed(document, place, index, joint) for index, joint in enumerate(model.joints, start=1)
+    )
+    _refuse_other_keys(
+        document, (*place, "limits"), [_limits_key(*each) for each in enumerate(model.joints, 1)]
+    )
+    _refuse_other_keys(
+        document, (*place, "speeds"), [_speed_key(*each) for each in enumerate(model.joints, 1)]
+    )
+    return replace(model, joints=narrowed)
+
+
+def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
+    """The arm of a cell; None, with its problems kept, where something is wrong with it."""
+    shape = document.read(ArmShape, place)
+    base = _section(document, (*place, "base"), BaseShape)
+    tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
+    if shape is None or base is None or model is None:
+        return None
+    return Arm(
+        **_common(shape),
+        model=model.name,
+        twin=shape.twin or shape.name,
+        base=_placement(base),
+        joints=model.joints,
+        timeout_s=shape.timeout_s,
+        tolerance=tolerance,
+    )
+
+
+def mobile(document: Document, place: Place) -> Mobile | None:
+    """The mobile robot of a cell; None, with its problems kept, where something is wrong with it."""
+    shape = document.read(MobileShape, place)
+    grid = _section(document, (*place, "grid"), GridShape)
+    model = _model(document, (*place, "model"), mobile_models(), default="mobile")
+    if shape is None or grid is None or model is None:
+        return None
+    speed = millimetres(shape.speed_mm_s) or model.speed
+    if speed > model.speed:
+        fastest = f"{model.speed * 1000:g} mm/s, the speed of the model {model.name}"
+        document.problem((*place, "speed_mm_s"), f"must be at most {fastest}, is {shape.speed_mm_s:g}")
+    return Mobile(
+        **_common(shape),
+        grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
+        speed=speed,
+        timeout_s=shape.timeout_s,
+    )
+
+
+def _common(shape: RobotShape) -> dict[str, Any]:
+    return {
+        "name": shape.name,
+        "mqtt": shape.mqtt or shape.name,
+        "link": shape.link,
+        "evidence": shape.evidence,
+        "assume_homed": shape.assume_homed,
+        "has_stop": shape.stop == "supported",
+    }
+
+
+def _placement(shape: BaseShape) -> Placement:
+    return Placement(x=shape.origin_m[0], y=shape.origin_m[1], yaw=math.radians(shape.yaw_deg))
+
+
+def _section(document: Document, place: Place, shape: type[BaseShape]) -> Any:
+    return document.read(shape, place) if document.has(place) else shape()
+
+
+def _model(document: Document, place: Place, models: dict[str, T], default: str | None = None) -> T | None:
+    name = document.value(place) if document.has(place) else default
+    if isinstance(name, str) and name not in models:
+        known = choice(sorted(models))
+        document.problem(place, f"must be {known}, is {shown(name)}{nearest(name, models)}")
+    return models.get(name) if isinstance(name, str) else None
+
+
+def _limits_key(number: int, joint: Joint) -> str:
+    return f"q{number}_{'deg' if joint.unit == 'rad' else 'mm'}"
+
+
+def _speed_key(number: int, joint: Joint) -> str:
+    return _limits_key(number, joint) + "_s"
+
+
+def _refuse_other_keys(document: Document, place: Place, known: list[str]) -> None:
+    if not document.has(place):
+        return
+    for key in document.read_plain(MAPPING, place) or ():
+        if key not in known:
+            document.unknown((*place, key), known)
+
+
+def _narrowed(document: Document, place: Place, number: int, joint: Joint) -> Joint:
+    """The joint with the file's limits and speed; unchanged, with the problem kept, where they are wrong."""
+    si = TO_SI["deg" if joint.unit == "rad" else "mm"]
+    limits_place = (*place, "limits", _limits_key(number, joint))
+    speed_place = (*place, "speeds", _speed_key(number, joint))
+    if limits := document.read_plain(LIMITS, limits_place):
+        lower, upper = si(limits[0]), si(limits[1])
+        if joint.lower <= lower <= 0 <= upper <= joint.upper and lower < upper:
+            joint = replace(joint, lower=lower, upper=upper)
+        else:
+            rule = f"must lie within {span(joint)} (the model), lower first, with 0 (homed) inside"
+            document.problem(limits_place, f"{rule}; is [{limits[0]:g}, {limits[1]:g}]")
+    if speed := document.read_plain(SPEED, speed_place):
+        if si(speed) <= joint.speed:
+            return replace(joint, speed=si(speed))
+        fastest = f"{in_file_unit(joint, joint.speed)}/s, the speed of the model"
+        document.problem(speed_place, f"must be at most {fastest}, is {speed:g}")
+    return joint
+
+
+def _tolerance(document: Document, place: Place, model: ArmModel) -> tuple[float, ...] | None:
+    if not document.has(place):
+        return None
+    tolerance = PoseReader(
+        document=document, cell=str(place[1]), model=model.name, joints=model.joints
+    ).position(place)
+    for number, (joint, value) in enumerate(zip(model.joints, tolerance or (), strict=False), start=1):
+        least = joint.step / 2 + 1e-5
+        if value < least:
+            rule = f"at least {in_file_unit(joint, least)}, half a motor step and a little"
+            document.problem(place, f"q{number} must have {rule}, has {in_file_unit(joint, value)}")
+    return tolerance

@@ -1,0 +1,171 @@
+"""The mappings a plant file is made of: keys, types, ranges, defaults."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
+from pydantic_core import PydanticCustomError
+
+from arboleda.core.model import Evidence, Link, Timing
+
+from .robot_models import Number, Pair, Positive, Shape
+
+DAY_S = 86400
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*_?", re.ASCII)
+NAME_RULE = "a name of at most 64 small letters, digits and single underscores, the first a letter"
+PLANT_NAME = re.compile(r"[a-z][a-z0-9_-]*", re.ASCII)
+PLANT_NAME_RULE = "a name of at most 64 small letters, digits, - and _, the first a letter"
+
+
+def is_name(text: str) -> bool:
+    """Whether ROS 2 and MQTT both take `text` as one level of a topic."""
+    return len(text) <= 64 and NAME.fullmatch(text) is not None
+
+
+def _name(text: str) -> str:
+    if not is_name(text):
+        raise PydanticCustomError("name", "must be " + NAME_RULE)
+    return text
+
+
+def _plant_name(text: str) -> str:
+    if len(text) > 64 or not PLANT_NAME.fullmatch(text):
+        raise PydanticCustomError("name", "must be " + PLANT_NAME_RULE)
+    return text
+
+
+def _protocol(value: Any) -> Any:
+    """`5` and `"5"` are the same version; `5.0` and `true` are none."""
+    return "5" if type(value) is int and value == 5 else value
+
+
+Name = Annotated[str, AfterValidator(_name)]
+Duration = Annotated[float, Field(gt=0, le=DAY_S, allow_inf_nan=False)]
+Wait = Annotated[float, Field(ge=0, le=DAY_S, allow_inf_nan=False)]
+Speed = Annotated[float, Field(ge=0.1, allow_inf_nan=False)]
+Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
+
+
+class PlantShape(Shape):
+    """The file itself; `paths`, `stations` and `palletizing` here serve every cell without its own."""
+
+    name: Annotated[str, AfterValidator(_plant_name)]
+    cells: Annotated[dict[str, Any], Field(min_length=1)]
+    timing: Any = None
+    mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
+    paths: Any = None
+    stations: Any = None
+    palletizing: Any = None
+
+
+class TimingShape(Shape):
+    """`timing:`; the defaults are those of core.model.Timing."""
+
+    dwell_s: Wait = Timing.dwell_s
+    effector_settle_s: Wait = Timing.effector_settle_s
+    effector_timeout_s: Duration = Timing.effector_timeout_s
+    stale_after_s: Annotated[float, Field(ge=0.3, le=DAY_S, allow_inf_nan=False)] = Timing.stale_after_s
+    stop_timeout_s: Duration = Timing.stop_timeout_s
+    deadline_factor: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = Timing.deadline_factor
+    deadline_floor_s: Duration = Timing.deadline_floor_s
+
+
+class CellShape(Shape):
+    """One cell; its name is its key under `cells:`."""
+
+    arm: Any
+    mobile: Any
+    home: Any
+    pickup: Any
+    paths: Any = None
+    stations: Any = None
+    palletizing: Any = None
+    queue_limit: Annotated[int, Field(ge=1, le=10_000)] = 100
+    drive_to_start: bool = True
+
+
+class RobotShape(Shape):
+    """What an arm and a mobile robot have in common; an empty `mqtt` is the robot's own name."""
+
+    name: Name
+    mqtt: Name = ""
+    link: Annotated[Link, Field(strict=False)]
+    evidence: Annotated[Evidence, Field(strict=False)]
+    assume_homed: bool = False
+    stop: Literal["supported", "none"] = "supported"
+
+
+class ArmShape(RobotShape):
+    """`arm:`; an empty `twin` is the arm's own name."""
+
+    model: str
+    twin: Name = ""
+    base: Any = None
+    timeout_s: Duration = 10.0
+    limits: Any = None
+    speeds: Any = None
+    tolerance: Any = None
+
+
+class MobileShape(RobotShape):
+    """`mobile:`; without `speed_mm_s` it drives at the model's speed."""
+
+    model: str = "mobile"
+    grid: Any = None
+    timeout_s: Duration = 20.0
+    speed_mm_s: Speed = 0.0
+
+
+class BaseShape(Shape):
+    """`base:`, where an arm stands in the `world` frame."""
+
+    origin_m: Pair = Field(default_factory=lambda: [0.0, 0.0])
+    yaw_deg: Number = 0.0
+
+
+class GridShape(BaseShape):
+    """`grid:`, where node 0 lies; columns go along x and rows along y of the turned frame."""
+
+    pitch_mm: Annotated[float, Field(ge=1, le=10_000, allow_inf_nan=False)] = 200.0
+
+
+class PositionShape(Shape):
+    """Joint values: `deg` one per turning joint from the base outwards, `mm` the sliding joint."""
+
+    deg: list[Number]
+    mm: Number = 0.0
+
+
+class PoseShape(PositionShape):
+    """A pose with an approach height; 0 is none."""
+
+    approach_mm: Positive = 0.0
+
+
+class RackShape(Shape):
+    """Stations by rule: station = row x columns + column; joints the rule does not name stay as in `home`."""
+
+    columns_q1_deg: Angles
+    rows_q2_deg: Angles
+    mm: Number = 0.0
+    approach_mm: Positive = 0.0
+
+
+class PalletizingShape(Shape):
+    """`palletizing:`, two poses of the cell by name."""
+
+    pick: str
+    place: str
+
+
+STRICT = ConfigDict(strict=True)
+NODES: TypeAdapter[list[int]] = TypeAdapter(
+    Annotated[list[int], Field(min_length=1, max_length=64)], config=STRICT
+)
+LIMITS: TypeAdapter[list[float]] = TypeAdapter(Pair, config=STRICT)
+SPEED: TypeAdapter[float] = TypeAdapter(Speed, config=STRICT)
+MAPPING: TypeAdapter[dict[str, Any]] = TypeAdapter(
+    Annotated[dict[str, Any], Field(min_length=1)], config=STRICT
+)

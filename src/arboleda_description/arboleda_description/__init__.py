@@ -1,0 +1,1 @@
+"""What the robots are made of: links, limits, speeds and motor steps, in `robots/*.yaml`."""
