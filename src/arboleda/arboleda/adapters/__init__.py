@@ -1,0 +1,1 @@
+"""One I/O library per file; each carries messages and decides nothing."""

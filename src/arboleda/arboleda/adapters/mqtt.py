@@ -1,0 +1,250 @@
+"""paho-mqtt: one MQTT client that never replays and always says whether it is connected."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from paho.mqtt.client import Client, MQTTMessage, MQTTMessageInfo
+from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode, MQTTProtocolVersion
+from paho.mqtt.packettypes import PacketTypes
+from paho.mqtt.properties import Properties
+from paho.mqtt.reasoncodes import ReasonCode
+
+from arboleda.core.errors import ArboledaError
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+log = logging.getLogger(__name__)
+
+KEEPALIVE_S = 5
+CONNECT_TIMEOUT_S = 3.0
+FLUSH_S = 1.0
+WAKE_S = 1.0  # paho looks at its keep-alive when its loop wakes
+FIRST_RETRY_S, LAST_RETRY_S = 0.2, 5.0
+QUEUE_LIMIT = 100
+EXPIRY_S = 1
+
+
+class NotConnected(ArboledaError):
+    """A publication was refused because the broker is not there; it will not be sent later."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Address:
+    """Where a broker listens."""
+
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Credentials:
+    """What a client logs in with."""
+
+    user: str
+    password: str = field(repr=False)
+
+
+class MqttClient:
+    """Keeps one clean session at a broker, with a new paho client for each connection.
+
+    `on_event` gets Deliveries and Connections in the client's own thread and must not block;
+    `Connection(up=True)` comes once the broker has granted every subscription, before any Delivery.
+    Where several clients of a process share a broker, all but one are told not to `announce` it in the log.
+    """
+
+    def __init__(
+        self,
+        client_id: str,
+        address: Address,
+        *,
+        on_event: Callable[[Delivery | Connection], None],
+        subscriptions: Sequence[str] = (),
+        will: Publication | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        credentials: Credentials | None = None,
+        version: int = MQTTProtocolVersion.MQTTv311,
+        announce: bool = True,
+    ) -> None:
+        self.client_id = client_id
+        self._address = address
+        self._on_event = on_event
+        self._subscriptions = tuple(subscriptions)
+        self._will = will
+        self._clock = clock
+        self._credentials = credentials
+        self._version = MQTTProtocolVersion(version)
+        self._announce = announce
+        self._told: str | None = None  # the trouble that the log already names
+        self._refused: str | None = None  # what the broker of this connection said no to
+        self._early: list[Delivery] = []
+        self._lock = threading.Lock()
+        self._paho: Client | None = None  # only while up
+        self._last: MQTTMessageInfo | None = None
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._run, name=f"mqtt {client_id}", daemon=True)
+
+    def start(self) -> None:
+        """Connect, and reconnect until `close`; returns at once."""
+        self._thread.start()
+
+    def publish(self, publication: Publication) -> None:
+        """Send now or raise NotConnected; nothing is kept for a later connection."""
+        with self._lock:
+            if self._paho is None:
+                raise NotConnected(f"the MQTT broker at {self._address} is not connected")
+            info = self._paho.publish(
+                publication.topic,
+                publication.payload,
+                publication.qos,
+                publication.retain,
+                self._expiry(publication),
+            )
+            if info.rc != MQTTErrorCode.MQTT_ERR_SUCCESS:
+                raise NotConnected(
+                    f"the MQTT broker at {self._address} does not take messages: {info.rc.name}"
+                )
+            self._last = info
+
+    def close(self) -> None:
+        """Let what was published leave, disconnect (no last will) and join; idempotent."""
+        with self._lock:
+            paho, last = self._paho, self._last
+        if paho is not None and last is not None:
+            last.wait_for_publish(FLUSH_S)
+        self._closing.set()
+        if paho is not None:
+            paho.disconnect()  # wakes its loop
+        if self._thread.ident is not None:
+            self._thread.join()
+
+    def _expiry(self, publication: Publication) -> Properties | None:
+        """MQTT 5 only: a command that waits in a broker dies there."""
+        if self._version != MQTTProtocolVersion.MQTTv5 or publication.retain or publication.qos == 0:
+            return None
+        properties = Properties(PacketTypes.PUBLISH)
+        properties.MessageExpiryInterval = EXPIRY_S
+        return properties
+
+    # --- the client's thread ---
+
+    def _run(self) -> None:
+        delay = FIRST_RETRY_S
+        while not self._closing.is_set():
+            began = time.monotonic()
+            self._serve_one_connection()
+            # Only a connection that held starts the back-off anew: two clients with one id fight slowly.
+            held = time.monotonic() - began > LAST_RETRY_S
+            delay = FIRST_RETRY_S if held else delay
+            self._closing.wait(delay)
+            delay = min(2 * delay, LAST_RETRY_S)
+
+    def _serve_one_connection(self) -> None:
+        self._refused, self._early = None, []
+        paho = self._new_paho()
+        trouble = "connection lost"
+        try:
+            paho.connect(self._address.host, self._address.port, KEEPALIVE_S)
+            while paho.loop(WAKE_S) == MQTTErrorCode.MQTT_ERR_SUCCESS:
+                if self._closing.is_set():
+                    paho.disconnect()
+        except (OSError, ValueError, struct.error) as error:
+            trouble = str(error)
+        self._down(paho, trouble)
+
+    def _new_paho(self) -> Client:
+        paho = Client(
+            CallbackAPIVersion.VERSION2,
+            client_id=self.client_id,
+            clean_session=None if self._version == MQTTProtocolVersion.MQTTv5 else True,
+            protocol=self._version,
+            reconnect_on_failure=False,
+        )
+        paho.connect_timeout = CONNECT_TIMEOUT_S
+        paho.max_inflight_messages_set(1)
+        paho.max_queued_messages_set(QUEUE_LIMIT)
+        if self._credentials is not None:
+            paho.username_pw_set(self._credentials.user, self._credentials.password)
+        if self._will is not None:
+            paho.will_set(self._will.topic, self._will.payload, self._will.qos, self._will.retain)
+        paho.on_socket_open = self._no_delay
+        paho.on_socket_register_write = self._leave_writing_to_the_loop
+        paho.on_connect = self._connected
+        paho.on_subscribe = self._subscribed
+        paho.on_message = self._received
+        return paho
+
+    @staticmethod
+    def _no_delay(_paho: Client, _userdata: Any, sock: Any) -> None:
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    @staticmethod
+    def _leave_writing_to_the_loop(_paho: Client, _userdata: Any, _sock: Any) -> None:
+        """Without this callback paho writes to the socket in whichever thread publishes."""
+
+    def _connected(
+        self, paho: Client, _userdata: Any, _flags: Any, reason: ReasonCode, _properties: Any
+    ) -> None:
+        if reason.is_failure:
+            user = f" user {self._credentials.user!r}" if self._credentials else " a client without user name"
+            spoken = "5" if self._version == MQTTProtocolVersion.MQTTv5 else "3.1.1"
+            self._refused = f"refused{user} over MQTT {spoken}: {reason}"
+        elif self._subscriptions:
+            paho.subscribe([(topic, 1) for topic in self._subscriptions])
+        else:
+            self._up(paho)
+
+    def _subscribed(self, paho: Client, _userdata: Any, _mid: int, reasons: list[ReasonCode], _: Any) -> None:
+        failed = [
+            topic for topic, reason in zip(self._subscriptions, reasons, strict=False) if reason.is_failure
+        ]
+        if failed:
+            self._refused = f"refused to subscribe {self.client_id} to {', '.join(failed)}"
+            paho.disconnect()
+        else:
+            self._up(paho)
+
+    def _received(self, paho: Client, _userdata: Any, message: MQTTMessage) -> None:
+        delivery = Delivery(
+            at=self._clock(), topic=message.topic, payload=bytes(message.payload), retain=message.retain
+        )
+        if paho is self._paho:
+            self._on_event(delivery)
+        else:  # a broker may deliver before it has answered the subscription
+            self._early.append(delivery)
+
+    def _up(self, paho: Client) -> None:
+        with self._lock:
+            self._paho, self._last = paho, None
+        if self._told is not None:
+            self._tell(None, f"The MQTT broker at {self._address} is there.")
+        self._on_event(Connection(at=self._clock(), client=self.client_id, up=True))
+        for delivery in self._early:
+            self._on_event(delivery)
+
+    def _down(self, paho: Client, trouble: str) -> None:
+        with self._lock:
+            was_up, self._paho, self._last = self._paho is paho, None, None
+        if was_up:
+            self._on_event(Connection(at=self._clock(), client=self.client_id, up=False))
+        if self._closing.is_set():
+            return
+        if self._refused is not None:
+            self._tell(self._refused, f"The MQTT broker at {self._address} {self._refused}; trying again.")
+        else:
+            self._tell("gone", f"The MQTT broker at {self._address} is not there ({trouble}); trying again.")
+
+    def _tell(self, trouble: str | None, sentence: str) -> None:
+        """One line when something changes, not one per attempt."""
+        if self._announce and trouble != self._told:
+            log.warning(sentence)
+        self._told = trouble

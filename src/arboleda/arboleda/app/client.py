@@ -1,0 +1,55 @@
+"""Talks to the plant that runs on a state directory, for `arboleda submit` and `arboleda status`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from arboleda.core.errors import ArboledaError, QueueFull, TextError
+
+from .state import find_running
+
+TIMEOUT_S = 10.0
+ERRORS = {422: TextError, 503: QueueFull}
+
+
+class PlantClient:
+    """One-sentence ArboledaErrors: no plant, no answer, or what the plant said."""
+
+    def __init__(self, state: Path) -> None:
+        self._state = state
+
+    def submit(self, text: str) -> dict[str, Any]:
+        """The queued task; TextError where the text is refused, QueueFull where the plant takes none now."""
+        return self._ask("POST", "/api/tasks", {"text": text})
+
+    def status(self) -> dict[str, Any]:
+        """The view of the plant."""
+        return self._ask("GET", "/api/plant")
+
+    def task(self, task: str) -> dict[str, Any]:
+        """One task by its id."""
+        return self._ask("GET", f"/api/tasks/{task}")
+
+    def _ask(self, method: str, path: str, body: dict[str, str] | None = None) -> dict[str, Any]:
+        running = find_running(self._state)
+        if running is None:
+            raise ArboledaError(f"No plant is running on {self._state}; start one with `arboleda up`.")
+        if running.port is None:
+            raise ArboledaError(
+                f"The plant on {self._state} (process {running.pid}) is still starting or ending."
+            )
+        try:
+            # No proxy of the environment stands between two processes of one machine.
+            with httpx.Client(trust_env=False, timeout=TIMEOUT_S) as client:
+                answer = client.request(method, f"http://127.0.0.1:{running.port}{path}", json=body)
+                said = answer.json()
+        except (httpx.HTTPError, ValueError) as error:
+            raise ArboledaError(
+                f"The plant on {self._state} (process {running.pid}) did not answer."
+            ) from error
+        if answer.is_success:
+            return said
+        raise ERRORS.get(answer.status_code, ArboledaError)(said["sentence"])

@@ -1,0 +1,135 @@
+"""Drives one pure machine: a thread, an inbox, and the clock that the machine never reads."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Any, Generic, Protocol, TypeVar
+
+log = logging.getLogger(__name__)
+
+Event = TypeVar("Event", contravariant=True)
+Message = TypeVar("Message")
+Result = TypeVar("Result")
+
+
+class Machine(Protocol[Event, Message]):
+    """What Plant, Bridge and Devices have in common."""
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Message]: ...
+
+    @property
+    def next_deadline(self) -> float | None: ...
+
+
+def log_send_error(message: object, error: Exception) -> None:
+    """What happens to a message that could not leave, where nobody asked for more."""
+    log.warning("%s was not sent: %s", message, error)
+
+
+def log_crash(name: str, error: Exception) -> None:
+    """What happens to a crash, where nobody asked for more."""
+    log.critical("%s has stopped on an internal error: %r", name, error)
+    log.debug("%s crashed here", name, exc_info=error)
+
+
+class Loop(Generic[Event, Message]):
+    """Sleeps until an event arrives or a deadline passes, steps once, sends what comes out.
+
+    A `step` (or an error handler) that raises ends the loop: `on_crash(name, error)`. A `send` that raises
+    does not: `on_send_error(message, error)`. `on_step(now, events, messages)` sees every step. All of them
+    are called in the loop's thread. `wait(condition, timeout_s)` is there for tests that move time by hand.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        machine: Machine[Event, Message],
+        send: Callable[[Any], None],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        on_crash: Callable[[str, Exception], None] = log_crash,
+        on_send_error: Callable[[Any, Exception], None] = log_send_error,
+        on_step: Callable[[float, Sequence[Any], Sequence[Any]], None] | None = None,
+        wait: Callable[[threading.Condition, float | None], object] = threading.Condition.wait,
+    ) -> None:
+        self.name = name
+        self._machine = machine
+        self._send = send
+        self._clock = clock
+        self._on_crash = on_crash
+        self._on_send_error = on_send_error
+        self._on_step = on_step
+        self._wait = wait
+        self._inbox: deque[Event] = deque()
+        self._awake = threading.Condition()
+        self._ending = False
+        self._between_steps = threading.Lock()
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def post(self, event: Any) -> None:
+        """Put an event into the inbox; from any thread, never blocks; after the end it is dropped."""
+        with self._awake:
+            if not self._ending:
+                self._inbox.append(event)
+                self._awake.notify()
+
+    def read(self, fn: Callable[[Any], Result]) -> Result:
+        """`fn(machine)` between two steps, from any thread; `fn` changes nothing and does not read again."""
+        with self._between_steps:
+            return fn(self._machine)
+
+    def stop(self) -> None:
+        """Step what was posted so far, end, and wait for the end; idempotent."""
+        self._end()
+        if self._thread.ident is not None and self._thread is not threading.current_thread():
+            self._thread.join()
+
+    def turn(self) -> None:
+        """One step with everything that waits; `start` calls it, tests may."""
+        with self._awake:
+            events = tuple(self._inbox)
+            self._inbox.clear()
+        now = self._clock()
+        with self._between_steps:
+            messages = self._machine.step(now, events)
+        if self._on_step is not None:
+            self._on_step(now, events, messages)
+        for message in messages:
+            self._deliver(message)
+
+    def _deliver(self, message: Message) -> None:
+        try:
+            self._send(message)
+        except Exception as error:  # noqa: BLE001 - whatever the port raises, its message is the one that failed
+            self._on_send_error(message, error)
+
+    def _run(self) -> None:
+        try:
+            while self._sleep():
+                self.turn()
+        except Exception as error:  # noqa: BLE001 - handed over whole
+            self._end()
+            self._on_crash(self.name, error)
+
+    def _sleep(self) -> bool:
+        """Whether there is something to step; False at the end."""
+        with self._awake:
+            while not self._inbox and not self._ending:
+                deadline = self._machine.next_deadline
+                timeout = None if deadline is None else deadline - self._clock()
+                if timeout is not None and timeout <= 0:
+                    return True
+                self._wait(self._awake, timeout)
+            return bool(self._inbox)
+
+    def _end(self) -> None:
+        with self._awake:
+            self._ending = True
+            self._awake.notify()

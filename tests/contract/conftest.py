@@ -1,0 +1,214 @@
+"""Real brokers on free ports, and clients whose events can be waited for."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters.broker import EmbeddedBroker
+from arboleda.adapters.mqtt import Address, MqttClient
+from arboleda.wire.transport import Connection, Delivery
+
+PATIENCE_S = 8.0
+
+
+class Inbox(list):
+    """A list of events that another thread fills."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+
+    def put(self, event: Any) -> None:
+        with self._changed:
+            self.append(event)
+            self._changed.notify_all()
+
+    def wait(self, arrived: Callable[[Inbox], Any], timeout: float = PATIENCE_S) -> Any:
+        """The first true value of `arrived(inbox)`."""
+        with self._changed:
+            if not self._changed.wait_for(lambda: arrived(self), timeout):
+                pytest.fail(f"not within {timeout} s; so far: {list(self)}")
+            return arrived(self)
+
+    @property
+    def deliveries(self) -> list[Delivery]:
+        return [event for event in self if isinstance(event, Delivery)]
+
+    @property
+    def payloads(self) -> list[bytes]:
+        return [delivery.payload for delivery in self.deliveries]
+
+    @property
+    def links(self) -> list[bool]:
+        return [event.up for event in self if isinstance(event, Connection)]
+
+
+class Peer:
+    """An MqttClient with its inbox."""
+
+    def __init__(self, client_id: str, address: Address, **options: Any) -> None:
+        self.address = address
+        self.inbox = Inbox()
+        self.client = MqttClient(client_id, address, on_event=self.inbox.put, **options)
+        self.client.start()
+
+    def up(self) -> Peer:
+        self.inbox.wait(lambda inbox: inbox.links[-1:] == [True])
+        return self
+
+
+class RawPeer:
+    """An MQTT 3.1.1 client of a few bytes, which can break off without a word."""
+
+    def __init__(
+        self,
+        address: Address,
+        client_id: str,
+        *,
+        will: tuple[str, bytes] | None = None,
+        login: tuple[str, str] | None = None,
+        keepalive: int = 0,
+    ) -> None:
+        flags, rest = 0x02, text(client_id)
+        if will is not None:
+            flags |= 0x2C  # will, QoS 1, retained
+            rest += text(will[0]) + text(will[1])
+        if login is not None:
+            flags |= 0xC0
+            rest += text(login[0]) + text(login[1])
+        self.socket = socket.create_connection((address.host, address.port), timeout=PATIENCE_S)
+        self._send(0x10, text("MQTT") + bytes((4, flags)) + struct.pack("!H", keepalive) + rest)
+        self.answer = self.socket.recv(4)[3:]  # b"\0": accepted
+
+    def _send(self, kind: int, body: bytes) -> None:
+        assert len(body) < 128
+        self.socket.sendall(bytes((kind, len(body))) + body)
+
+    def publish(self, topic: str, payload: bytes, *, retain: bool = False) -> None:
+        """QoS 0."""
+        self._send(0x31 if retain else 0x30, text(topic) + payload)
+
+    def close(self) -> None:
+        """Break off without DISCONNECT."""
+        self.socket.close()
+
+
+def text(value: str | bytes) -> bytes:
+    raw = value.encode() if isinstance(value, str) else value
+    return struct.pack("!H", len(raw)) + raw
+
+
+class Mosquitto:
+    """The Debian package's broker on a port that survives a restart."""
+
+    def __init__(self, program: str, port: int, folder: Path, *options: str) -> None:
+        self.address = Address(host="127.0.0.1", port=port)
+        self._config = folder / "mosquitto.conf"
+        lines = (
+            "set_tcp_nodelay true",
+            f"listener {port} 127.0.0.1",
+            *(options or ("allow_anonymous true",)),
+        )
+        self._config.write_text("\n".join(lines) + "\n")
+        self._program = program
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        self._process = subprocess.Popen(
+            [self._program, "-c", str(self._config)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        end = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                socket.create_connection((self.address.host, self.address.port), timeout=1).close()
+            except ConnectionRefusedError:
+                assert time.monotonic() < end, "mosquitto does not listen"
+                time.sleep(0.02)
+            else:
+                return
+
+    def stop(self) -> None:
+        if self._process is not None:
+            self._process.terminate()
+            self._process.wait(PATIENCE_S)
+            self._process = None
+
+
+class Embedded:
+    """The plant's own broker, handled as Mosquitto is."""
+
+    def __init__(self, port: int) -> None:
+        self.address = Address(host="127.0.0.1", port=port)
+        self._broker = EmbeddedBroker(port=port)
+
+    def start(self) -> None:
+        self._broker.start()
+
+    def stop(self) -> None:
+        self._broker.stop()
+
+
+@pytest.fixture
+def mosquitto(
+    require: Callable[[str], str], free_port: int, tmp_path: Path
+) -> Iterator[Callable[..., Mosquitto]]:
+    """Makes a mosquitto, not yet started; further lines of its configuration as arguments."""
+    made: list[Mosquitto] = []
+
+    def make(*options: str) -> Mosquitto:
+        made.append(Mosquitto(require("mosquitto"), free_port, tmp_path, *options))
+        return made[-1]
+
+    yield make
+    for broker in made:
+        broker.stop()
+
+
+@pytest.fixture(params=["embedded", "mosquitto"])
+def stopped_broker(request: pytest.FixtureRequest, free_port: int) -> Iterator[Embedded | Mosquitto]:
+    """Each kind of broker, not yet started."""
+    broker = Embedded(free_port) if request.param == "embedded" else request.getfixturevalue("mosquitto")()
+    yield broker
+    broker.stop()
+
+
+@pytest.fixture
+def broker(stopped_broker: Embedded | Mosquitto) -> Embedded | Mosquitto:
+    stopped_broker.start()
+    return stopped_broker
+
+
+@pytest.fixture
+def peer() -> Iterator[Callable[..., Peer]]:
+    """Makes Peers and closes them."""
+    made: list[Peer] = []
+
+    def make(client_id: str, address: Address, **options: Any) -> Peer:
+        made.append(Peer(client_id, address, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.client.close()
+
+
+@pytest.fixture
+def raw_peer() -> Iterator[Callable[..., RawPeer]]:
+    """Makes RawPeers and breaks them off."""
+    made: list[RawPeer] = []
+
+    def make(*args: Any, **options: Any) -> RawPeer:
+        made.append(RawPeer(*args, **options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()

@@ -1,0 +1,233 @@
+"""The MQTT client against each kind of broker."""
+
+from __future__ import annotations
+
+import statistics
+import time
+
+import pytest
+from paho.mqtt.client import Client
+from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
+
+from arboleda.adapters.mqtt import Credentials, NotConnected
+from arboleda.wire.transport import Publication
+
+GOALS, STATE, PRESENCE = "ra_1/juntas", "ra_1/sensores", "ra_1/conexion"
+
+
+def message(payload: bytes, topic: str = GOALS, **options) -> Publication:
+    return Publication(topic=topic, payload=payload, **options)
+
+
+def lines(caplog) -> list[str]:
+    return [record.getMessage() for record in caplog.records if record.name == "arboleda.adapters.mqtt"]
+
+
+def test_a_subscriber_hears_what_is_published_after_it_is_up(broker, peer):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    bridge = peer("bridge", broker.address).up()
+
+    bridge.client.publish(message(b"goal"))
+
+    heard = board.inbox.wait(lambda inbox: inbox.deliveries)[0]
+    assert (heard.topic, heard.payload, heard.retain) == (GOALS, b"goal", False)
+    assert heard.at == pytest.approx(time.monotonic(), abs=5)
+
+
+def test_a_retained_message_is_flagged_for_a_newcomer_only(broker, peer):
+    early = peer("early", broker.address, subscriptions=[PRESENCE]).up()
+    early.client.publish(message(b"1", PRESENCE, retain=True))
+    early.inbox.wait(lambda inbox: inbox.deliveries)
+
+    late = peer("late", broker.address, subscriptions=[PRESENCE])
+
+    assert late.inbox.wait(lambda inbox: inbox.deliveries)[0].retain is True
+    assert late.inbox.links == [True]
+    assert early.inbox.deliveries[0].retain is False
+
+
+def test_messages_arrive_in_order_at_every_quality(broker, peer):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    bridge = peer("bridge", broker.address).up()
+    sent = [b"%d" % n for n in range(90)]
+
+    for payload in sent:
+        bridge.client.publish(message(payload))
+    board.inbox.wait(lambda inbox: len(inbox.deliveries) == len(sent))
+    for payload in sent:
+        bridge.client.publish(message(payload, qos=0))
+    board.inbox.wait(lambda inbox: len(inbox.deliveries) == 2 * len(sent))
+
+    assert board.inbox.payloads == sent + sent
+
+
+def test_answers_are_not_held_back_by_the_sockets(broker, peer):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    bridge = peer("bridge", broker.address, subscriptions=[STATE]).up()
+    took = []
+
+    for n in range(1, 61):
+        began = time.monotonic()
+        bridge.client.publish(message(b"goal"))
+        board.inbox.wait(lambda inbox, n=n: len(inbox.deliveries) == n)
+        board.client.publish(message(b"moving", STATE, qos=0))
+        board.client.publish(message(b"stopped", STATE, qos=0))
+        bridge.inbox.wait(lambda inbox, n=n: len(inbox.deliveries) == 2 * n)
+        took.append(time.monotonic() - began)
+
+    assert statistics.median(took) < 0.030  # without TCP_NODELAY an answer waits 40 ms for an acknowledgment
+
+
+def test_an_oversized_payload_is_for_the_codec_to_refuse(broker, peer):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    board.client.publish(message(b"x" * 5000))
+    assert len(board.inbox.wait(lambda inbox: inbox.payloads)[0]) == 5000
+
+
+def test_what_is_published_without_a_broker_is_refused_and_never_sent(stopped_broker, peer):
+    board = peer("ra_1", stopped_broker.address, subscriptions=[GOALS])
+    bridge = peer("bridge", stopped_broker.address)
+    with pytest.raises(NotConnected, match="is not connected"):
+        bridge.client.publish(message(b"old"))
+
+    stopped_broker.start()
+    board.up()
+    bridge.up().client.publish(message(b"new"))
+
+    assert board.inbox.wait(lambda inbox: inbox.payloads) == [b"new"]
+
+
+def test_after_a_restart_of_the_broker_it_subscribes_again_and_replays_nothing(broker, peer):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    bridge = peer("bridge", broker.address).up()
+    bridge.client.publish(message(b"before"))
+    board.inbox.wait(lambda inbox: inbox.deliveries)
+
+    broker.stop()
+    for one in (board, bridge):
+        one.inbox.wait(lambda inbox: inbox.links == [True, False])
+    with pytest.raises(NotConnected):
+        bridge.client.publish(message(b"between"))
+    broker.start()
+    for one in (board, bridge):
+        one.inbox.wait(lambda inbox: inbox.links == [True, False, True])
+    bridge.client.publish(message(b"after"))
+
+    assert board.inbox.wait(lambda inbox: len(inbox.payloads) == 2 and inbox.payloads) == [
+        b"before",
+        b"after",
+    ]
+
+
+def test_an_outage_is_told_once_and_so_is_its_end(stopped_broker, peer, caplog):
+    bridge = peer("bridge", stopped_broker.address)
+    quiet = peer("ra_1", stopped_broker.address, announce=False)
+    time.sleep(1.0)  # several attempts
+    stopped_broker.start()
+    bridge.up()
+    quiet.up()
+
+    where = f"The MQTT broker at {stopped_broker.address} is"
+    missing, back = lines(caplog)
+    assert missing.startswith(f"{where} not there (")
+    assert "refused" in missing
+    assert back == f"{where} there."
+
+
+def test_nothing_is_told_when_all_is_well(broker, peer, caplog):
+    bridge = peer("bridge", broker.address).up()
+    bridge.client.close()
+    assert lines(caplog) == []
+
+
+def test_closing_leaves_no_last_will_and_loses_nothing(broker, peer):
+    will = message(b"lost", PRESENCE, retain=True)
+    watcher = peer("watcher", broker.address, subscriptions=[PRESENCE, GOALS]).up()
+    board = peer("ra_1", broker.address, will=will).up()
+
+    for n in range(20):
+        board.client.publish(message(b"%d" % n))
+    board.client.publish(message(b"left", PRESENCE, retain=True))
+    board.client.close()
+    watcher.client.publish(message(b"end"))
+
+    heard = watcher.inbox.wait(lambda inbox: b"end" in inbox.payloads and inbox.payloads)
+    assert heard == [*(b"%d" % n for n in range(20)), b"left", b"end"]
+    assert board.inbox.links == [True, False]
+    with pytest.raises(NotConnected):
+        board.client.publish(message(b"late"))
+    board.client.close()
+
+
+def test_a_broken_connection_leaves_the_last_will_retained(broker, peer, raw_peer):
+    watcher = peer("watcher", broker.address, subscriptions=[PRESENCE]).up()
+    raw_peer(broker.address, "ra_1", will=(PRESENCE, b"0")).close()
+    assert watcher.inbox.wait(lambda inbox: inbox.payloads) == [b"0"]
+
+    late = peer("late", broker.address, subscriptions=[PRESENCE])
+    assert late.inbox.wait(lambda inbox: inbox.deliveries)[0].retain is True
+
+
+def test_a_newer_connection_of_the_same_board_has_the_last_word(broker, peer, raw_peer):
+    watcher = peer("watcher", broker.address, subscriptions=[PRESENCE]).up()
+    older = raw_peer(broker.address, "ra_1", will=(PRESENCE, b"0"))
+    older.publish(PRESENCE, b"1", retain=True)
+    watcher.inbox.wait(lambda inbox: inbox.payloads == [b"1"])
+
+    newer = raw_peer(broker.address, "ra_1", will=(PRESENCE, b"0"))
+    newer.publish(PRESENCE, b"1", retain=True)
+
+    assert older.socket.recv(1) == b""
+    watcher.inbox.wait(lambda inbox: inbox.payloads[:3] == [b"1", b"0", b"1"])
+    late = peer("late", broker.address, subscriptions=[PRESENCE])
+    assert late.inbox.wait(lambda inbox: inbox.payloads) == [b"1"]
+
+
+def test_it_can_be_closed_while_there_is_no_broker(stopped_broker, peer):
+    waiting = peer("bridge", stopped_broker.address)
+    began = time.monotonic()
+    waiting.client.close()
+    assert time.monotonic() - began < 2
+
+
+def test_a_refused_login_is_one_sentence(mosquitto, peer, caplog):
+    strict = mosquitto("allow_anonymous false")
+    strict.start()
+    peer("bridge", strict.address)
+    peer("ra_1", strict.address, credentials=Credentials(user="ra_1", password="wrong"))
+    time.sleep(1.0)
+
+    told = sorted(lines(caplog))
+    where = f"The MQTT broker at {strict.address} refused"
+    assert told == [
+        f"{where} a client without user name over MQTT 3.1.1: Not authorized; trying again.",
+        f"{where} user 'ra_1' over MQTT 3.1.1: Not authorized; trying again.",
+    ]
+
+
+def test_mqtt_5_lets_commands_expire_after_a_second(mosquitto, peer):
+    broker = mosquitto()
+    broker.start()
+    expiries = {}
+
+    def note(_client, _userdata, heard):
+        expiries[heard.payload] = getattr(heard.properties, "MessageExpiryInterval", None)
+
+    listener = Client(CallbackAPIVersion.VERSION2, protocol=MQTTProtocolVersion.MQTTv5)
+    listener.on_message = note
+    listener.connect(broker.address.host, broker.address.port)
+    listener.subscribe("#", 1)
+    listener.loop_start()
+    bridge = peer("bridge", broker.address, subscriptions=[GOALS], version=5).up()
+    try:
+        bridge.client.publish(message(b"goal"))
+        bridge.client.publish(message(b"1", PRESENCE, retain=True))
+        bridge.client.publish(message(b"beat", "ra_1/latido", qos=0))
+        deadline = time.monotonic() + 5
+        while len(expiries) < 3 and time.monotonic() < deadline:
+            time.sleep(0.01)
+    finally:
+        listener.disconnect()
+        listener.loop_stop()
+
+    assert expiries == {b"goal": 1, b"1": None, b"beat": None}

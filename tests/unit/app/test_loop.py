@@ -1,0 +1,256 @@
+"""The loop steps once per waking with everything that waits; time is moved by hand."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from arboleda.app.loop import Loop
+from arboleda.core.errors import ArboledaError
+
+
+class Echo:
+    """Answers each event with itself; `alarm` is its next deadline, which it answers once."""
+
+    def __init__(self) -> None:
+        self.steps: list[tuple[float, tuple]] = []
+        self.alarm: float | None = None
+
+    @property
+    def next_deadline(self) -> float | None:
+        return self.alarm
+
+    def step(self, now, events):
+        self.steps.append((now, tuple(events)))
+        rings = self.alarm is not None and now >= self.alarm
+        if rings:
+            self.alarm = None
+        if "crash" in events:
+            raise ZeroDivisionError("by design")
+        return [*events, *(["ring"] if rings else [])]
+
+
+class Clock:
+    """Stands still until it is moved; counts who looks."""
+
+    def __init__(self) -> None:
+        self.now = 10.0
+        self.looks = 0
+
+    def __call__(self) -> float:
+        self.looks += 1
+        return self.now
+
+
+class Sent(list):
+    """What the loop sent, which a test can wait for."""
+
+    def __init__(self) -> None:
+        self._more = threading.Condition()
+
+    def put(self, message) -> None:
+        with self._more:
+            self.append(message)
+            self._more.notify_all()
+
+    def wait(self, *messages) -> None:
+        with self._more:
+            assert self._more.wait_for(lambda: self == list(messages), timeout=5), self
+
+
+@pytest.fixture
+def machine():
+    return Echo()
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+@pytest.fixture
+def sent():
+    return Sent()
+
+
+@pytest.fixture
+def make(machine, clock, sent):
+    """Makes loops and stops them."""
+    made = []
+
+    def make_one(**options):
+        made.append(Loop("echo", machine, options.pop("send", sent.put), **{"clock": clock, **options}))
+        return made[-1]
+
+    yield make_one
+    for loop in made:
+        loop.stop()
+
+
+def test_one_step_takes_everything_that_waits_at_one_time(make, machine, clock, sent):
+    loop = make()
+    loop.post("a")
+    loop.post("b")
+    loop.turn()
+    assert machine.steps == [(10.0, ("a", "b"))]
+    assert clock.looks == 1
+    assert sent == ["a", "b"]
+
+
+def test_an_event_wakes_it(make, sent):
+    loop = make()
+    loop.start()
+    loop.post("a")
+    sent.wait("a")
+    loop.post("b")
+    sent.wait("a", "b")
+
+
+def test_a_deadline_wakes_it_and_it_sleeps_no_longer_than_that(make, machine, clock, sent):
+    asked = []
+
+    def wait(condition, timeout):
+        asked.append(timeout)
+        if timeout is None:
+            condition.wait()
+        else:
+            clock.now += timeout
+
+    machine.alarm = 12.5
+    make(wait=wait).start()
+    sent.wait("ring")
+    assert asked[0] == 2.5
+    assert machine.steps == [(12.5, ())]
+
+
+def test_waking_early_steps_nothing(make, machine, clock, sent):
+    def wait(condition, timeout):
+        if timeout is None:
+            condition.wait()
+        else:
+            clock.now += 1.0
+
+    machine.alarm = 13.0
+    make(wait=wait).start()
+    sent.wait("ring")
+    assert machine.steps == [(13.0, ())]
+
+
+def test_a_deadline_that_has_passed_needs_no_sleep(make, machine, sent):
+    machine.alarm = 1.0
+    make().start()
+    sent.wait("ring")
+
+
+def test_stopping_steps_what_was_posted_and_no_more(make, machine, sent):
+    loop = make()
+    loop.post("a")
+    loop.start()
+    loop.stop()
+    loop.stop()
+    loop.post("late")
+    loop.turn()
+    assert "a" in sent
+    assert "late" not in sent
+
+
+def test_it_can_be_stopped_before_it_was_started(make):
+    make().stop()
+
+
+def test_a_message_that_cannot_be_sent_is_handed_back_and_the_rest_goes_on(make, sent):
+    failed = []
+
+    def send(message):
+        if message == "bad":
+            raise ArboledaError("no link")
+        sent.put(message)
+
+    loop = make(send=send, on_send_error=lambda message, error: failed.append((message, str(error))))
+    loop.start()
+    for message in ("bad", "good"):
+        loop.post(message)
+    sent.wait("good")
+    assert failed == [("bad", "no link")]
+
+
+def test_without_a_handler_an_unsent_message_is_logged(make, caplog):
+    def send(_message):
+        raise ArboledaError("no link")
+
+    loop = make(send=send)
+    loop.post("a")
+    loop.turn()
+    assert caplog.messages == ["a was not sent: no link"]
+
+
+def test_a_crash_ends_the_loop_and_is_handed_over(make, machine):
+    crashes, crashed = [], threading.Event()
+
+    def on_crash(name, error):
+        crashes.append((name, error))
+        loop.stop()  # from its own thread: must not wait for itself
+        crashed.set()
+
+    loop = make(on_crash=on_crash)
+    loop.start()
+    loop.post("crash")
+    assert crashed.wait(5)
+    loop.post("after")
+    loop.stop()
+    ((name, error),) = crashes
+    assert name == "echo"
+    assert isinstance(error, ZeroDivisionError)
+    assert [events for _now, events in machine.steps] == [("crash",)]
+    assert loop.read(lambda echo: echo.alarm) is None
+
+
+def test_without_a_handler_a_crash_is_one_line(make, caplog):
+    loop = make()
+    loop.post("crash")
+    loop.start()
+    loop.stop()
+    assert caplog.messages == ["echo has stopped on an internal error: ZeroDivisionError('by design')"]
+
+
+def test_an_observer_sees_every_step(make):
+    seen = []
+    loop = make(on_step=lambda *step: seen.append(step))
+    loop.post("a")
+    loop.turn()
+    assert seen == [(10.0, ("a",), ["a"])]
+
+
+def test_reading_happens_between_two_steps(make, machine, sent):
+    loop = make()
+    loop.start()
+    inside, leave = threading.Event(), threading.Event()
+
+    def look(echo):
+        inside.set()
+        leave.wait(5)
+        return len(echo.steps)
+
+    result = []
+    reader = threading.Thread(target=lambda: result.append(loop.read(look)))
+    reader.start()
+    assert inside.wait(5)
+    loop.post("a")
+    assert machine.steps == []
+    leave.set()
+    reader.join()
+    sent.wait("a")
+    assert result == [0]
+
+
+def test_a_sender_may_read_and_post(make, sent):
+    def send(message):
+        sent.put((message, loop.read(lambda echo: len(echo.steps))))
+        if message == "a":
+            loop.post("b")
+
+    loop = make(send=send)
+    loop.start()
+    loop.post("a")
+    sent.wait(("a", 1), ("b", 2))

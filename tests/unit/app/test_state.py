@@ -1,0 +1,102 @@
+"""The state directory has one owner."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import state
+from arboleda.app.state import StateDir, default_state, find_running
+from arboleda.core.errors import StartError
+
+
+@pytest.fixture(autouse=True)
+def _no_pause(monkeypatch):
+    monkeypatch.setattr(state, "LOCK_PAUSE_S", 0)
+
+
+def test_the_owner_is_found_as_long_as_it_lives(tmp_path):
+    path = tmp_path / "a" / "demo"
+    assert find_running(path) is None
+    with StateDir(path) as owner:
+        assert find_running(path).port is None
+        owner.announce(4321)
+        found = find_running(path)
+        assert (found.pid, found.port) == (os.getpid(), 4321)
+        assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\+00:00", found.started)
+    assert find_running(path) is None
+    assert [file.name for file in path.iterdir()] == ["plant.lock"]
+
+
+def test_a_second_owner_is_told_who_the_first_is(tmp_path):
+    with StateDir(tmp_path), pytest.raises(StartError) as refused:
+        StateDir(tmp_path).open()
+    assert re.fullmatch(
+        rf"A plant is already running on {tmp_path} \(process {os.getpid()}, since \S+\)\. "
+        r"Stop it first, or give this plant its own --state directory\.",
+        str(refused.value),
+    )
+    with StateDir(tmp_path):
+        pass
+
+
+def test_what_a_killed_plant_left_behind_is_no_plant(tmp_path):
+    leave = f"""
+import os
+from pathlib import Path
+from arboleda.app.state import StateDir
+state = StateDir(Path({str(tmp_path)!r}))
+state.open()
+state.announce(4321)
+os._exit(1)
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    assert subprocess.run([sys.executable, "-c", leave], env=environment, check=False).returncode == 1
+
+    assert (tmp_path / "plant.json").exists()
+    assert find_running(tmp_path) is None
+    with StateDir(tmp_path):
+        assert find_running(tmp_path).pid == os.getpid()
+        assert find_running(tmp_path).port is None
+
+
+def test_its_files_are_for_their_owner_only(tmp_path):
+    with StateDir(tmp_path / "new") as owner:
+        owner.announce(1)
+        modes = {file.name: stat.S_IMODE(file.stat().st_mode) for file in owner.path.iterdir()}
+        assert modes == {"plant.lock": 0o600, "plant.json": 0o600}
+        assert stat.S_IMODE(owner.path.stat().st_mode) == 0o700
+
+
+def test_closing_twice_leaves_the_next_owner_alone(tmp_path):
+    first, second = StateDir(tmp_path), StateDir(tmp_path)
+    first.open()
+    first.close()
+    second.open()
+    second.announce(7)
+    first.close()
+    assert find_running(tmp_path).port == 7
+    second.close()
+
+
+def test_a_place_that_cannot_be_used_is_one_sentence(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StartError, match="cannot be used: Not a directory"):
+        StateDir(tmp_path / "file" / "demo").open()
+
+
+@pytest.mark.parametrize(
+    ("base", "expected"), [("/var/x", "/var/x/arboleda/demo"), ("", "~"), ("relative", "~"), (None, "~")]
+)
+def test_the_default_place(monkeypatch, base, expected):
+    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
+    monkeypatch.setenv("HOME", "/home/ana")
+    if base is not None:
+        monkeypatch.setenv("XDG_STATE_HOME", base)
+    assert default_state("demo") == Path(expected.replace("~", "/home/ana/.local/state/arboleda/demo"))
