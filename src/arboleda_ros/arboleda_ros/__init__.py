@@ -1,0 +1,1 @@
+"""The ROS 2 side of Arboleda: everything that imports rclpy."""

@@ -1,0 +1,125 @@
+"""The entry point `arboleda.links: ros`: one rclpy context, one thread, the nodes of the parts."""
+
+from __future__ import annotations
+
+import atexit
+import io
+import logging
+import os
+import threading
+from collections.abc import Callable, MutableMapping, Sequence
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+
+from arboleda.core.errors import StartError
+from arboleda.core.messages import Event
+from arboleda.core.model import PlantModel
+from arboleda.wire.bridge import FromPlant
+
+from .bridge import BridgePort
+from .orchestrator import OrchestratorPort
+
+LOG = logging.getLogger("arboleda.ros")
+
+_SPIN_S = 1.0
+
+
+def connect(*, args: Sequence[str] = (), lan: bool = False) -> Link:
+    """Join ROS 2; `args` may hold `--ros-args`, `lan` lets other machines in. StartError if it cannot."""
+    note = limit_discovery(os.environ, lan=lan)
+    context = Context()
+    try:
+        context.init(args=list(args))
+    except Exception as error:
+        raise StartError(f"ROS 2 does not start: {error}") from error
+    return Link(context, notes=(note,) if note else ())
+
+
+def limit_discovery(environ: MutableMapping[str, str], *, lan: bool) -> str | None:
+    """Keep ROS 2 on this machine unless `lan` or the user's environment decides; the line that says so."""
+    if lan or "ROS_AUTOMATIC_DISCOVERY_RANGE" in environ or "ROS_LOCALHOST_ONLY" in environ:
+        return None
+    humble = environ.get("ROS_DISTRO") == "humble"
+    name, value = ("ROS_LOCALHOST_ONLY", "1") if humble else ("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    environ[name] = value
+    return f"ROS 2 stays on this machine ({name}={value}); to open it, set {name} yourself or use --ros-lan"
+
+
+class Link:
+    """The ROS 2 side of the parts in this process. Make the ports, `start`, and `close` at the end."""
+
+    def __init__(self, context: Context, *, notes: tuple[str, ...] = ()) -> None:
+        self.notes = notes
+        self._context = context
+        self._executor = _executor(context)
+        self._nodes: dict[str, Node] = {}
+        self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
+        self._closing = False
+        atexit.register(self.close)  # a thread still in rclpy aborts the process at its exit
+
+    def node(self, name: str) -> Node:
+        """The node of that name, made at the first call; before `start` only."""
+        if name not in self._nodes:
+            self._nodes[name] = Node(name, context=self._context)
+        return self._nodes[name]
+
+    def orchestrator(
+        self, model: PlantModel, on_event: Callable[[Event], None], clock: Callable[[], float]
+    ) -> OrchestratorPort:
+        """The plant's port; nothing arrives before `start`."""
+        return OrchestratorPort(self.node("orchestrator"), model, on_event, clock)
+
+    def bridge(
+        self, model: PlantModel, on_event: Callable[[FromPlant], None], clock: Callable[[], float]
+    ) -> BridgePort:
+        """The bridge's port; nothing arrives before `start`."""
+        return BridgePort(self.node("mqtt_bridge"), model, on_event, clock)
+
+    def start(self) -> None:
+        """Begin to deliver; a second call does nothing."""
+        if self._thread.ident is None:
+            for node in self._nodes.values():
+                self._executor.add_node(node)
+            self._thread.start()
+
+    def close(self) -> None:
+        """Stop delivering, join the thread and leave ROS 2; a second call does nothing."""
+        if self._closing:
+            return
+        self._closing = True
+        atexit.unregister(self.close)
+        if self._thread.is_alive():
+            self._executor.create_task(_nothing)  # ends the spin_once that waits; wake() does not
+            self._thread.join()
+        self._executor.shutdown()
+        for node in self._nodes.values():
+            node.destroy_node()
+        self._context.try_shutdown()
+
+    def _spin(self) -> None:
+        # EventsExecutor.spin() of the wheels delivers nothing, spin_once does
+        while not self._closing and self._context.ok():
+            try:
+                self._executor.spin_once(timeout_sec=_SPIN_S)
+            except ExternalShutdownException:
+                return
+            except Exception:  # the guarded handlers do not raise, rclpy's own services may
+                LOG.exception("a callback of rclpy failed")
+
+
+def _nothing() -> None:
+    """A task that only wakes the executor."""
+
+
+def _executor(context: Context) -> Executor | Any:
+    """EventsExecutor where there is one: a fifth of the processor time per message."""
+    try:
+        from rclpy.experimental import EventsExecutor
+
+        return EventsExecutor(context=context)
+    except (ImportError, io.UnsupportedOperation, RuntimeError):
+        # Humble has none; and it turns faulthandler on, which needs a stderr with a file number
+        return SingleThreadedExecutor(context=context)

@@ -1,0 +1,132 @@
+"""The plant's side of ROS 2: commands and notices out, reports and task requests in."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, String, UInt8, UInt32
+
+from arboleda.core.errors import ArboledaError, PayloadError
+from arboleda.core.messages import (
+    Command,
+    Event,
+    Heartbeat,
+    Notice,
+    Report,
+    SystemStart,
+    TaskChanged,
+    TaskRequest,
+)
+from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+
+from . import convert, qos, statuses
+from .port import Port
+
+Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
+
+
+class NoBridge(ArboledaError):
+    """A command was not published; it will not be sent later."""
+
+
+class OrchestratorPort(Port):
+    """Node `orchestrator`: `on_event` gets every core event, on the link's thread."""
+
+    def __init__(
+        self, node: Node, model: PlantModel, on_event: Callable[[Event], None], clock: Callable[[], float]
+    ) -> None:
+        super().__init__(node, clock)
+        self._robots = model.robots
+        self._on_event = on_event
+        self._commands = {
+            (robot.name, kind): self._speak(
+                convert.message_type(kind), f"{robot.name}/{topic}", qos.COMMAND, alone=True
+            )
+            for robot in model.robots.values()
+            for kind in convert.commands_of(robot)
+            for topic in (convert.COMMAND_TOPICS[kind],)
+        }
+        self._heartbeat = self._speak(UInt32, "plant/heartbeat", qos.COMMAND, alone=True)
+        self._start = self._speak(UInt8, "system/start", qos.COMMAND)
+        self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
+        self._view = self._speak(String, "plant/view", qos.VIEW)
+        self._listen(String, "task_request", self._on_request, qos.COMMAND)
+        for robot in model.robots.values():
+            self._hear(robot)
+
+    def send(self, message: Command | Notice) -> None:
+        """Publish one output of the plant; NoBridge where a command for MQTT would reach nobody."""
+        if isinstance(message, Heartbeat):
+            self._heartbeat.publish(UInt32(data=message.epoch))
+        elif isinstance(message, SystemStart):
+            self._start.publish(UInt8(data=1))
+        elif isinstance(message, TaskChanged):
+            self._task_status.publish(String(data=_task_line(message)))
+        else:
+            self._command(message)
+
+    def publish_view(self, view: Mapping[str, Any]) -> None:
+        """Publish the snapshot; plain data that JSON can carry."""
+        self._view.publish(String(data=json.dumps(view, ensure_ascii=False)))
+
+    def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> None:
+        """Publish one status per robot and cell; the port's own status goes out by itself."""
+        self._publish_diagnostics([statuses.diagnostic(*each) for each in plain])
+
+    def _command(self, command: Command) -> None:
+        publisher = self._commands[command.robot, type(command)]
+        bridged = self._robots[command.robot].link is Link.MQTT
+        if bridged and publisher.get_subscription_count() == 0:
+            raise NoBridge(f"no bridge listens to {publisher.topic_name}")
+        publisher.publish(convert.command_message(command))
+
+    def _hear(self, robot: Robot) -> None:
+        """Subscribe to what a robot's link and evidence let it say."""
+        if isinstance(robot, Arm):
+            self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
+        if robot.link is Link.MQTT or robot.evidence is Evidence.IDS:
+            on_status = self._reporting(statuses.report_of, robot)
+            self._listen(DiagnosticStatus, f"{robot.name}/status", on_status, qos.COMMAND)
+            return
+        on_state = self._reporting(convert.state_report, robot)
+        self._listen(UInt8, f"{robot.name}/motion_state", on_state, qos.COMMAND)
+        if robot.evidence is Evidence.JOINTS:
+            on_joints = self._reporting(convert.joints_report, robot)
+            self._listen(JointState, convert.joint_states_topic(robot), on_joints, qos.SENSOR)
+        if isinstance(robot, Arm):
+            on_piece = self._reporting(_piece_report, robot)
+            self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR)
+
+    def _reporting(self, read: Callable[[float, Any, Any], Report], robot: Robot) -> Callable[[Any], None]:
+        return lambda message: self._on_event(read(self._clock(), robot, message))
+
+    def _on_request(self, message: String) -> None:
+        self._on_event(TaskRequest(at=self._clock(), text=message.data))
+
+    def _on_trigger(self, arm: Arm, message: UInt8) -> None:
+        if message.data > 1:
+            raise PayloadError(f"the value {message.data} means nothing; allowed: 1 to start, 0")
+        if message.data:
+            self._on_event(TaskRequest(at=self._clock(), text=f"{arm.name} palletizing"))
+
+
+def _piece_report(at: float, robot: Robot, message: Bool) -> Report:
+    return Report(at=at, robot=robot.name, piece=message.data)
+
+
+def _task_line(change: TaskChanged) -> str:
+    line = {
+        "id": change.task,
+        "text": change.text,
+        "cell": change.cell,
+        "state": change.state.value,
+        "reason": change.reason.value if change.reason else None,
+        "sentence": change.sentence,
+    }
+    return json.dumps(line, ensure_ascii=False)

@@ -1,0 +1,164 @@
+"""What the ROS 2 ports share: guarded handlers, one sentence per bad message, and their health."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+
+from arboleda.core.errors import PayloadError, StartError
+from arboleda.wire.status import ERROR, OK, WARN
+
+from . import qos, statuses
+
+LOG = logging.getLogger("arboleda.ros")
+
+_REPEAT_S = 5.0  # the same sentence about the same topic is logged at most this often
+_REMEMBERED = 200  # sentences; a stranger must not fill the memory
+_POLL_S = 0.02
+_DIAGNOSTICS_S = 1.0
+# Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
+_DISCOVERY_S = 3.2
+_UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
+
+
+@dataclass(frozen=True, kw_only=True)
+class PortHealth:
+    """What `/diagnostics` says about a port: sentences to warn of, errors, and counts since the start."""
+
+    warnings: tuple[str, ...]
+    errors: tuple[str, ...]
+    refused: int
+    failures: int
+
+
+class Port:
+    """One node's topics. Names are relative; no message and no handler ends the executor."""
+
+    def __init__(self, node: Node, clock: Callable[[], float]) -> None:
+        self._node = node
+        self._clock = clock
+        self._mine: list[str] = []
+        self._refused = 0
+        self._failures = 0
+        self._warnings: dict[str, None] = {}
+        self._logged: dict[tuple[str, str], float] = {}
+        self._born = time.monotonic()
+        self._diagnostics = self._speak(DiagnosticArray, "diagnostics", qos.COMMAND)
+        node.create_timer(_DIAGNOSTICS_S, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def foreign_publishers(self) -> list[tuple[str, str]]:
+        """(topic, node name) of every other publisher on a topic that this port must have to itself."""
+        return [(self._absolute(topic), name) for topic in self._mine for name in self._others(topic)]
+
+    def check_alone(self, wait_s: float = _DISCOVERY_S) -> None:
+        """Raise StartError as soon as discovery names another publisher.
+
+        Returns `wait_s` after the port was made; a shorter one than the default misses publishers
+        that were there before, about one in two.
+        """
+        until = self._born + wait_s
+        while not (found := _named(self.foreign_publishers())) and time.monotonic() < until:
+            time.sleep(_POLL_S)
+        for topic, name in found or self.foreign_publishers():
+            raise StartError(
+                f"another node already commands {topic}: {name}; stop it, "
+                "or give this plant a ROS_DOMAIN_ID of its own"
+            )
+
+    def health(self) -> PortHealth:
+        """The health now; a publisher that joined one of this port's own topics is logged once."""
+        errors = tuple(f"another node commands {topic}: {name}" for topic, name in self.foreign_publishers())
+        for sentence in errors:
+            self._log_once(sentence, logging.ERROR)
+        return PortHealth(
+            warnings=tuple(self._warnings), errors=errors, refused=self._refused, failures=self._failures
+        )
+
+    def _publish_diagnostics(self, status: list[DiagnosticStatus]) -> None:
+        message = DiagnosticArray(status=status)
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._diagnostics.publish(message)
+
+    def _tell_health(self) -> None:
+        health = self.health()
+        level = ERROR if health.errors else WARN if health.warnings or health.failures else OK
+        sentence = "; ".join(health.errors + health.warnings) or "ready"
+        counts = {"refused": str(health.refused), "failures": str(health.failures)}
+        name = f"arboleda: {self._node.get_name()} on ROS 2"
+        self._publish_diagnostics([statuses.diagnostic(name, "ros", level, sentence, counts)])
+
+    def _listen(self, kind: type, topic: str, handle: Callable[[Any], None], profile: QoSProfile) -> None:
+        events = qos.subscription_events(lambda policy: self._incompatible(topic, "publisher", policy))
+        self._node.create_subscription(
+            kind, topic, self._guarded(topic, handle), profile, event_callbacks=events
+        )
+
+    def _speak(self, kind: type, topic: str, profile: QoSProfile, *, alone: bool = False) -> Publisher:
+        """A publisher; `alone` where a second publisher of the topic is a fault."""
+        if alone:
+            self._mine.append(topic)
+        events = qos.publisher_events(lambda policy: self._incompatible(topic, "subscription", policy))
+        return self._node.create_publisher(kind, topic, profile, event_callbacks=events)
+
+    def _guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
+        def guarded(message: Any) -> None:
+            try:
+                handle(message)
+            except PayloadError as error:
+                self._refused += 1
+                self._log_seldom(topic, str(error))
+            except Exception:  # one broken handler must not silence the other topics
+                self._failures += 1
+                LOG.exception("the handler of %s failed", self._absolute(topic))
+
+        return guarded
+
+    def _log_seldom(self, topic: str, sentence: str) -> None:
+        now = self._clock()
+        if now - self._logged.get((topic, sentence), -_REPEAT_S) >= _REPEAT_S:
+            if len(self._logged) >= _REMEMBERED:
+                self._logged.clear()
+            self._logged[topic, sentence] = now
+            LOG.warning("refused a message on %s: %s", self._absolute(topic), sentence)
+
+    def _log_once(self, sentence: str, level: int) -> None:
+        if ("", sentence) not in self._logged:
+            self._logged["", sentence] = self._clock()
+            LOG.log(level, sentence)
+
+    def _incompatible(self, topic: str, what: str, policy: str) -> None:
+        sentence = (
+            f"a {what} of another node on {self._absolute(topic)} has an incompatible {policy}; "
+            "nothing passes between it and this plant"
+        )
+        self._warnings[sentence] = None
+        self._log_once(sentence, logging.WARNING)
+
+    def _others(self, topic: str) -> list[str]:
+        names = [_full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]
+        own = self._node.get_fully_qualified_name()
+        if own in names:  # once: a second node of the same name is another one
+            names.remove(own)
+        return names
+
+    def _absolute(self, topic: str) -> str:
+        return self._node.resolve_topic_name(topic)
+
+
+def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [(topic, name) for topic, name in publishers if name != _UNNAMED]
+
+
+def _full_name(info: Any) -> str:
+    if "_UNKNOWN_" in info.node_name:
+        return _UNNAMED
+    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"

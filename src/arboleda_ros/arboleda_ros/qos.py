@@ -1,0 +1,37 @@
+"""How the topics of Arboleda are delivered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_policy_name_from_kind
+
+try:
+    from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+except ImportError:  # Humble keeps them elsewhere
+    from rclpy.qos_event import PublisherEventCallbacks, SubscriptionEventCallbacks
+
+
+def _reliable(depth: int, durability: DurabilityPolicy) -> QoSProfile:
+    return QoSProfile(depth=depth, reliability=ReliabilityPolicy.RELIABLE, durability=durability)
+
+
+COMMAND = _reliable(10, DurabilityPolicy.VOLATILE)
+TASK_STATUS = _reliable(100, DurabilityPolicy.TRANSIENT_LOCAL)
+VIEW = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
+SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+
+
+def publisher_events(on_policy: Callable[[str], None]) -> PublisherEventCallbacks:
+    """Calls `on_policy` with the policy an incompatible subscription broke."""
+    return PublisherEventCallbacks(incompatible_qos=_naming(on_policy))
+
+
+def subscription_events(on_policy: Callable[[str], None]) -> SubscriptionEventCallbacks:
+    """Calls `on_policy` with the policy an incompatible publisher broke."""
+    return SubscriptionEventCallbacks(incompatible_qos=_naming(on_policy))
+
+
+def _naming(on_policy: Callable[[str], None]) -> Callable[[Any], None]:
+    return lambda event: on_policy(qos_policy_name_from_kind(event.last_policy_kind))

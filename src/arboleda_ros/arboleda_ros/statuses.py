@@ -1,0 +1,43 @@
+"""`/{robot}/status`: what the wire says of a report, as a DiagnosticStatus and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Report
+from arboleda.core.model import Robot
+from arboleda.wire.status import Status, from_status, to_status
+
+
+def diagnostic(
+    name: str, hardware_id: str, level: int, message: str, values: Mapping[str, str]
+) -> DiagnosticStatus:
+    """Plain data as ROS 2 carries it; levels 0 OK, 1 WARN, 2 ERROR, 3 STALE."""
+    pairs = [KeyValue(key=key, value=value) for key, value in values.items()]
+    return DiagnosticStatus(
+        level=bytes([level]), name=name, hardware_id=hardware_id, message=message, values=pairs
+    )
+
+
+def status_of(robot: Robot, report: Report) -> DiagnosticStatus:
+    """The message the bridge publishes for one report."""
+    plain = to_status(robot, report)
+    return diagnostic(plain.name, plain.hardware_id, plain.level, plain.message, plain.values)
+
+
+def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
+    """The report in a message that came in at `at`; PayloadError for one that the bridge does not send."""
+    values = {pair.key: pair.value for pair in message.values}
+    if len(values) < len(message.values):
+        raise PayloadError(f"a key comes twice in {', '.join(pair.key for pair in message.values)}")
+    plain = Status(
+        name=message.name,
+        hardware_id=message.hardware_id,
+        level=message.level[0],
+        message=message.message,
+        values=values,
+    )
+    return from_status(at, robot, plain)

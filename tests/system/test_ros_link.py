@@ -1,0 +1,478 @@
+"""The ROS 2 ports over real rclpy and Fast DDS, each test in its own domain."""
+
+from __future__ import annotations
+
+import json
+import logging
+import math
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+pytest.importorskip("rclpy", reason="rclpy is not installed")
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
+
+from arboleda.core.errors import StartError
+from arboleda.core.messages import (
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    Report,
+    SetEffector,
+    Stop,
+    StopMode,
+    SystemStart,
+    TaskChanged,
+    TaskRequest,
+    TaskState,
+)
+from arboleda.core.model import (
+    Arm,
+    Cell,
+    Evidence,
+    Grid,
+    Joint,
+    Link,
+    Mobile,
+    MotionState,
+    Palletizing,
+    Path,
+    Placement,
+    PlantModel,
+    Pose,
+)
+from arboleda.wire.status import STALE
+from arboleda_ros.link import connect, limit_discovery
+from arboleda_ros.orchestrator import NoBridge
+
+pytestmark = pytest.mark.system
+
+WAIT_S = 5.0
+BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+LATE = QoSProfile(
+    depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+)
+MOVE = MoveJoints(id="7-1", robot="ra1", q=(0.5, -0.25, 0.0625))
+HALT = Stop(id="7-5", robot="ra1", mode=StopMode.HALT)
+
+
+def plant(link: Link = Link.MQTT, evidence: Evidence = Evidence.IDS) -> PlantModel:
+    """One cell: arm ra1 (twin r1), mobile rm on a 3x3 grid of 0.2 m."""
+    ways = {"link": link, "evidence": evidence, "timeout_s": 10.0}
+    limits = {"lower": -3.0, "upper": 3.0, "speed": 1.0, "acceleration": 1.0, "step": 0.001}
+    names = ("brazo_joint", "antebrazo_joint", "efector_joint")
+    arm = Arm(
+        name="ra1",
+        mqtt="ra_1",
+        model="scara",
+        twin="r1",
+        base=Placement(x=0.0, y=0.0),
+        joints=tuple(Joint(name=name, **limits) for name in names),
+        **ways,
+    )
+    grid = Grid(origin=Placement(x=0.0, y=0.0), pitch=0.2)
+    mobile = Mobile(name="rm", mqtt="rm", grid=grid, speed=0.5, **ways)
+    home = Pose(name="home", q=(0.0, 0.0, 0.0))
+    cell = Cell(
+        name="sis_a",
+        arm=arm,
+        mobile=mobile,
+        home=home,
+        pickup=home,
+        stations=(home,),
+        paths=(Path(code="0A", nodes=(0, 3, 6)),),
+        palletizing=Palletizing(pick=home, place=home),
+        queue_limit=4,
+    )
+    return PlantModel(name="test", cells=(cell,))
+
+
+def eventually(holds: Callable[[], object], timeout_s: float = WAIT_S) -> object:
+    """The first true value of `holds`; the test fails where none comes in time."""
+    until = time.monotonic() + timeout_s
+    while not (value := holds()):
+        assert time.monotonic() < until, "nothing came in time"
+        time.sleep(0.002)
+    return value
+
+
+@pytest.fixture
+def links(monkeypatch: pytest.MonkeyPatch, ros_domain: object) -> Iterator[Callable[[], object]]:
+    """Makes links and closes them all at the end of the test."""
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    made = []
+
+    def make() -> object:
+        made.append(connect())
+        return made[-1]
+
+    yield make
+    for link in made:
+        link.close()
+
+
+class Side:
+    """A port on its own link, with everything it heard in `events`."""
+
+    def __init__(self, link, part: str, model: PlantModel) -> None:
+        self.link = link
+        self.events: list = []
+        self.port = getattr(link, part)(model, self.events.append, time.monotonic)
+        link.start()
+
+    @property
+    def node(self):
+        return next(iter(self.link._nodes.values()))
+
+
+class Stranger:
+    """Somebody else's node: publishes anything, remembers what it hears."""
+
+    def __init__(self, link, name: str = "stranger") -> None:
+        self.node = link.node(name)
+        self._publishers: dict = {}
+        link.start()
+
+    def say(self, topic: str, message: object, qos: object = 10) -> None:
+        key = (topic, str(qos))
+        if key not in self._publishers:
+            self._publishers[key] = self.node.create_publisher(type(message), topic, qos)
+            eventually(self._publishers[key].get_subscription_count)
+        self._publishers[key].publish(message)
+
+    def hear(self, kind: type, topic: str, qos: object = 10) -> list:
+        heard: list = []
+        self.node.create_subscription(kind, topic, heard.append, qos)
+        return heard
+
+
+@pytest.fixture
+def pair(links) -> SimpleNamespace:
+    """The two parts as two processes would have them: a link each, matched both ways."""
+    model = plant()
+    bridge, orchestrator = Side(links(), "bridge", model), Side(links(), "orchestrator", model)
+    eventually(lambda: orchestrator.node.count_subscribers("ra1/joint_goals_q"))
+    for publisher in orchestrator.port._commands.values():
+        eventually(publisher.get_subscription_count)
+    eventually(orchestrator.port._heartbeat.get_subscription_count)
+    for voice in bridge.port._voices.values():
+        eventually(voice.status.get_subscription_count)
+    return SimpleNamespace(bridge=bridge, orchestrator=orchestrator)
+
+
+@pytest.mark.parametrize(
+    ("sent", "heard"),
+    [
+        (MOVE, MOVE),
+        (
+            FollowPath(id="7-2", robot="rm", nodes=(0, 3, 4)),
+            FollowPath(id="7-2", robot="rm", nodes=(0, 3, 4)),
+        ),
+        (SetEffector(id="7-3", robot="ra1", on=True), SetEffector(id="", robot="ra1", on=True)),
+        (HALT, replace(HALT, id="")),
+        (Home(id="7-6", robot="rm"), Home(id="", robot="rm")),
+        (Heartbeat(epoch=1_700_000_000), Heartbeat(epoch=1_700_000_000)),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_a_command_reaches_the_bridge_with_its_label(pair, sent, heard):
+    pair.orchestrator.port.send(sent)
+    eventually(lambda: pair.bridge.events)
+    assert [event.message for event in pair.bridge.events] == [heard]
+    assert pair.bridge.events[0].at == pytest.approx(time.monotonic(), abs=1.0)
+
+
+@pytest.mark.parametrize(
+    "report",
+    [
+        Report(at=0.0, robot="ra1", state=MotionState.NO_LINK, epoch=9),
+        Report(
+            at=0.0,
+            robot="ra1",
+            epoch=9,
+            boot_id=4,
+            accepted="7-2",
+            done="7-1",
+            rejected="7-0",
+            refusal="limite",
+            state=MotionState.STOPPED,
+            q=(0.1, -0.2, 0.03),
+            homed=True,
+            effector=False,
+            piece=True,
+        ),
+        Report(at=0.0, robot="rm", epoch=9, state=MotionState.MOVING, node=4, homed=False),
+    ],
+    ids=["no link", "arm", "mobile"],
+)
+def test_a_report_comes_back_equal(pair, report):
+    pair.bridge.port.send(report)
+    event = eventually(lambda: pair.orchestrator.events and pair.orchestrator.events[0])
+    assert replace(event, at=0.0) == report
+
+
+def test_the_bridge_publishes_what_existing_tools_read(links):
+    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    states, pieces = tool.hear(UInt8, "/ra1/motion_state"), tool.hear(Bool, "/ra1/piece_detected")
+    joints, places = tool.hear(JointState, "/r1/joint_states"), tool.hear(JointState, "/rm/joint_states")
+    for voice in side.port._voices.values():
+        eventually(voice.joints.get_subscription_count)
+    eventually(lambda: side.port._voices["ra1"].state.get_subscription_count())
+    eventually(lambda: side.port._voices["ra1"].piece.get_subscription_count())
+    side.port.send(Report(at=0.0, robot="ra1", state=MotionState.NO_LINK, q=(9.0, 9.0, 9.0)))
+    side.port.send(Report(at=0.0, robot="ra1", state=MotionState.STOPPED, q=(0.1, 0.2, 0.03), piece=False))
+    side.port.send(Report(at=0.0, robot="rm", state=MotionState.STOPPED, node=5))
+    eventually(lambda: len(states) == 2 and pieces and joints and places)
+    assert [message.data for message in states] == [255, 0]
+    assert [message.data for message in pieces] == [False]
+    assert joints[0].name == ["r1_brazo_joint", "r1_antebrazo_joint", "r1_efector_joint"]
+    assert list(joints[0].position) == [0.1, 0.2, 0.03], "nothing is published while there is no link"
+    assert joints[0].header.stamp.sec > 0
+    assert places[0].name == ["rm_x_joint", "rm_y_joint"]
+    assert list(places[0].position) == pytest.approx([0.4, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("topic", "bad", "good"),
+    [
+        ("/ra1/joint_goals_q", Float32MultiArray(data=[1.0, 2.0]), Float32MultiArray(data=[1.0, 2.0, 0.5])),
+        (
+            "/ra1/joint_goals_q",
+            Float32MultiArray(data=[1.0, math.nan, 0.5]),
+            Float32MultiArray(data=[0.0] * 3),
+        ),
+        ("/rm/path_cmd", Float32MultiArray(data=[0.0, 3.5]), Float32MultiArray(data=[0.0, 3.0])),
+        ("/rm/path_cmd", Float32MultiArray(data=[0.0, 9.0]), Float32MultiArray(data=[0.0, 1.0])),
+        ("/rm/path_cmd", Float32MultiArray(), Float32MultiArray(data=[0.0])),
+        ("/ra1/effector_cmd", UInt8(data=7), UInt8(data=0)),
+        ("/rm/stop_cmd", UInt8(data=9), UInt8(data=1)),
+        ("/ra1/home_cmd", UInt8(data=0), UInt8(data=1)),
+    ],
+    ids=["2 of 3 joints", "NaN", "half a node", "node 9", "no node", "effector 7", "stop 9", "home 0"],
+)
+def test_a_bad_command_is_refused_whole_and_the_next_one_works(links, caplog, topic, bad, good):
+    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    tool.say(topic, bad)
+    tool.say(topic, good)
+    eventually(lambda: side.events)
+    assert len(side.events) == 1 and side.events[0].message.id == ""
+    assert side.port.health().refused == 1
+    assert [record.message for record in caplog.records if topic in record.message] != []
+
+
+@pytest.mark.parametrize(("label", "size"), [("id=", 3), ("id=7 1", 3), ("id=7-1", 2)])
+def test_a_broken_label_is_refused(links, label, size):
+    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    broken = Float32MultiArray(data=[0.0, 0.0, 0.0])
+    broken.layout.dim = [MultiArrayDimension(label=label, size=size, stride=size)]
+    tool.say("/ra1/joint_goals_q", broken)
+    eventually(lambda: side.port.health().refused)
+    assert side.events == []
+
+
+def test_a_robot_on_ros_is_heard_on_its_own_topics(links):
+    side, tool = Side(links(), "orchestrator", plant(Link.ROS, Evidence.JOINTS)), Stranger(links(), "robot")
+    tool.say("/ra1/motion_state", UInt8(data=1))
+    tool.say("/ra1/piece_detected", Bool(data=True), BEST_EFFORT)
+    shuffled = ["r1_efector_joint", "other_joint", "r1_brazo_joint", "r1_antebrazo_joint"]
+    tool.say("/r1/joint_states", JointState(name=shuffled, position=[0.03, 8.0, 0.1, 0.2]))
+    names = ["rm_x_joint", "rm_y_joint"]
+    tool.say("/rm/joint_states", JointState(name=names, position=[0.39, 0.21]))
+    tool.say("/rm/joint_states", JointState(name=names, position=[0.30, 0.20]))
+    eventually(lambda: len(side.events) == 5)
+    facts = [
+        (event.robot, event.state, event.q, event.node, event.piece)
+        for event in sorted(side.events, key=lambda event: event.at)
+    ]
+    assert set(facts) == {
+        ("ra1", MotionState.MOVING, None, None, None),
+        ("ra1", None, None, None, True),
+        ("ra1", None, (0.1, 0.2, 0.03), None, None),
+        ("rm", None, None, 5, None),
+        ("rm", None, None, None, None),
+    }
+
+
+def test_a_person_answers_by_hand_at_evidence_state(links):
+    side, person = Side(links(), "orchestrator", plant(Link.ROS, Evidence.STATE)), Stranger(links(), "person")
+    goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
+    eventually(lambda: side.port._commands["ra1", MoveJoints].get_subscription_count())
+    side.port.send(MOVE)
+    eventually(lambda: goals)
+    for code in (1, 7, 0):
+        person.say("/ra1/motion_state", UInt8(data=code))
+    eventually(lambda: len(side.events) == 2)
+    assert [event.state for event in side.events] == [MotionState.MOVING, MotionState.STOPPED]
+    assert side.port.health().refused == 1
+    assert (goals[0].layout.dim[0].label, goals[0].layout.dim[0].size) == ("id=7-1", 3)
+
+
+def test_task_texts_and_triggers_become_requests(links):
+    side, user = Side(links(), "orchestrator", plant()), Stranger(links(), "user")
+    user.say("/task_request", String(data="sis_a 0B 7"))
+    eventually(lambda: side.events)
+    for value in (0, 5, 1):
+        user.say("/ra1/start", UInt8(data=value))
+    eventually(lambda: len(side.events) == 2)
+    assert all(isinstance(event, TaskRequest) and event.request is None for event in side.events)
+    assert [event.text for event in side.events] == ["sis_a 0B 7", "ra1 palletizing"]
+
+
+def test_a_late_listener_still_sees_the_task_status_and_the_view(links):
+    side = Side(links(), "orchestrator", plant())
+    for state in (TaskState.QUEUED, TaskState.RUNNING):
+        side.port.send(TaskChanged(task="t-1", text="sis_a 0B 7", cell="sis_a", state=state))
+    for n in (1, 2):
+        side.port.publish_view({"n": n})
+    late = Stranger(links(), "late")
+    lines = late.hear(String, "/task_status", LATE)
+    views = late.hear(String, "/plant/view", LATE)
+    eventually(lambda: len(lines) == 2 and views)
+    assert [json.loads(line.data)["state"] for line in lines] == ["queued", "running"]
+    assert set(json.loads(lines[0].data)) == {"id", "text", "cell", "state", "reason", "sentence"}
+    assert [json.loads(view.data) for view in views] == [{"n": 2}]
+
+
+def test_notices_reach_other_nodes(links):
+    side, tool = Side(links(), "orchestrator", plant()), Stranger(links(), "tool")
+    starts, beats = tool.hear(UInt8, "/system/start"), tool.hear(UInt32, "/plant/heartbeat")
+    diagnostics = tool.hear(DiagnosticArray, "/diagnostics")
+    for publisher in (side.port._start, side.port._heartbeat, side.port._diagnostics):
+        eventually(publisher.get_subscription_count)
+    silent = ("arboleda: ra1", "ra_1", STALE, "silent", {"node": "4"})
+    side.port.send(SystemStart(cell="sis_a"))
+    side.port.send(Heartbeat(epoch=7))
+    side.port.publish_diagnostics([silent])
+    eventually(lambda: starts and beats and len(diagnostics) > 1)
+    assert (starts[0].data, beats[0].data) == (1, 7)
+    told = {message.status[0].name: message.status[0] for message in diagnostics}
+    assert told["arboleda: orchestrator on ROS 2"].level == b"\x00"
+    status = told["arboleda: ra1"]
+    assert (status.hardware_id, status.level) == ("ra_1", b"\x03")
+    assert (status.message, status.values[0].key, status.values[0].value) == ("silent", "node", "4")
+
+
+def test_a_command_that_no_bridge_hears_is_not_sent(links):
+    side = Side(links(), "orchestrator", plant())
+    with pytest.raises(NoBridge, match="/ra1/joint_goals_q"):
+        side.port.send(MOVE)
+
+
+def test_a_second_commander_at_start_is_refused_by_name(links):
+    other = Stranger(links(), "other_plant")
+    other.node.create_publisher(Float32MultiArray, "/ra1/joint_goals_q", 10)
+    side = Side(links(), "orchestrator", plant())
+    with pytest.raises(
+        StartError, match="another node already commands /ra1/joint_goals_q: /other_plant; stop"
+    ):
+        side.port.check_alone(WAIT_S)
+    assert side.port.foreign_publishers() == [("/ra1/joint_goals_q", "/other_plant")]
+
+
+def test_a_second_orchestrator_of_the_same_name_is_another_node(links):
+    first = Side(links(), "orchestrator", plant())
+    first.port.check_alone(0.0)
+    second = Side(links(), "orchestrator", plant())
+    with pytest.raises(StartError, match="/orchestrator"):
+        second.port.check_alone(WAIT_S)
+
+
+def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
+    side = Side(links(), "orchestrator", plant())
+    side.port.check_alone(0.1)
+    assert side.port.health().errors == ()
+    diagnostics = Stranger(links(), "screen").hear(DiagnosticArray, "/diagnostics")
+    Stranger(links(), "intruder").node.create_publisher(UInt8, "/rm/stop_cmd", 10)
+    sentence = "another node commands /rm/stop_cmd: /intruder"
+    eventually(lambda: side.port.health().errors == (sentence,))
+    eventually(lambda: any(message.status[0].message == sentence for message in diagnostics))
+    assert diagnostics[-1].status[0].level == b"\x02"
+    assert sum("/intruder" in record.message for record in caplog.records) == 1
+
+
+def test_an_incompatible_endpoint_is_one_warning_and_the_plant_goes_on(links, caplog):
+    side, tool = Side(links(), "bridge", plant()), Stranger(links(), "tool")
+    for _ in range(2):
+        tool.node.create_publisher(UInt8, "/ra1/effector_cmd", BEST_EFFORT)
+    eventually(lambda: side.port.health().warnings)
+    tool.say("/ra1/effector_cmd", UInt8(data=1))
+    eventually(lambda: side.events)
+    diagnostics = tool.hear(DiagnosticArray, "/diagnostics")
+    eventually(lambda: diagnostics)
+    (warning,) = side.port.health().warnings
+    assert (diagnostics[0].status[0].message, diagnostics[0].status[0].level) == (warning, b"\x01")
+    assert "/ra1/effector_cmd" in warning and "RELIABILITY" in warning
+    assert [record.message for record in caplog.records if record.name == "arboleda.ros"] == [warning]
+
+
+def test_a_handler_that_raises_does_not_end_the_thread(links, caplog):
+    link, events = links(), []
+
+    def fragile(event):
+        if event.message == Heartbeat(epoch=13):
+            raise RuntimeError("boom")
+        events.append(event)
+
+    port = link.bridge(plant(), fragile, time.monotonic)
+    link.start()
+    tool = Stranger(links())
+    for epoch in (13, 14):
+        tool.say("/plant/heartbeat", UInt32(data=epoch))
+    eventually(lambda: events)
+    assert events[0].message == Heartbeat(epoch=14)
+    assert port.health().failures == 1
+    assert "/plant/heartbeat" in caplog.text
+
+
+@pytest.mark.parametrize("fallback", [False, True], ids=["EventsExecutor", "SingleThreadedExecutor"])
+def test_close_is_quick_and_leaves_no_thread(links, monkeypatch, fallback):
+    if fallback:
+        monkeypatch.setitem(__import__("sys").modules, "rclpy.experimental", None)
+    before = set(threading.enumerate())
+    side = Side(links(), "bridge", plant())
+    Stranger(side.link).say("/plant/heartbeat", UInt32(data=1))
+    eventually(lambda: side.events)
+    began = time.monotonic()
+    side.link.close()
+    side.link.close()
+    assert time.monotonic() - began < 0.5
+    assert set(threading.enumerate()) == before
+
+
+def test_discovery_stays_on_this_machine_unless_the_user_says_otherwise():
+    fresh: dict[str, str] = {}
+    assert "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST" in limit_discovery(fresh, lan=False)
+    assert fresh == {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    humble = {"ROS_DISTRO": "humble"}
+    assert limit_discovery(humble, lan=False) and humble["ROS_LOCALHOST_ONLY"] == "1"
+    chosen = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+    assert limit_discovery(chosen, lan=False) is None and len(chosen) == 1
+    assert limit_discovery({}, lan=True) is None
+
+
+def test_the_way_to_the_bridge_and_back_takes_milliseconds(pair, record_property):
+    took, answers = [], pair.orchestrator.events
+    pair.bridge.port._on_event = lambda event: pair.bridge.port.send(
+        Report(at=0.0, robot="ra1", accepted=event.message.id, state=MotionState.MOVING, q=(0.1, 0.2, 0.03))
+    )
+    for n in range(100):
+        began = time.monotonic()
+        pair.orchestrator.port.send(replace(MOVE, id=f"7-{n + 1}"))
+        while len(answers) == n:
+            time.sleep(0.0001)
+            assert time.monotonic() < began + WAIT_S
+        took.append(time.monotonic() - began)
+    median = sorted(took)[50]
+    logging.getLogger("arboleda.test").info(
+        "round trip: median %.2f ms, max %.2f ms", median * 1e3, max(took) * 1e3
+    )
+    assert median < 0.05

@@ -1,0 +1,76 @@
+"""The three ROS 2 nodes as processes: they start, take their parameters and end cleanly on a signal."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy", reason="rclpy is not installed")
+
+from arboleda_ros.link import connect
+
+pytestmark = pytest.mark.system
+
+WAIT_S = 15.0
+Start = Callable[..., subprocess.Popen[str]]
+
+
+@pytest.fixture
+def start(ros_domain: int, free_port: int, tmp_path: Path) -> Iterator[Start]:
+    """Starts a node by name in a domain of its own, at a broker that is not there."""
+    nodes: list[subprocess.Popen[str]] = []
+
+    def run(name: str, *parameters: str) -> subprocess.Popen[str]:
+        given = (f"broker:=127.0.0.1:{free_port}", f"state_dir:={tmp_path}", *parameters)
+        flags = [word for parameter in given for word in ("-p", parameter)]
+        command = [sys.executable, "-m", "arboleda_ros.nodes", name, "--ros-args", *flags]
+        nodes.append(subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True))
+        return nodes[-1]
+
+    yield run
+    for node in nodes:
+        node.kill()
+        node.communicate()
+
+
+def appeared(name: str) -> bool:
+    """Whether the node joins the domain in time."""
+    link = connect()
+    try:
+        watcher = link.node("watcher")
+        link.start()
+        until = time.monotonic() + WAIT_S
+        while name not in watcher.get_node_names() and time.monotonic() < until:
+            time.sleep(0.02)
+        return name in watcher.get_node_names()
+    finally:
+        link.close()
+
+
+@pytest.mark.parametrize("name", ["mqtt_bridge", "virtual_devices", "orchestrator"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def test_a_node_ends_cleanly_on_a_signal(start: Start, name: str, number: signal.Signals) -> None:
+    node = start(name, "rate:=10")
+    assert appeared(name), node.poll()
+    node.send_signal(number)
+    said, _ = node.communicate(timeout=WAIT_S)
+    assert node.returncode == 0, said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    ("parameter", "word"),
+    [("plant:=/not/there.yaml", "/not/there.yaml"), ("rate:=fast", "rate"), ("broker:=nowhere:x", "nowhere")],
+    ids=["plant", "rate", "broker"],
+)
+def test_a_bad_parameter_is_one_sentence(start: Start, parameter: str, word: str) -> None:
+    node = start("mqtt_bridge", parameter)
+    said, _ = node.communicate(timeout=WAIT_S)
+    assert node.returncode == 1, said
+    assert word in said and "Traceback" not in said
