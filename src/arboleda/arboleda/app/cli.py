@@ -1,0 +1,296 @@
+"""The command `arboleda`."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from dataclasses import replace
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from py_trees.display import unicode_tree
+from rich.console import Console
+from rich.text import Text
+
+from arboleda import __version__
+from arboleda.adapters.mqtt import Credentials
+from arboleda.core import recipes, text
+from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
+from arboleda.core.model import PlantModel
+from arboleda.core.plant import Plant
+from arboleda.core.task import Order, Recipe
+
+from . import config, session
+from .build import PARTS, Options, address, build, check_rate
+from .client import PlantClient
+from .screen import table
+from .state import default_state
+
+FAILED, BAD_INPUT = 1, 2
+USER, PASSWORD = (
+    "ARBOLEDA_MQTT_USER",
+    "ARBOLEDA_MQTT_PASSWORD",
+)  # not options: anybody can read a command line
+
+cli = typer.Typer(
+    help="Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Boards(str, Enum):
+    """Who answers on MQTT."""
+
+    VIRTUAL = "virtual"
+    REAL = "real"
+
+
+def _broker(value: str | None) -> str | None:
+    return value if value is None else str(_or_bad_parameter(address, value))
+
+
+def _rate(value: float) -> float:
+    return _or_bad_parameter(check_rate, value)
+
+
+def _or_bad_parameter(check: Any, value: Any) -> Any:
+    try:
+        return check(value)
+    except StartError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+PlantFile = Annotated[
+    Path | None, typer.Option("--plant", metavar="FILE", help="Plant file. [default: the shipped plant]")
+]
+StateFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--state",
+        metavar="DIR",
+        help="Where the plant keeps its state. [default: $XDG_STATE_HOME/arboleda/<plant name>]",
+    ),
+]
+NoRos = Annotated[bool, typer.Option("--no-ros", help="Leave ROS 2 out; the plant speaks MQTT directly.")]
+RosLan = Annotated[
+    bool, typer.Option("--ros-lan", help="Let other machines on the network take part in ROS 2.")
+]
+Broker = Annotated[
+    str | None,
+    typer.Option(
+        metavar="HOST:PORT",
+        callback=_broker,
+        help=f"MQTT broker to use; login from ${USER} and ${PASSWORD}. [default: one of its own]",
+    ),
+]
+BrokerHost = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="Open the plant's own broker to boards on this address, e.g. 0.0.0.0; needs --broker-users.",
+    ),
+]
+BrokerUsers = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Lines of NAME:PASSWORD for the plant's own broker; a board's name is its MQTT name, e.g. ra_1.",
+    ),
+]
+BoardsOption = Annotated[
+    Boards | None,
+    typer.Option(
+        "--boards",
+        help="Start virtual boards or expect real ones. [default: virtual; real with --broker-host]",
+    ),
+]
+Rate = Annotated[
+    float, typer.Option(metavar="X", callback=_rate, help="Make the virtual robots X times as fast.")
+]
+
+
+@cli.command()
+def up(
+    tasks: Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")] = None,
+    plant: PlantFile = None,
+    no_ros: NoRos = False,
+    ros_lan: RosLan = False,
+    broker: Broker = None,
+    broker_host: BrokerHost = None,
+    broker_users: BrokerUsers = None,
+    boards: BoardsOption = None,
+    rate: Rate = 1.0,
+    state: StateFolder = None,
+) -> None:
+    """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or the ROS 2 topic /task_request."""
+    model = _model(plant, tasks or [])
+    options = _options(broker, broker_host, broker_users, rate, state)
+    _run(model, tasks or [], options, boards=boards, ros=not no_ros, lan=ros_lan, stay=True)
+
+
+@cli.command()
+def run(
+    tasks: Annotated[list[str], typer.Argument(help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'.")],
+    plant: PlantFile = None,
+    no_ros: NoRos = False,
+    ros_lan: RosLan = False,
+    broker: Broker = None,
+    broker_host: BrokerHost = None,
+    broker_users: BrokerUsers = None,
+    boards: BoardsOption = None,
+    rate: Rate = 1.0,
+    state: StateFolder = None,
+) -> None:
+    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input."""
+    model = _model(plant, tasks)
+    options = _options(broker, broker_host, broker_users, rate, state)
+    _run(model, tasks, options, boards=boards, ros=not no_ros, lan=ros_lan, stay=False)
+
+
+@cli.command()
+def submit(
+    task: Annotated[str, typer.Argument(help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'.")],
+    plant: PlantFile = None,
+    state: StateFolder = None,
+) -> None:
+    """Send a task to the plant that runs on this machine. Exit status: 0 accepted, 2 refused."""
+    answer = _client(plant, state).submit(task)
+    sentence = f"  {answer['sentence']}" if answer["sentence"] else ""
+    print(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}")
+
+
+@cli.command()
+def status(
+    plant: PlantFile = None,
+    state: StateFolder = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
+) -> None:
+    """Show what the plant that runs on this machine is doing."""
+    snapshot = _client(plant, state).status()
+    if as_json:
+        print(json.dumps(snapshot, indent=2, ensure_ascii=False))
+        return
+    Console(highlight=False).print(table(snapshot))
+
+
+@cli.command()
+def check(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The plant file to check.")],
+) -> None:
+    """Check a plant file; every problem at once, each with its line. Exit status: 0 good, 2 problems."""
+    model = config.load(file)
+    for warning in config.warnings(model):
+        print(f"{file}: warning: {warning}")
+    print(f"{file}: good: plant {model.name}, {len(model.cells)} cells, {len(model.robots)} robots")
+
+
+@cli.command()
+def tree(
+    recipe: Annotated[Recipe, typer.Argument(help="The recipe to draw.")],
+    plant: PlantFile = None,
+    cell: Annotated[str | None, typer.Option(help="Whose tree. [default: the first cell]")] = None,
+) -> None:
+    """Draw the behavior tree of a recipe."""
+    model = _model(plant, [])
+    names = [each.name for each in model.cells]
+    name = cell or names[0]
+    if name not in names:
+        raise typer.BadParameter(f"'{name}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
+    where = model.cell(name)
+    order = Order(
+        text=recipe.value, cell=name, recipe=recipe, path=where.paths[0], station=where.stations[-1]
+    )
+    print(unicode_tree(recipes.build(order, Plant(model, epoch=0, now=0.0).cells[name])), end="")
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"arboleda {__version__}")
+        raise typer.Exit
+
+
+@cli.callback()
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2."""
+
+
+def _model(plant: Path | None, tasks: list[str]) -> PlantModel:
+    """The plant, with every task text checked before anything starts."""
+    model = config.load(plant)
+    problems = []
+    for task in tasks:
+        try:
+            text.parse(task, model)
+        except TextError as error:
+            problems.append(f"'{task}': {error}")
+    if problems:
+        raise ConfigError(tuple(problems))
+    return model
+
+
+def _options(
+    broker: str | None, host: str | None, users: Path | None, rate: float, state: Path | None
+) -> Options:
+    if broker and host:
+        raise typer.BadParameter(
+            "--broker names another broker, --broker-host opens the plant's own: choose one"
+        )
+    user = os.environ.get(USER)
+    credentials = Credentials(user=user, password=os.environ.get(PASSWORD, "")) if user else None
+    return Options(
+        broker=broker,
+        broker_host=host or "127.0.0.1",
+        broker_users=config.broker_users(users) if users else None,
+        credentials=credentials,
+        rate=rate,
+        state_dir=state,
+    )
+
+
+def _run(
+    model: PlantModel,
+    tasks: list[str],
+    options: Options,
+    *,
+    boards: Boards | None,
+    ros: bool,
+    lan: bool,
+    stay: bool,
+) -> None:
+    boards = boards or (Boards.VIRTUAL if options.broker_host == "127.0.0.1" else Boards.REAL)
+    left_out = {"broker"} if options.broker else set()
+    left_out |= {"devices"} if boards is Boards.REAL else set()
+    link = session.ros_link(lan=lan) if ros else None
+    app = build(model, set(PARTS) - left_out, replace(options, link=link))
+    raise typer.Exit(session.run(app, tasks, Console(highlight=False), stay=stay))
+
+
+def _client(plant: Path | None, state: Path | None) -> PlantClient:
+    return PlantClient(state or default_state(config.load(plant).name))
+
+
+def main() -> None:
+    """The entry point: whatever goes wrong is one sentence on standard error."""
+    try:
+        cli()
+    except (ConfigError, TextError) as error:
+        _complain(error)
+        sys.exit(BAD_INPUT)
+    except ArboledaError as error:
+        _complain(error)
+        sys.exit(FAILED)
+
+
+def _complain(error: ArboledaError) -> None:
+    Console(stderr=True, highlight=False).print(Text(f"arboleda: {error}", style="red"), soft_wrap=True)

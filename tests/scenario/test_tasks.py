@@ -1,0 +1,35 @@
+"""Every valid task, and what happens around one, over codec, bridge and virtual boards."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.messages import TaskState
+from arboleda.core.model import Evidence, PlantModel
+from arboleda.testing import Rig
+
+from .conftest import at_level
+
+
+@pytest.mark.parametrize("cell", ["sis_a", "sis_b", "sis_c"])
+def test_each_of_the_81_tasks_of_a_cell_is_done(cell: str, shipped: PlantModel) -> None:
+    rig = Rig(shipped)
+    where = shipped.cell(cell)
+    texts = [f"{cell} {path.code} {station}" for path in where.paths for station in range(9)]
+    for text in texts:
+        assert rig.submit(text).state in (TaskState.QUEUED, TaskState.RUNNING)
+    rig.wait(81 * 60, until=lambda: rig.plant.at_rest and not rig.plant.cells[cell].queue)
+    assert [(change.text, change.state) for change in rig.outcomes().values()] == [
+        (text, TaskState.DONE) for text in texts
+    ]
+
+
+@pytest.mark.parametrize("evidence", list(Evidence))
+def test_three_cells_work_at_the_same_time_at_every_level(evidence: Evidence, shipped: PlantModel) -> None:
+    rig = Rig(at_level(shipped, evidence))
+    for text in ("sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 0", "ra1 palletizing"):
+        rig.submit(text)
+    rig.wait(2.0)
+    assert all(cell.task is not None for cell in rig.plant.cells.values())
+    rig.wait(60, until=lambda: rig.plant.at_rest)
+    assert {change.state for change in rig.outcomes().values()} == {TaskState.DONE}

@@ -1,0 +1,190 @@
+"""The real chain: processes whose output can be waited for, a real mosquitto, a ROS 2 node to look in."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PATIENCE_S = 30.0
+
+
+class Process:
+    """A child process; its output is read as it comes."""
+
+    def __init__(self, *command: str, env: dict[str, str] | None = None) -> None:
+        self.lines: list[str] = []
+        self._changed = threading.Condition()
+        self._child = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            env={**os.environ, "COLUMNS": "200", "PYTHONUNBUFFERED": "1", **(env or {})},
+            start_new_session=True,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def output(self) -> str:
+        return "\n".join(self.lines)
+
+    def wait_for(self, text: str, *, times: int = 1) -> None:
+        """Wait until a line holds `text`."""
+
+        def seen() -> bool:
+            return sum(text in line for line in self.lines) >= times
+
+        with self._changed:
+            if not self._changed.wait_for(lambda: seen() or not self._running, PATIENCE_S) or not seen():
+                pytest.fail(f"no {text!r} in:\n{self.output}")
+
+    def interrupt(self) -> int:
+        """Ctrl-C: the exit status."""
+        self._child.send_signal(signal.SIGINT)
+        return self.wait()
+
+    def kill(self) -> None:
+        """kill -9, and whatever it left of its group."""
+        if self._running:
+            os.killpg(self._child.pid, signal.SIGKILL)
+        self.wait()
+
+    def wait(self) -> int:
+        """The exit status."""
+        status = self._child.wait(PATIENCE_S)
+        self._reader.join(PATIENCE_S)
+        return status
+
+    @property
+    def _running(self) -> bool:
+        return self._child.poll() is None
+
+    def _read(self) -> None:
+        assert self._child.stdout is not None
+        for line in self._child.stdout:
+            with self._changed:
+                self.lines.append(line.rstrip())
+                self._changed.notify_all()
+        self._child.stdout.close()
+        with self._changed:
+            self._changed.notify_all()
+
+
+@pytest.fixture
+def start() -> Iterator[Callable[..., Process]]:
+    """`start("prog", "arg", ...)`: a process that does not outlive the test."""
+    running: list[Process] = []
+
+    def go(*command: str, **options: Any) -> Process:
+        running.append(Process(*command, **options))
+        return running[-1]
+
+    yield go
+    for process in reversed(running):
+        process.kill()
+
+
+@pytest.fixture
+def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Process]:
+    """`arboleda("run", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
+
+    def go(verb: str, *args: str) -> Process:
+        state = ("--state", str(tmp_path / "state")) if verb not in ("check", "tree") else ()
+        main = "from arboleda.app.cli import main; main()"
+        return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})
+
+    return go
+
+
+@pytest.fixture
+def node(start: Callable[..., Process], ros_domain: int) -> Callable[..., Process]:
+    """`node("mqtt_bridge", plant=..., broker=...)`: one ROS 2 node of ours in a process of its own."""
+
+    def go(name: str, **parameters: str) -> Process:
+        pairs = [word for key, value in parameters.items() for word in ("-p", f"{key}:={value}")]
+        command = (sys.executable, "-m", "arboleda_ros.nodes", name, "--ros-args", *pairs)
+        return start(*command, env={"PYTHONPATH": paths()})
+
+    return go
+
+
+def paths() -> str:
+    """Where this checkout's packages are found, for processes that tests start."""
+    return os.pathsep.join(path for path in sys.path if path)
+
+
+@pytest.fixture
+def mosquitto(
+    start: Callable[..., Process], require: Callable[[str], str], tmp_path: Path
+) -> Callable[[int], Process]:
+    """`mosquitto(port)`: a real broker on 127.0.0.1 that listens."""
+
+    def go(port: int) -> Process:
+        settings = tmp_path / "mosquitto.conf"
+        settings.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+        broker = start(require("mosquitto"), "-v", "-c", str(settings))
+        broker.wait_for("running")
+        return broker
+
+    return go
+
+
+class Observer:
+    """A ROS 2 node of another process's kind: it publishes, and keeps what it hears by topic."""
+
+    def __init__(self) -> None:
+        from rclpy.context import Context
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.node import Node
+
+        self._context = Context()
+        self._context.init()
+        self.node = Node("observer", context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self.heard: dict[str, list[Any]] = {}
+
+    def listen(self, kind: type, *topics: str, qos: Any = 10) -> None:
+        for topic in topics:
+            self.heard[topic] = []
+            self.node.create_subscription(kind, topic, self.heard[topic].append, qos)
+
+    def publisher(self, kind: type, topic: str) -> Any:
+        """A publisher that somebody listens to."""
+        made = self.node.create_publisher(kind, topic, 10)
+        self.wait(lambda: made.get_subscription_count() > 0, f"nobody listens to {topic}")
+        return made
+
+    def wait(self, arrived: Callable[[], Any], otherwise: str, patience_s: float = PATIENCE_S) -> Any:
+        """Spin until `arrived()` is true."""
+        until = time.monotonic() + patience_s
+        while not arrived():
+            if time.monotonic() > until:
+                pytest.fail(f"{otherwise}; heard so far: {self.heard}")
+            self._executor.spin_once(timeout_sec=0.05)
+        return arrived()
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+
+@pytest.fixture
+def observer(ros_domain: int, require: Callable[[str], str]) -> Iterator[Observer]:
+    require("rclpy")
+    made = Observer()
+    yield made
+    made.close()

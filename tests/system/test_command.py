@@ -1,0 +1,121 @@
+"""The command `arboleda` as a person uses it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.system
+
+DEMO = ("sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 5")
+
+
+@pytest.mark.requires("rclpy")
+def test_run_does_three_tasks_over_ros_2_and_mqtt(arboleda: Callable[..., Any], ros_domain: int) -> None:
+    run = arboleda("run", *DEMO, "--rate", "5")
+    assert run.wait() == 0, run.output
+    for task in DEMO:
+        assert f"done      {task}" in run.output
+    first_end = next(n for n, line in enumerate(run.lines) if line.startswith("done"))
+    assert sum(line.startswith("running") for line in run.lines[:first_end]) == 3
+    assert "ra1: still, effector off" in run.output
+
+
+def test_run_without_ros_does_the_same(arboleda: Callable[..., Any]) -> None:
+    run = arboleda("run", *DEMO, "sis_a 2C 0", "ra1 palletizing", "--rate", "10", "--no-ros")
+    assert run.wait() == 0, run.output
+    assert sum(line.startswith("done") for line in run.lines) == 5
+
+
+def test_run_works_on_a_real_mosquitto(
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int
+) -> None:
+    mosquitto(free_port)
+    run = arboleda("run", *DEMO, "--rate", "10", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    assert run.wait() == 0, run.output
+
+
+@pytest.mark.parametrize(
+    ("args", "sentence"),
+    [
+        (("sis_z 0B 7", "sis_a 0B 9"), "'sis_z' is not a cell"),
+        (("sis_a 0B 9",), "'9' is not a station"),
+        (("sis_a 0B 7", "--plant", "nowhere.yaml"), "nowhere.yaml: there is no such file"),
+        (("sis_a 0B 7", "--rate", "0"), "0 is not a rate; allowed: 0.1 to 100"),
+        (("sis_a 0B 7", "--broker", "host:port"), "is not a broker address"),
+        ((), "Missing argument"),
+    ],
+    ids=["cell", "station", "plant", "rate", "broker", "no task"],
+)
+def test_bad_input_ends_with_2_before_anything_starts(
+    arboleda: Callable[..., Any], args: tuple[str, ...], sentence: str
+) -> None:
+    run = arboleda("run", *args)
+    assert run.wait() == 2
+    assert sentence in run.output
+    assert "Traceback" not in run.output and "broker:" not in run.output
+
+
+def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
+    arboleda: Callable[..., Any],
+) -> None:
+    up = arboleda("up", "--no-ros", "--rate", "10")
+    up.wait_for("HTTP API")
+    submit = arboleda("submit", "SIS_B  1c 3")
+    assert submit.wait() == 0 and "sis_b 1C 3" in submit.output
+    refused = arboleda("submit", "sis_b 1D 3")
+    assert refused.wait() == 2 and "'1D' is not a path of sis_b" in refused.output
+    up.wait_for("done      sis_b 1C 3")
+    status = arboleda("status")
+    assert status.wait() == 0 and "sis_b" in status.output
+    second = arboleda("up", "--no-ros")
+    assert second.wait() == 1 and "already running" in second.output
+    up.wait_for("refused")
+    assert up.interrupt() == 0, up.output
+    assert "ra2: still, effector off" in up.output
+    assert "Traceback" not in up.output
+
+
+def test_ctrl_c_in_the_middle_of_a_move_halts_it(arboleda: Callable[..., Any]) -> None:
+    up = arboleda("up", "sis_a 0B 7", "--no-ros")
+    up.wait_for("sis_a: move to pick-up")
+    assert up.interrupt() == 0
+    assert "failed    sis_a 0B 7  the plant was asked to end (interrupted)" in up.output
+    assert "ra1: still" in up.output
+
+
+def test_submit_and_status_without_a_plant_say_so(arboleda: Callable[..., Any]) -> None:
+    for verb in (("submit", "sis_a 0B 7"), ("status",)):
+        asked = arboleda(*verb)
+        assert asked.wait() == 1
+        assert "No plant is running" in asked.output
+
+
+def test_the_broker_may_come_late_and_go_and_come_back(
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int
+) -> None:
+    up = arboleda("up", "sis_a 0B 7", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    up.wait_for(f"The MQTT broker at 127.0.0.1:{free_port} is not there")
+    broker = mosquitto(free_port)
+    up.wait_for("sis_a: move to pick-up")
+    broker.kill()
+    up.wait_for("failed    sis_a 0B 7")
+    mosquitto(free_port)
+    up.wait_for("is there.", times=2)
+    submit = arboleda("submit", "sis_b 1C 3")
+    assert submit.wait() == 0
+    up.wait_for("done      sis_b 1C 3")
+    assert up.interrupt() == 0
+    assert "Traceback" not in up.output
+
+
+def test_virtual_boards_do_not_fight_boards_that_are_there(
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Any
+) -> None:
+    mosquitto(free_port)
+    first = arboleda("up", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    first.wait_for("HTTP API")
+    run = arboleda("run", "sis_a 0B 7", "--no-ros", "--broker", f"127.0.0.1:{free_port}", "--plant")
+    run.kill()
