@@ -1,0 +1,142 @@
+"""What tests share: no network where time is moved by hand, no thread left behind, tools by name, own places."""
+
+from __future__ import annotations
+
+import fcntl
+import importlib.util
+import itertools
+import os
+import shutil
+import socket
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from unittest import mock
+
+import pytest
+
+HERE = Path(__file__).parent
+SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
+LAST_DOMAIN = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
+DOMAINS = itertools.cycle((os.getpid() + n) % LAST_DOMAIN + 1 for n in range(LAST_DOMAIN))
+
+
+def by_hand(item: pytest.Item) -> bool:
+    """Whether the test moves time by hand: those of unit/ and scenario/."""
+    parts = item.path.relative_to(HERE).parts if item.path.is_relative_to(HERE) else ()
+    return parts[:1] in {("unit",), ("scenario",)}
+
+
+def find_tool(name: str) -> str | None:
+    """The program's path, or the name of an importable module; None if there is neither."""
+    return shutil.which(name, path=SEARCH_PATH) or (name if importlib.util.find_spec(name) else None)
+
+
+def need_tool(name: str) -> str:
+    """The tool, else the test is skipped with the tool's name in the summary."""
+    tool = find_tool(name)
+    if tool is None:
+        pytest.skip(f"{name} is not installed")
+    return tool
+
+
+@pytest.fixture
+def require() -> Callable[[str], str]:
+    """`require("mosquitto")`: the program's path (a module's name), or the test is skipped."""
+    return need_tool
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test marked `requires(...)` where one of its tools is absent."""
+    for marker in item.iter_markers("requires"):
+        for name in marker.args:
+            need_tool(name)
+
+
+def fail_if_skipped(report: pytest.TestReport | pytest.CollectReport) -> None:
+    """Under ARBOLEDA_REQUIRE=all a skip is a failure."""
+    skipped = report.outcome == "skipped" and not hasattr(report, "wasxfail")
+    if skipped and os.environ.get("ARBOLEDA_REQUIRE") == "all":
+        report.outcome = "failed"
+        report.longrepr = f"skipped, which ARBOLEDA_REQUIRE=all forbids: {report.longrepr[-1]}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Iterator[None]:
+    report = yield
+    fail_if_skipped(report)
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report() -> Iterator[None]:
+    report = yield
+    fail_if_skipped(report)
+    return report
+
+
+class LocalSocket(socket.socket):
+    """A socket that refuses to be one of a network; event loops may keep their socket pairs."""
+
+    def __init__(self, family: int = -1, *args: object, **kwargs: object) -> None:
+        if family in (-1, socket.AF_INET, socket.AF_INET6):
+            raise RuntimeError("a unit or scenario test opened a network socket")
+        super().__init__(family, *args, **kwargs)
+
+
+@pytest.fixture(autouse=True)
+def no_network(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Tests that move time by hand have no network."""
+    if not by_hand(request.node):
+        yield
+        return
+    with mock.patch.object(socket, "socket", LocalSocket):
+        yield
+
+
+@pytest.fixture(autouse=True)
+def no_thread_left(request: pytest.FixtureRequest) -> Iterator[None]:
+    """A thread that outlives its test fails it; where clocks are real it has two seconds to end."""
+    before = set(threading.enumerate())
+    yield
+    started = set(threading.enumerate()) - before
+    if not by_hand(request.node):
+        for thread in started:
+            thread.join(timeout=2.0)
+    left = sorted(thread.name for thread in started if thread.is_alive())
+    assert not left, f"threads left behind: {', '.join(left)}"
+
+
+@pytest.fixture
+def free_port() -> int:
+    """A TCP port of 127.0.0.1 that nothing listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def take_domain() -> tuple[int, int]:
+    """(ROS domain id, the open file that reserves it on this machine); each call starts at another id."""
+    folder = Path(tempfile.gettempdir(), f"arboleda-ros-domains-{os.getuid()}")
+    folder.mkdir(exist_ok=True)
+    for domain in itertools.islice(DOMAINS, LAST_DOMAIN):
+        lock = os.open(folder / str(domain), os.O_RDWR | os.O_CREAT)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+        else:
+            return domain, lock
+    pytest.fail(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
+
+
+@pytest.fixture
+def ros_domain(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[int]:
+    """A ROS domain id of one's own, this machine only, for the test and the processes it starts."""
+    domain, lock = take_domain()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-log"))
+    yield domain
+    os.close(lock)

@@ -1,0 +1,43 @@
+"""The import rules: layers and forbidden modules (import-linter), and third-party packages by layer."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "src/arboleda/arboleda"
+
+
+def third_party(path: Path) -> set[str]:
+    """Packages that the file imports, neither Python's nor its own."""
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {str(node.module) for node in nodes if isinstance(node, ast.ImportFrom) and node.level == 0}
+    return {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"arboleda"}
+
+
+@pytest.mark.parametrize(("layer", "allowed"), [("core", {"py_trees"}), ("wire", set()), ("sim", set())])
+def test_pure_layers_need_no_other_package(layer: str, allowed: set[str]) -> None:
+    files = sorted((PACKAGE / layer).rglob("*.py"))
+    assert files
+    assert {path.name: extra for path in files if (extra := third_party(path) - allowed)} == {}
+
+
+def test_only_arboleda_ros_imports_ros() -> None:
+    assert [path.name for path in PACKAGE.rglob("*.py") if third_party(path) & {"rclpy", "std_msgs"}] == []
+
+
+def test_imports_keep_to_the_contracts_of_pyproject() -> None:
+    linter = Path(sys.executable).with_name("lint-imports")  # in a process of its own: it sets up logging
+    sources = os.pathsep.join(str(folder) for folder in ROOT.glob("src/*"))
+    environ = {**os.environ, "PYTHONPATH": sources}
+    result = subprocess.run(
+        [linter, "--no-cache"], cwd=ROOT, env=environ, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stdout + result.stderr

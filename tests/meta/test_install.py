@@ -1,0 +1,64 @@
+"""What `scripts/install` says on a machine that lacks something."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def install(folder: Path, python: str, **environ: str) -> subprocess.CompletedProcess[str]:
+    """Run the script in a copy of the project where `python3` is the given shell script, without uv."""
+    (folder / "scripts").mkdir()
+    shutil.copy(ROOT / "scripts/install", folder / "scripts")
+    for name in ("pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, folder)
+    tools = folder / "tools"
+    tools.mkdir()
+    for name in ("sh", "dirname", "cat", "cksum"):
+        (tools / name).symlink_to(str(shutil.which(name)))
+    (tools / "python3").write_text(f"#!/bin/sh\n{python}\n")
+    (tools / "python3").chmod(0o755)
+    env = {"PATH": str(tools), **environ}
+    return subprocess.run([folder / "scripts/install"], env=env, capture_output=True, text=True, check=False)
+
+
+def python(version: str, *, lacks: str = "nothing") -> str:
+    """A stand-in for an interpreter: knows its version and where it is, cannot import `lacks`."""
+    return f"""
+case "$2" in
+*{lacks}*) exit 1 ;;
+*version_info*) echo {version} ;;
+*realpath*) echo "$0" ;;
+esac"""
+
+
+@pytest.mark.parametrize("script", [python("3.9"), python("3.13")], ids=["too old", "too new"])
+def test_an_unsupported_python_gets_one_sentence(tmp_path: Path, script: str) -> None:
+    result = install(tmp_path, script)
+    assert result.returncode == 1
+    assert result.stderr.startswith("install: Arboleda needs Python 3.10, 3.11 or 3.12, and python3 is 3.")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_stub_that_cannot_run_counts_as_absent(tmp_path: Path) -> None:
+    result = install(tmp_path, "echo 'command not found' >&2; exit 127")
+    assert "python3 is not there" in result.stderr
+
+
+def test_a_missing_ensurepip_gets_the_line_to_type(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11", lacks="ensurepip"))
+    assert result.returncode == 1
+    assert result.stderr.startswith("install: this Python has no ensurepip; ")
+    assert result.stderr.count("\n") == 1
+
+
+def test_a_sourced_ros_of_another_python_gets_one_sentence(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11", lacks="rclpy"), ROS_DISTRO="jazzy")
+    assert result.returncode == 1
+    assert "ROS 2 jazzy is sourced, but Python 3.11" in result.stderr
+    assert result.stderr.count("\n") == 1

@@ -1,0 +1,63 @@
+"""What no file of the repository may say, and what documents must."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FORBIDDEN = {
+    "a software stop is no safety function and is not called one": r"(?i)emergency[\s_-]*stop",
+    "a path of somebody's machine": r"(?<![\w.$}])/(?:work|root)/",
+    "a host of a package index": r"(?i)\b(?:pypi|pythonhosted|debian|npmjs|ubuntu)\.(?:org|com|net)\b",
+}
+
+
+@cache
+def texts() -> dict[str, str]:
+    """Every file of the repository that is text, new ones included."""
+    listing = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = subprocess.run(listing, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
+    present = [name for name in names if (ROOT / name).is_file()]
+    contents = {name: (ROOT / name).read_bytes() for name in present}
+    return {name: data.decode() for name, data in contents.items() if b"\0" not in data}
+
+
+@pytest.mark.parametrize("pattern", FORBIDDEN.values(), ids=FORBIDDEN)
+def test_no_file_contains(pattern: str) -> None:
+    assert [name for name, text in texts().items() if re.search(pattern, text)] == []
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        ("Emergency", "\n", "Stop"),
+        ("emergency", "-stop"),
+        ("at /", "root/x"),
+        ("/", "work/y"),
+        ("files.py", "pi.org"),
+    ],
+)
+def test_the_patterns_find_what_they_are_for(parts: tuple[str, ...]) -> None:
+    assert any(re.search(pattern, "".join(parts)) for pattern in FORBIDDEN.values())
+
+
+def heading_levels(name: str) -> list[int]:
+    """Levels of the headings of a Markdown file, in order; `#` inside code blocks is no heading."""
+    prose = re.sub(r"^```.*?^```$", "", texts()[name], flags=re.MULTILINE | re.DOTALL)
+    return [len(marks) for marks in re.findall(r"^(#+) ", prose, re.MULTILINE)]
+
+
+def test_the_spanish_readme_has_the_headings_of_the_english_one() -> None:
+    assert heading_levels("README.md")
+    assert heading_levels("README.es.md") == heading_levels("README.md")
+
+
+def test_make_help_explains_every_target() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", texts()["Makefile"], re.MULTILINE))
+    listed = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert set(re.findall(r"^make ([a-z-]+) ", listed, re.MULTILINE)) == targets

@@ -1,0 +1,31 @@
+"""One version, wherever it is written."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PATTERNS = {
+    "pyproject.toml": r'^version = "(.+)"$',
+    "package.xml": r"<version>(.+)</version>",
+    "setup.py": r'^    version="(.+)",$',
+    "__init__.py": r'^__version__ = "(.+)"$',
+}
+
+
+def version_in(path: Path) -> str:
+    found = re.search(PATTERNS[path.name], path.read_text(encoding="utf-8"), re.MULTILINE)
+    assert found, f"{path.relative_to(ROOT)} names no version"
+    return found[1]
+
+
+def test_every_package_names_the_version_of_pyproject() -> None:
+    packages = sorted(path.parent for path in ROOT.glob("src/*/package.xml"))
+    files = [
+        path for folder in packages for path in (folder / "package.xml", folder / "setup.py") if path.exists()
+    ]
+    files.append(ROOT / "src/arboleda/arboleda/__init__.py")
+    versions = {str(path.relative_to(ROOT)): version_in(path) for path in files}
+    assert len(versions) >= 7
+    assert set(versions.values()) == {version_in(ROOT / "pyproject.toml")}, versions
