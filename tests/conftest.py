@@ -1,4 +1,4 @@
-"""What tests share: no network where time is moved by hand, no thread left behind, tools by name, own places."""
+"""What tests share: no network where time is moved by hand, no thread left behind, tools by name."""
 
 from __future__ import annotations
 

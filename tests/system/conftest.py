@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +100,8 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
     """`arboleda("run", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
 
     def go(verb: str, *args: str) -> Process:
-        state = ("--state", str(tmp_path / "state")) if verb not in ("check", "tree") else ()
+        own = verb not in ("check", "tree") and "--state" not in args
+        state = ("--state", str(tmp_path / "state")) if own else ()
         main = "from arboleda.app.cli import main; main()"
         return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})
 

@@ -43,8 +43,10 @@ class BridgePort(Port):
         robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
         for robot in robots:
             self._obey(robot)
-        self._listen(UInt32, "plant/heartbeat", self._on_heartbeat, qos.COMMAND)
         self._voices = {robot.name: self._voice(robot) for robot in robots}
+        # Discovery keeps the order in which endpoints were made, here and in the orchestrator: a heartbeat
+        # that arrives proves that the commands, made before it, arrive too.
+        self._listen(UInt32, "plant/heartbeat", self._on_heartbeat, qos.COMMAND)
 
     def send(self, report: Report) -> None:
         """Publish one report on every topic that carries a part of it."""

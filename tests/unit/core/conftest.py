@@ -56,8 +56,8 @@ class Hand:
 
     def _awake(self, robot: str, **where: Any) -> None:
         by_ids = self.plant.model.robots[robot].evidence is Evidence.IDS
-        ids = {"epoch": 1, "boot_id": 11, "homed": True} if by_ids else {}
-        self.tell(robot, after=0.0, state=MotionState.STOPPED, **where, **ids)
+        ids = {"boot_id": 11, "homed": True} if by_ids else {}
+        self.tell(robot, after=0.0, state=MotionState.STOPPED, epoch=1, plant=7, **where, **ids)
 
     def commands(self, kind: type) -> list[Any]:
         return [message for message in self.out if isinstance(message, kind)]

@@ -153,7 +153,7 @@ def test_a_move_that_never_ends_meets_its_deadline(hand: Any, evidence: Evidence
 
 
 def test_a_report_stamped_by_the_deadline_counts(hand: Any) -> None:
-    plant, move = driven_to_the_arm(hand, Evidence.STATE)
+    plant, _ = driven_to_the_arm(hand, Evidence.STATE)
     (entry,) = plant.plant.dispatcher.ledger.entries.values()
     plant.tell("ra1", after=entry.deadline - plant.now - 1, state=MOVING)
     plant.tell("ra1", after=1, state=STILL)
@@ -162,7 +162,7 @@ def test_a_report_stamped_by_the_deadline_counts(hand: Any) -> None:
 
 
 def test_a_report_stamped_after_the_deadline_is_too_late(hand: Any) -> None:
-    plant, move = driven_to_the_arm(hand, Evidence.STATE)
+    plant, _ = driven_to_the_arm(hand, Evidence.STATE)
     plant.tell("ra1", state=MOVING)
     plant.tell("ra1", after=60, state=STILL)
     assert last_change(plant).reason is Reason.DEADLINE
@@ -193,6 +193,17 @@ def test_a_task_waits_for_robots_that_were_never_heard_and_says_so(hand: Any) ->
     plant.submit("sis_a 0B 7")
     assert last_change(plant).sentence == "ra1 was not heard yet"
     plant.awake()
+    assert plant.states()[-1] == "running"
+
+
+@pytest.mark.parametrize("heard", [None, 6], ids=["no plant", "another plant"])
+def test_a_task_waits_until_the_bridge_hears_this_plant(hand: Any, heard: int | None) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.tell("ra1", state=STILL, epoch=2, plant=heard)
+    plant.submit("sis_a 0B 7")
+    assert last_change(plant).sentence == "ra1 has a bridge that does not hear this plant yet"
+    plant.tell("ra1", state=STILL, epoch=2, plant=7)
     assert plant.states()[-1] == "running"
 
 

@@ -126,7 +126,7 @@ def test_nothing_is_replayed_after_a_reconnect(linked, sent) -> None:
     assert linked.connect() == []
     assert sent(linked.presence(True)) == []
     assert sent(linked.tell()) == []
-    assert linked.heartbeat() == []
+    assert sent(linked.heartbeat()) == []
 
 
 def test_telemetry_after_the_broker_was_lost_is_not_a_link(linked) -> None:
@@ -156,12 +156,12 @@ def test_overtaken_telemetry_is_no_sign_of_life(linked) -> None:
     assert linked.bridge.next_deadline == deadline
 
 
-def test_a_reboot_starts_its_own_count_and_forgets_what_was_open(linked, reports) -> None:
+def test_a_reboot_starts_its_own_count_and_forgets_what_was_open(linked, sent, reports) -> None:
     linked.order(move(1))
     linked.tell(state=MOVING, seq=500, ack_epoch=1_000, ack=1)
     (report,) = reports(linked.tell(state=STOPPED, seq=1, boot_id=2, ack_epoch=None, ack=None, homed=False))
     assert (report.boot_id, report.accepted, report.homed) == (2, None, False)
-    assert linked.heartbeat() == []
+    assert sent(linked.heartbeat()) == []
 
 
 @pytest.mark.parametrize(
@@ -193,3 +193,14 @@ def test_a_board_without_ids_reports_what_it_has(make_linked, reports) -> None:
     assert report.state is MOVING
     assert report.q == pytest.approx((0.15708, 0.0, 0.0), abs=1e-5)
     assert (report.accepted, report.done, report.rejected, report.boot_id) == (None,) * 4
+
+
+def test_a_plant_is_told_at_its_first_heartbeat_that_it_is_heard(linked, reports) -> None:
+    assert [report.plant for report in reports(linked.heartbeat(epoch=7))] == [7, 7]
+    assert reports(linked.heartbeat(epoch=7)) == []
+    assert [report.plant for report in reports(linked.tell(state=STOPPED))] == [7]
+    assert [report.plant for report in reports(linked.heartbeat(epoch=8))] == [8, 8]
+
+
+def test_a_robot_without_link_tells_no_plant_that_it_is_heard(bench, reports) -> None:
+    assert reports(bench.heartbeat(epoch=7)) == []

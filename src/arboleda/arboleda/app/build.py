@@ -7,23 +7,25 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.adapters.mqtt import Address, Credentials
-from arboleda.adapters.web import Api
-from arboleda.core import view
+from arboleda.adapters.mqtt import Credentials
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import TaskChanged
-from arboleda.core.model import Arm, Cell, Joint, Link, PlantModel
+from arboleda.core.model import Link, PlantModel
 
-from .parts import BridgePart, DevicesPart, Orchestrator, Part
+from .parts.bridge import BridgePart
+from .parts.broker import MQTT_PORT, OtherBroker, OwnBroker, address
+from .parts.devices import DevicesPart
+from .parts.orchestrator import Orchestrator
+from .parts.part import Part
+from .parts.web import WebPart
+from .rate import at_rate
 from .state import StateDir, default_state
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
-MQTT_PORT = 1883
 LOG = logging.getLogger(__name__)
 
 
@@ -40,42 +42,6 @@ class Options:
     state_dir: Path | None = None
 
 
-class BrokerPart:
-    """The broker: the embedded one where no other was named."""
-
-    def __init__(self, model: PlantModel, options: Options, *, embedded: bool) -> None:
-        boards = frozenset(robot.mqtt for robot in model.robots.values())
-        self.credentials = options.credentials
-        self.address = address(options.broker or f"127.0.0.1:{MQTT_PORT}")
-        self._make: Callable[[int], EmbeddedBroker] = lambda port: EmbeddedBroker(
-            options.broker_host, port, users=options.broker_users, boards=boards
-        )
-        self._embedded = embedded
-        self._open = options.broker_users is not None
-        self._broker: EmbeddedBroker | None = None
-
-    def start(self) -> None:
-        """Take port 1883; where it is taken, any free one, unless boards outside must find it."""
-        if not self._embedded:
-            return
-        try:
-            self._start(MQTT_PORT)
-        except StartError:
-            if self._open:
-                raise
-            self._start(0)
-
-    def stop(self) -> None:
-        if self._broker is not None:
-            self._broker.stop()
-
-    def _start(self, port: int) -> None:
-        broker = self._make(port)
-        self.address = broker.start()
-        self.credentials = broker.credentials
-        self._broker = broker
-
-
 class App:
     """A plant put together; `start`, `wait` until something ends it, `stop`."""
 
@@ -83,8 +49,8 @@ class App:
         self.model = at_rate(model, options.rate)
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
-        self._broker = BrokerPart(model, options, embedded="broker" in parts)
-        self._web = WebPart(self, self._state) if "web" in parts else None
+        self._broker = _broker(model, options, own="broker" in parts)
+        self._web = WebPart(self.snapshot, self.submit, self._state.announce) if "web" in parts else None
         self._link = options.link
         self._ended = threading.Event()
         self._trouble: ArboledaError | None = None
@@ -106,6 +72,11 @@ class App:
         if self._web is not None:
             notes.append(f"HTTP API: http://127.0.0.1:{self._web.port}/api/plant")
         return notes
+
+    @property
+    def log_file(self) -> Path:
+        """Where details go that are too much for a terminal."""
+        return self._state.path / "arboleda.log"
 
     def start(self) -> None:
         """Start every part in order; where one cannot, nothing is left running."""
@@ -138,7 +109,7 @@ class App:
         self._plant.listeners.extend(listeners)
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> None:
-        """Have a snapshot told whenever more than a position changed, in the plant's thread; before `start`."""
+        """Have a snapshot told when more than a position changed; in the plant's thread, before `start`."""
         self._plant.watchers.append(watcher)
 
     def submit(self, text: str) -> Future[TaskChanged]:
@@ -184,31 +155,12 @@ class App:
         self._parts.insert(1, RosPart(link))
 
     def _crash(self, name: str, error: Exception) -> None:
-        self._trouble = self._trouble or ArboledaError(f"{name}: {error}")
-        LOG.debug("%s broke down", name, exc_info=error)
+        LOG.debug("the %s broke down", name, exc_info=error)
+        if not isinstance(error, ArboledaError):
+            what = f"{type(error).__name__}: {error}"
+            error = ArboledaError(f"internal error in the {name} ({what}); details are in {self.log_file}")
+        self._trouble = self._trouble or error
         self._ended.set()
-
-
-class WebPart:
-    """The HTTP API as a part; the state directory says where it listens."""
-
-    def __init__(self, app: App, state: StateDir) -> None:
-        self.port = 0
-        self._state = state
-        self._api = Api(app.snapshot, lambda text: _plain(app.submit(text)))
-
-    def start(self) -> None:
-        self.port = self._api.start()
-        self._state.announce(self.port)
-
-    def stop(self) -> None:
-        self._api.stop()
-
-
-def _plain(answer: Future[TaskChanged]) -> Future[dict[str, Any]]:
-    plain: Future[dict[str, Any]] = Future()
-    answer.add_done_callback(lambda known: plain.set_result(view.change(known.result())))
-    return plain
 
 
 class RosPart:
@@ -229,39 +181,14 @@ def build(model: PlantModel, parts: Collection[str], options: Options) -> App:
     return App(model, parts, options)
 
 
-def address(text: str) -> Address:
-    """HOST:PORT or HOST; StartError for anything else."""
-    host, colon, port = text.rpartition(":")
-    if not colon:
-        host, port = text, str(MQTT_PORT)
-    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise StartError(f"'{text}' is not a broker address; write HOST:PORT, e.g. 127.0.0.1:{MQTT_PORT}")
-    return Address(host=host.strip("[]"), port=int(port))
-
-
-def check_rate(rate: float) -> float:
-    """The rate itself; StartError where it makes no sense."""
-    if not 0.1 <= rate <= 100:
-        raise StartError(f"{rate:g} is not a rate; allowed: 0.1 to 100")
-    return rate
-
-
-def at_rate(model: PlantModel, rate: float) -> PlantModel:
-    """The same plant with robots `rate` times as fast, and accelerating so that every ramp keeps its shape."""
-    check_rate(rate)
-    return replace(model, cells=tuple(_cell_at_rate(cell, rate) for cell in model.cells))
-
-
-def _cell_at_rate(cell: Cell, rate: float) -> Cell:
-    arm: Arm = replace(cell.arm, joints=tuple(_joint_at_rate(joint, rate) for joint in cell.arm.joints))
-    return replace(cell, arm=arm, mobile=replace(cell.mobile, speed=cell.mobile.speed * rate))
-
-
-def _joint_at_rate(joint: Joint, rate: float) -> Joint:
-    return replace(joint, speed=joint.speed * rate, acceleration=joint.acceleration * rate**2)
-
-
 def _refuse_ros_robots(model: PlantModel) -> None:
     names = [robot.name for robot in model.robots.values() if robot.link is Link.ROS]
     if names:
         raise StartError(f"{', '.join(names)}: link ros needs ROS 2; start without --no-ros")
+
+
+def _broker(model: PlantModel, options: Options, *, own: bool) -> OwnBroker | OtherBroker:
+    if not own:
+        return OtherBroker(address(options.broker or f"127.0.0.1:{MQTT_PORT}"), options.credentials)
+    boards = frozenset(robot.mqtt for robot in model.robots.values())
+    return OwnBroker(options.broker_host, options.broker_users, boards)

@@ -24,8 +24,10 @@ from arboleda.core.plant import Plant
 from arboleda.core.task import Order, Recipe
 
 from . import config, session
-from .build import PARTS, Options, address, build, check_rate
+from .build import PARTS, Options, build
 from .client import PlantClient
+from .parts.broker import address
+from .rate import check_rate
 from .screen import table
 from .state import default_state
 
@@ -116,9 +118,12 @@ Rate = Annotated[
 ]
 
 
+Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
+
+
 @cli.command()
 def up(
-    tasks: Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")] = None,
+    tasks: Tasks = None,
     plant: PlantFile = None,
     no_ros: NoRos = False,
     ros_lan: RosLan = False,
@@ -129,7 +134,7 @@ def up(
     rate: Rate = 1.0,
     state: StateFolder = None,
 ) -> None:
-    """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or the ROS 2 topic /task_request."""
+    """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model = _model(plant, tasks or [])
     options = _options(broker, broker_host, broker_users, rate, state)
     _run(model, tasks or [], options, boards=boards, ros=not no_ros, lan=ros_lan, stay=True)

@@ -73,6 +73,11 @@ class Loop(Generic[Event, Message]):
     def start(self) -> None:
         self._thread.start()
 
+    @property
+    def running(self) -> bool:
+        """Whether the loop was started and has not ended."""
+        return self._thread.is_alive()
+
     def post(self, event: Any) -> None:
         """Put an event into the inbox; from any thread, never blocks; after the end it is dropped."""
         with self._awake:

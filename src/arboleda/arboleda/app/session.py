@@ -42,12 +42,12 @@ def ros_link(*, lan: bool) -> Any:
 
 
 def run(app: App, texts: list[str], console: Console, *, stay: bool) -> int:
-    """Run the plant with these tasks; without `stay` until they ended. The exit status: 0, or 1 for a failure."""
+    """Run the plant with these tasks, without `stay` until they ended; 0, or 1 where one was not done."""
     errand = Errand(texts, lambda: _finished(app, errand, console, stay=stay))
     screen = Screen(console, app.snapshot)
     app.listen(screen.changed, errand.changed)
     app.watch(screen.stepped)
-    with _interruptible(), _logging_to(console):
+    with _interruptible(), _logging(console, app.log_file):
         try:
             _start(app, console)
             errand.start(app.submit)
@@ -59,7 +59,7 @@ def run(app: App, texts: list[str], console: Console, *, stay: bool) -> int:
 
 
 def _start(app: App, console: Console) -> None:
-    with console.status("starting ...") if console.is_terminal else suppress():
+    with console.status("starting ..."):
         app.start()
     for line in app.notes:
         console.print(Text(line, style="dim"))
@@ -104,21 +104,18 @@ def _interruptible() -> Iterator[None]:
 
 
 @contextmanager
-def _logging_to(console: Console) -> Iterator[None]:
-    handler = RichHandler(console=console, show_path=False, show_time=False, markup=False, level=logging.INFO)
+def _logging(console: Console, file: Path) -> Iterator[None]:
+    """Warnings to the terminal; details, tracebacks among them, to a file for whoever has to look."""
+    details = RotatingFileHandler(file, maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8", delay=True)
+    details.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    shown = RichHandler(console=console, show_path=False, show_time=False, level=logging.INFO)
     log = logging.getLogger("arboleda")
-    log.addHandler(handler)
+    log.setLevel(logging.DEBUG)
+    for handler in (details, shown):
+        log.addHandler(handler)
     try:
         yield
     finally:
-        log.removeHandler(handler)
-
-
-def log_to_file(folder: Path) -> None:
-    """Keep details, tracebacks among them, in `folder`/arboleda.log for whoever has to look."""
-    log = logging.getLogger("arboleda")
-    log.setLevel(logging.DEBUG)
-    log.propagate = False
-    file = RotatingFileHandler(folder / "arboleda.log", maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8")
-    file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
-    log.addHandler(file)
+        for handler in (details, shown):
+            log.removeHandler(handler)
+            handler.close()

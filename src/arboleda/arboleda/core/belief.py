@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .messages import Failure, Reason, Report
-from .model import Arm, Evidence, MotionState, Robot
+from .model import Arm, Evidence, Link, MotionState, Robot
 
 MERGED = ("epoch", "boot_id", "accepted", "done", "state", "q", "node", "homed", "effector", "piece")
 
@@ -11,12 +11,14 @@ MERGED = ("epoch", "boot_id", "accepted", "done", "state", "q", "node", "homed",
 class Belief:
     """The last word of a robot on everything it reports; None means it never said."""
 
-    def __init__(self, robot: Robot, stale_after_s: float) -> None:
+    def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
         self.robot = robot
         self.stale_after_s = stale_after_s
+        self.plant_epoch = plant_epoch
         self.heard_at: float | None = None
         self.stale = False
         self.epoch: int | None = None
+        self.plant: int | None = None
         self.boot_id: int | None = None
         self.accepted: str | None = None
         self.done: str | None = None
@@ -34,6 +36,8 @@ class Belief:
             value = getattr(report, name)
             if value is not None:
                 setattr(self, name, value)
+        if report.epoch is not None:
+            self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         if report.q is not None or report.node is not None:
             self.position_at = report.at
         if report.state is not MotionState.NO_LINK:
@@ -59,6 +63,11 @@ class Belief:
         return self.heard_at is not None or not self.supervised
 
     @property
+    def answered(self) -> bool:
+        """Whether our bridge says that it hears this plant; a robot without our bridge cannot say so."""
+        return self.robot.link is Link.ROS or self.epoch is None or self.plant == self.plant_epoch
+
+    @property
     def position(self) -> tuple[float, ...] | int | None:
         return self.q if isinstance(self.robot, Arm) else self.node
 
@@ -76,6 +85,8 @@ class Belief:
         if not self.online:
             said = "is offline" if self.heard_at is not None else "was not heard yet"
             return self._failure(Reason.LINK_LOST, said)
+        if not self.answered:
+            return self._failure(Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
         if self.homed is False:
             return self._failure(Reason.NOT_HOMED, "is not homed")
         return self._failure(*OBSTACLES[self.state]) if self.state in OBSTACLES else None

@@ -132,7 +132,7 @@ class CellRun:
         try:
             self.tree = self.tree or recipes.build(task.order, self)
             status = self._tick_to_rest(self.tree)
-        except Exception as error:  # a leaf is user code: whatever it raises ends this task, not the plant
+        except Exception as error:  # noqa: BLE001 - a leaf may be user code: it ends its task, not the plant
             sentence = f"{self.cell.name}: {type(error).__name__} in the tree: {error}"
             self.interrupt(Failure(reason=Reason.INTERNAL, sentence=sentence))
             return

@@ -36,7 +36,7 @@ class Dispatcher:
         self.outbox: list[Command | Notice] = []
         self.version = 0  # changes whenever something other than a position changed
         stale_after_s = model.timing.stale_after_s
-        self.beliefs = {name: Belief(robot, stale_after_s) for name, robot in model.robots.items()}
+        self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
         self._count = 0
 
     @property

@@ -137,13 +137,15 @@ Notice = Heartbeat | SystemStart | TaskChanged
 class Report:
     """What a robot said, in SI units; None means it did not say.
 
-    `epoch` names the bridge's start, `boot_id` the board's; `accepted`, `done` and `rejected` are
+    `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
+    `boot_id` the board's; `accepted`, `done` and `rejected` are
     command ids, the last of each; `refusal` is the word that came with `rejected`.
     """
 
     at: float
     robot: str
     epoch: int | None = None
+    plant: int | None = None
     boot_id: int | None = None
     accepted: str | None = None
     done: str | None = None

@@ -9,7 +9,7 @@ from typing import Any
 from arboleda.core.messages import Event, Report, SystemStart, TaskChanged, TaskRequest
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
-from arboleda.sim.devices import Devices, FromBoard, Reboot, ToBoard
+from arboleda.sim.devices import Devices, Reboot, ToBoard
 from arboleda.wire.bridge import Bridge, FromPlant
 from arboleda.wire.transport import Connection, Delivery, Publication
 
@@ -99,15 +99,15 @@ class Rig:
         raise AssertionError(f"the machines do not come to rest at {self.now}")
 
     def _step(self) -> None:
-        events, self._to_devices = self._to_devices, []
-        for message in self.devices.step(self.now, events):
-            self._from_board(message)
+        to_devices, self._to_devices = self._to_devices, []
+        for said in self.devices.step(self.now, to_devices):
+            self._publish(said.publication)
         if self.bridge is not None:
-            events, self._to_bridge = self._to_bridge, []
-            for message in self.bridge.step(self.now, events):
-                self._from_bridge(message)
-        events, self._to_plant = self._to_plant, []
-        for message in self.plant.step(self.now, events):
+            to_bridge, self._to_bridge = self._to_bridge, []
+            for passed_on in self.bridge.step(self.now, to_bridge):
+                self._from_bridge(passed_on)
+        to_plant, self._to_plant = self._to_plant, []
+        for message in self.plant.step(self.now, to_plant):
             self._from_plant(message)
         assert self.plant.sleepers() == [], "a tree runs with nothing left to wake it"
 
@@ -123,9 +123,6 @@ class Rig:
             self._to_plant.append(message)
         else:
             self._publish(message)
-
-    def _from_board(self, message: FromBoard) -> None:
-        self._publish(message.publication)
 
     def _publish(self, publication: Publication) -> None:
         if publication.retain:

@@ -38,6 +38,8 @@ class Board:
         self.labels = Labels(epoch)
         self.link = BoardLink(stale_after_s if supervised else None)
         self.counters = Counters()
+        self._plant: int | None = None
+        self._last: Report | None = None
         self._axes = len(robot.joints) if isinstance(robot, Arm) else None
         self._motion: Motion | None = None
         self._latched = False
@@ -75,6 +77,13 @@ class Board:
         if not command.id:
             return []
         return [self._report(at, state=None if self.link.up else MotionState.NO_LINK)]
+
+    def hear_plant(self, at: float, epoch: int) -> list[Message]:
+        """A heartbeat: a plant that was not heard before is told so, with what the board said last."""
+        if epoch == self._plant:
+            return []
+        self._plant = epoch
+        return [replace(self._last, at=at, plant=epoch)] if self._last and self.link.up else []
 
     def beat(self) -> Publication:
         """`latido`: who commands this board is alive."""
@@ -121,7 +130,8 @@ class Board:
         q, ended = self._joints(said), self.labels.hear(said)
         if self._motion and self._motion.ended(said, q, ended):
             self._motion = None
-        return [self._told(at, said, q), *([] if heard is Heard.NEWS else self._stop_again(at))]
+        self._last = self._told(at, said, q)
+        return [self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
 
     def _refusal(self, command: Command) -> str | None:
         if not self.link.up:
@@ -176,6 +186,7 @@ class Board:
             at=at,
             robot=self.robot.name,
             epoch=self.labels.epoch,
+            plant=self._plant,
             boot_id=self.link.boot_id,
             rejected=rejected,
             refusal=word,

@@ -91,7 +91,7 @@ class Bridge:
             changed = [board.connection(event.at, event.up) for board in self._boards.values()]
             return [message for messages in changed for message in messages]
         if isinstance(event.message, Heartbeat):
-            return self._relay(event.message)
+            return self._relay(event.at, event.message)
         return self._command(event.at, event.message)
 
     def _deliver(self, delivery: Delivery) -> list[Message]:
@@ -140,12 +140,13 @@ class Bridge:
         self._plant_epoch = max(self._plant_epoch, epoch)
         return None
 
-    def _relay(self, heartbeat: Heartbeat) -> list[Message]:
+    def _relay(self, at: float, heartbeat: Heartbeat) -> list[Message]:
         if heartbeat.epoch < self._plant_epoch:
             return []
         self._plant_epoch = heartbeat.epoch
         self._plant_beats = True
-        return self._beat_all()
+        news = [report for board in self._boards.values() for report in board.hear_plant(at, heartbeat.epoch)]
+        return [*news, *self._beat_all()]
 
     def _beat_all(self) -> list[Message]:
         return [board.beat() for board in self._boards.values() if board.in_motion]

@@ -144,6 +144,7 @@ def _write_flag(value: bool) -> str:
 
 _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] = {
     "epoch": ("epoch", _count, str),
+    "plant": ("plant", _count, str),
     "boot_id": ("boot_id", _count, str),
     "accepted": ("accepted", _id, str),
     "done": ("done", _id, str),

@@ -1,0 +1,62 @@
+"""The bridge in its loop, between the plant and one MQTT client."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+from uuid import uuid4
+
+from arboleda.adapters.mqtt import MqttClient
+from arboleda.core.messages import Command, Notice, Report, SystemStart, TaskChanged
+from arboleda.core.model import PlantModel
+from arboleda.wire.bridge import Bridge, FromPlant
+from arboleda.wire.transport import Publication
+
+from ..loop import Loop
+from .part import BrokerAddress, Crash, not_sent
+
+
+class BridgePart:
+    """The bridge in its loop, with its MQTT client; `connect` its plant side before `start`."""
+
+    def __init__(self, model: PlantModel, epoch: int, broker: BrokerAddress, crash: Crash) -> None:
+        self._broker = broker
+        self._bridge = Bridge(model, epoch=epoch, now=time.monotonic())
+        self._version = model.mqtt_version
+        self._client: MqttClient | None = None
+        self._report: Callable[[Report], None] = lambda report: None
+        self.loop: Loop[Any, Any] = Loop(
+            "bridge", self._bridge, self._send, on_crash=crash, on_send_error=not_sent
+        )
+
+    def connect(self, report: Callable[[Report], None]) -> None:
+        self._report = report
+
+    def send(self, message: Command | Notice) -> None:
+        """The plant's port where plant and bridge share a process."""
+        if not isinstance(message, SystemStart | TaskChanged):
+            self.loop.post(FromPlant(at=time.monotonic(), message=message))
+
+    def start(self) -> None:
+        self.loop.start()
+        self._client = MqttClient(
+            f"arboleda_bridge_{uuid4().hex[:8]}",
+            self._broker.address,
+            subscriptions=self._bridge.subscriptions,
+            on_event=self.loop.post,
+            credentials=self._broker.credentials,
+            version=self._version,
+        )
+        self._client.start()
+
+    def stop(self) -> None:
+        self.loop.stop()
+        if self._client is not None:
+            self._client.close()
+
+    def _send(self, message: Publication | Report) -> None:
+        if isinstance(message, Report):
+            self._report(message)
+        elif self._client is not None:
+            self._client.publish(message)

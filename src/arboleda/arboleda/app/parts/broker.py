@@ -1,0 +1,61 @@
+"""The MQTT broker of a plant: its own, or another."""
+
+from __future__ import annotations
+
+from arboleda.adapters.broker import EmbeddedBroker
+from arboleda.adapters.mqtt import Address, Credentials
+from arboleda.core.errors import StartError
+
+MQTT_PORT = 1883
+
+
+class OtherBroker:
+    """A broker that somebody else runs: nothing to start."""
+
+    def __init__(self, address: Address, credentials: Credentials | None) -> None:
+        self.address = address
+        self.credentials = credentials
+
+    def start(self) -> None: ...
+    def stop(self) -> None: ...
+
+
+class OwnBroker:
+    """The embedded broker."""
+
+    def __init__(self, host: str, users: dict[str, str] | None, boards: frozenset[str]) -> None:
+        self.address = Address(host=host, port=MQTT_PORT)
+        self.credentials: Credentials | None = None
+        self._users = users
+        self._boards = boards
+        self._broker: EmbeddedBroker | None = None
+
+    def start(self) -> None:
+        """Take port 1883; where it is taken, any free one, unless boards outside must find it."""
+        try:
+            self._listen(MQTT_PORT)
+        except StartError:
+            if self._users is not None:
+                raise
+            self._listen(0)
+
+    def stop(self) -> None:
+        if self._broker is not None:
+            self._broker.stop()
+
+    def _listen(self, port: int) -> None:
+        host = self.address.host
+        broker = EmbeddedBroker(host, port, users=self._users, boards=self._boards)
+        self.address = broker.start()
+        self.credentials = broker.credentials
+        self._broker = broker
+
+
+def address(text: str) -> Address:
+    """HOST:PORT or HOST; StartError for anything else."""
+    host, colon, port = text.rpartition(":")
+    if not colon:
+        host, port = text, str(MQTT_PORT)
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise StartError(f"'{text}' is not a broker address; write HOST:PORT, e.g. 127.0.0.1:{MQTT_PORT}")
+    return Address(host=host.strip("[]"), port=int(port))

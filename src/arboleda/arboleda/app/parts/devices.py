@@ -1,0 +1,89 @@
+"""The virtual boards in one loop, each with an MQTT client of its own."""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import suppress
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
+from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.core.model import PlantModel
+from arboleda.sim.devices import Devices, FromBoard, ToBoard
+from arboleda.wire.payloads import Presence, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+from ..loop import Loop
+from .lookout import Lookout
+from .part import BrokerAddress, Crash, not_sent
+
+
+class DevicesPart:
+    """The virtual boards in one loop, each with an MQTT client and a last will of its own."""
+
+    def __init__(
+        self, model: PlantModel, first_boot: int, broker: BrokerAddress, crash: Crash, *, scout: bool
+    ) -> None:
+        self._broker = broker
+        self._crash = crash
+        self._scout = scout
+        self._version = model.mqtt_version
+        self._devices = Devices(model, now=time.monotonic(), boot_ids=count(first_boot).__next__)
+        self._clients: dict[str, MqttClient] = {}
+        self._lock = threading.Lock()
+        self._lookout: Lookout | None = None
+        self.loop: Loop[Any, Any] = Loop(
+            "devices", self._devices, self._send, on_crash=crash, on_send_error=not_sent
+        )
+
+    def start(self) -> None:
+        """Join the broker; with `scout`, only after it was seen that no real board has these names."""
+        self.loop.start()
+        if self._scout:
+            self._lookout = Lookout(self._broker, tuple(self._devices.boards), self._join, self._crash)
+            self._lookout.start()
+        else:
+            self._join()
+
+    def stop(self) -> None:
+        if self._lookout is not None:
+            self._lookout.stop()
+        with self._lock:
+            clients, self._clients = self._clients, {}
+        for board, client in clients.items():
+            self._leave(board, client)
+        self.loop.stop()
+
+    def _join(self) -> None:
+        with self._lock:
+            for number, board in enumerate(self._devices.boards):
+                self._clients[board] = self._client(board, announce=number == 0)
+            for client in self._clients.values():
+                client.start()
+
+    def _client(self, board: str, *, announce: bool) -> MqttClient:
+        gone = Publication(topic=topic(board, Channel.PRESENCE), payload=encode(Presence(online=False)))
+        return MqttClient(
+            board,
+            self._broker.address,
+            subscriptions=self._devices.subscriptions(board),
+            on_event=lambda event: self.loop.post(ToBoard(board=board, event=event)),
+            will=replace(gone, retain=True),
+            credentials=self._broker.credentials,
+            version=self._version,
+            announce=announce,
+        )
+
+    def _leave(self, board: str, client: MqttClient) -> None:
+        gone = encode(Presence(online=False))
+        with suppress(NotConnected):  # then there is nobody to tell
+            client.publish(Publication(topic=topic(board, Channel.PRESENCE), payload=gone, retain=True))
+        client.close()
+
+    def _send(self, message: FromBoard) -> None:
+        client = self._clients.get(message.board)
+        if client is not None:
+            client.publish(message.publication)

@@ -1,0 +1,30 @@
+"""Virtual robots that are faster or slower than the real ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from arboleda.core.errors import StartError
+from arboleda.core.model import Arm, Cell, Joint, PlantModel
+
+
+def check_rate(rate: float) -> float:
+    """The rate itself; StartError where it makes no sense."""
+    if not 0.1 <= rate <= 100:
+        raise StartError(f"{rate:g} is not a rate; allowed: 0.1 to 100")
+    return rate
+
+
+def at_rate(model: PlantModel, rate: float) -> PlantModel:
+    """The same plant, its robots `rate` times as fast, accelerating so that every ramp keeps its shape."""
+    check_rate(rate)
+    return replace(model, cells=tuple(_cell_at_rate(cell, rate) for cell in model.cells))
+
+
+def _cell_at_rate(cell: Cell, rate: float) -> Cell:
+    arm: Arm = replace(cell.arm, joints=tuple(_joint_at_rate(joint, rate) for joint in cell.arm.joints))
+    return replace(cell, arm=arm, mobile=replace(cell.mobile, speed=cell.mobile.speed * rate))
+
+
+def _joint_at_rate(joint: Joint, rate: float) -> Joint:
+    return replace(joint, speed=joint.speed * rate, acceleration=joint.acceleration * rate**2)
