@@ -77,14 +77,13 @@ class Chain:
 
         self.observer.wait(at_step, f"{cell} never got to {step!r}")
 
-    def wait_for_the_link(self, robot: str) -> None:
-        """Wait until a robot that was lost is heard again."""
+    def robot(self, name: str) -> dict[str, Any]:
+        """What the last view says of a robot."""
+        view = json.loads(self.observer.heard["/plant/view"][-1].data)
+        return next(robot for robot in view["robots"] if robot["name"] == name)
 
-        def online() -> bool:
-            robots = json.loads(self.observer.heard["/plant/view"][-1].data)["robots"]
-            return any(each["name"] == robot and each["online"] for each in robots)
-
-        self.observer.wait(online, f"{robot} never came back")
+    def wait_for_robot(self, name: str, ready: Callable[[dict[str, Any]], bool]) -> None:
+        self.observer.wait(lambda: ready(self.robot(name)), f"{name} is not as expected")
 
     def outcome(self, text: str) -> dict[str, Any]:
         """The change that ended the task."""
@@ -118,11 +117,12 @@ def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
     parts = chain(evidence)
     parts.submit("sis_a 0A 4")
     parts.wait_for_step("sis_a", "move to pick-up")
+    before = parts.robot("rm_sis_b")["bridge_epoch"]
     parts.bridge.kill()
     parts.start("mqtt_bridge")
     change = parts.outcome("sis_a 0A 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
-    parts.wait_for_the_link("ra1")
+    parts.wait_for_robot("rm_sis_b", lambda robot: robot["bridge_epoch"] != before and not robot["obstacle"])
     parts.submit("sis_b 0A 4")
     change = parts.outcome("sis_b 0A 4")
     assert change["state"] == "done", change["sentence"]
@@ -136,10 +136,11 @@ def test_boards_killed_and_restarted_in_a_move_fail_it(
     parts.submit("sis_a 0A 4")
     parts.wait_for_step("sis_a", "move to pick-up")
     parts.devices.kill()
+    parts.wait_for_robot("rm_sis_b", lambda robot: not robot["online"])
     parts.start("virtual_devices")
     change = parts.outcome("sis_a 0A 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
-    parts.wait_for_the_link("ra1")
+    parts.wait_for_robot("rm_sis_b", lambda robot: not robot["obstacle"])
     parts.submit("sis_b 0A 4")
     change = parts.outcome("sis_b 0A 4")
     assert change["state"] == "done", change["sentence"]

@@ -91,6 +91,7 @@ def _robot(belief: Belief, now: float) -> dict[str, Any]:
         "effector": belief.effector,
         "piece": belief.piece,
         "boot_id": belief.boot_id,
+        "bridge_epoch": belief.epoch,
     }
 
 
