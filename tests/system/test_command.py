@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
+
+from .conftest import paths
 
 pytestmark = pytest.mark.system
 
@@ -112,10 +116,34 @@ def test_the_broker_may_come_late_and_go_and_come_back(
 
 
 def test_virtual_boards_do_not_fight_boards_that_are_there(
-    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Any
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path
 ) -> None:
     mosquitto(free_port)
-    first = arboleda("up", "--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    broker = ("--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    first = arboleda("up", *broker, "--rate", "10")
     first.wait_for("HTTP API")
-    run = arboleda("run", "sis_a 0B 7", "--no-ros", "--broker", f"127.0.0.1:{free_port}", "--plant")
-    run.kill()
+    second = arboleda("run", "sis_a 0B 7", *broker, "--state", str(tmp_path / "second"))
+    assert second.wait() == 1
+    assert "already live on this broker" in second.output and "--boards real" in second.output
+    assert arboleda("submit", "sis_a 0B 7").wait() == 0
+    first.wait_for("done      sis_a 0B 7")
+
+
+def test_real_boards_are_driven_where_no_virtual_ones_are_wanted(
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path
+) -> None:
+    mosquitto(free_port)
+    broker = ("--no-ros", "--broker", f"127.0.0.1:{free_port}")
+    boards = arboleda("up", *broker, "--rate", "10")
+    boards.wait_for("HTTP API")
+    state = ("--state", str(tmp_path / "second"))
+    run = arboleda("run", "sis_b 0B 7", *broker, *state, "--boards", "real")
+    assert run.wait() == 0, run.output
+
+
+def test_a_reader_that_goes_away_does_not_stop_the_plant(start: Callable[..., Any], tmp_path: Path) -> None:
+    command = f"{sys.executable} -c 'from arboleda.app.cli import main; main()'"
+    task = f"run 'sis_a 0B 7' --no-ros --rate 10 --state {tmp_path}/state"
+    shell = start("bash", "-c", f"{command} {task} | head -1", env={"PYTHONPATH": paths()})
+    assert shell.wait() == 0
+    assert "Traceback" not in shell.output

@@ -75,8 +75,11 @@ class Port:
             )
 
     def health(self) -> PortHealth:
-        """The health now; a publisher that joined one of this port's own topics is logged once."""
-        errors = tuple(f"another node commands {topic}: {name}" for topic, name in self.foreign_publishers())
+        """The health now; a node that joined topics of this port's own is logged once."""
+        topics: dict[str, list[str]] = {}
+        for topic, name in self.foreign_publishers():
+            topics.setdefault(name, []).append(topic)
+        errors = tuple(_intrusion(name, found) for name, found in topics.items())
         for sentence in errors:
             self._log_once(sentence, logging.ERROR)
         return PortHealth(
@@ -152,6 +155,11 @@ class Port:
 
     def _absolute(self, topic: str) -> str:
         return self._node.resolve_topic_name(topic)
+
+
+def _intrusion(name: str, topics: list[str]) -> str:
+    more = f" and {len(topics) - 1} more topics" if len(topics) > 1 else ""
+    return f"another node commands {topics[0]}{more}: {name}"
 
 
 def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:

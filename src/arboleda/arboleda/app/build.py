@@ -26,6 +26,7 @@ from .rate import at_rate
 from .state import StateDir, default_state
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
+MQTT_311 = 4  # paho's number of the protocol
 LOG = logging.getLogger(__name__)
 
 
@@ -52,7 +53,8 @@ class App:
         self._broker = _broker(model, options, own="broker" in parts)
         self._web = WebPart(self.snapshot, self.submit, self._state.announce) if "web" in parts else None
         self._link = options.link
-        self._ended = threading.Event()
+        self._over = threading.Event()
+        self._callbacks: list[Callable[[], None]] = []
         self._trouble: ArboledaError | None = None
         self._started: list[Part] = []
         self._parts: list[Part] = [self._broker]
@@ -90,11 +92,17 @@ class App:
 
     def end(self) -> None:
         """Let `wait` return."""
-        self._ended.set()
+        self._over.set()
+        for callback in self._callbacks:
+            callback()
+
+    def when_over(self, callback: Callable[[], None]) -> None:
+        """Have the end of `wait` told as well; from any thread, before `start`."""
+        self._callbacks.append(callback)
 
     def wait(self) -> None:
         """Block until `end`; ArboledaError where a part broke down."""
-        self._ended.wait()
+        self._over.wait()
         if self._trouble is not None:
             raise self._trouble
 
@@ -154,13 +162,13 @@ class App:
             plant.connect_ros(link.orchestrator(self.model, plant.loop.post, time.monotonic))
         self._parts.insert(1, RosPart(link))
 
-    def _crash(self, name: str, error: Exception) -> None:
+    def _crash(self, name: str, error: BaseException) -> None:
         LOG.debug("the %s broke down", name, exc_info=error)
         if not isinstance(error, ArboledaError):
             what = f"{type(error).__name__}: {error}"
             error = ArboledaError(f"internal error in the {name} ({what}); details are in {self.log_file}")
         self._trouble = self._trouble or error
-        self._ended.set()
+        self.end()
 
 
 class RosPart:
@@ -188,6 +196,8 @@ def _refuse_ros_robots(model: PlantModel) -> None:
 
 
 def _broker(model: PlantModel, options: Options, *, own: bool) -> OwnBroker | OtherBroker:
+    if own and model.mqtt_version != MQTT_311:
+        raise StartError("the plant's own broker speaks MQTT 3.1.1 only; name another one with --broker")
     if not own:
         return OtherBroker(address(options.broker or f"127.0.0.1:{MQTT_PORT}"), options.credentials)
     boards = frozenset(robot.mqtt for robot in model.robots.values())

@@ -193,7 +193,7 @@ def check(
     model = config.load(file)
     for warning in config.warnings(model):
         print(f"{file}: warning: {warning}")
-    print(f"{file}: good: plant {model.name}, {len(model.cells)} cells, {len(model.robots)} robots")
+    print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")
 
 
 @cli.command()
@@ -251,6 +251,8 @@ def _options(
         raise typer.BadParameter(
             "--broker names another broker, --broker-host opens the plant's own: choose one"
         )
+    if (host is None) != (users is None):
+        raise typer.BadParameter("--broker-host and --broker-users go together: who may log in, and where")
     user = os.environ.get(USER)
     credentials = Credentials(user=user, password=os.environ.get(PASSWORD, "")) if user else None
     return Options(
@@ -273,12 +275,14 @@ def _run(
     lan: bool,
     stay: bool,
 ) -> None:
-    boards = boards or (Boards.VIRTUAL if options.broker_host == "127.0.0.1" else Boards.REAL)
+    boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
+    if boards is Boards.REAL and options.rate != 1.0:
+        raise typer.BadParameter("--rate is for virtual boards; real ones have the speed they have")
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
     link = session.ros_link(lan=lan) if ros else None
     app = build(model, set(PARTS) - left_out, replace(options, link=link))
-    raise typer.Exit(session.run(app, tasks, Console(highlight=False), stay=stay))
+    raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
 
 
 def _client(plant: Path | None, state: Path | None) -> PlantClient:

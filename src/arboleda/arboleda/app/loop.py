@@ -30,7 +30,7 @@ def log_send_error(message: object, error: Exception) -> None:
     log.warning("%s was not sent: %s", message, error)
 
 
-def log_crash(name: str, error: Exception) -> None:
+def log_crash(name: str, error: BaseException) -> None:
     """What happens to a crash, where nobody asked for more."""
     log.critical("%s has stopped on an internal error: %r", name, error)
     log.debug("%s crashed here", name, exc_info=error)
@@ -51,7 +51,7 @@ class Loop(Generic[Event, Message]):
         send: Callable[[Any], None],
         *,
         clock: Callable[[], float] = time.monotonic,
-        on_crash: Callable[[str, Exception], None] = log_crash,
+        on_crash: Callable[[str, BaseException], None] = log_crash,
         on_send_error: Callable[[Any, Exception], None] = log_send_error,
         on_step: Callable[[float, Sequence[Any], Sequence[Any]], None] | None = None,
         wait: Callable[[threading.Condition, float | None], object] = threading.Condition.wait,
@@ -104,10 +104,10 @@ class Loop(Generic[Event, Message]):
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
-        if self._on_step is not None:
-            self._on_step(now, events, messages)
         for message in messages:
             self._deliver(message)
+        if self._on_step is not None:
+            self._on_step(now, events, messages)
 
     def _deliver(self, message: Message) -> None:
         try:
@@ -119,7 +119,7 @@ class Loop(Generic[Event, Message]):
         try:
             while self._sleep():
                 self.turn()
-        except Exception as error:  # noqa: BLE001 - handed over whole
+        except BaseException as error:  # noqa: BLE001 - handed over whole, a SystemExit of some library too
             self._end()
             self._on_crash(self.name, error)
 

@@ -6,14 +6,16 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from rich.console import Console
+from rich.box import SIMPLE_HEAD
+from rich.console import Console, Group
 from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
 from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.core.model import MotionState
 
-REFRESH_HZ = 8
+REFRESH_HZ = 5
 STYLES = {
     TaskState.QUEUED: "dim",
     TaskState.RUNNING: "cyan",
@@ -64,41 +66,69 @@ class Screen:
             self._steps[cell["name"]] = cell["step"]
 
 
-def table(snapshot: dict[str, Any]) -> Table:
-    """Cell, task, step, arm joints, mobile node and elapsed time, one row per cell."""
+def table(snapshot: dict[str, Any]) -> Group:
+    """Cell, task, step, arm joints, mobile node and time, a row per cell; below it what is in the way."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
-    drawn = Table(title=f"plant {snapshot['plant']}", title_justify="left")
-    for heading in ("cell", "task", "step", "arm joints", "effector", "mobile", "elapsed", "queue"):
+    drawn = Table(
+        title=f"plant {snapshot['plant']}", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0)
+    )
+    for heading in ("cell", "task", "step", "arm, effector", "mobile", "elapsed"):
         drawn.add_column(heading, no_wrap=True)
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
-    return drawn
+    return Group(drawn, *(Text(line, style="yellow") for line in _in_the_way(snapshot)))
 
 
 def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> list[Text]:
     task = cell["task"]
-    obstacle = arm["obstacle"] or mobile["obstacle"] if task is None else None
     style = {"idle": "", "execute": "cyan"}.get(cell["state"], "red")
-    texts = [
-        cell["name"],
-        task["text"] if task else cell["state"],
-        cell["step"] or cell["waiting_for"] or obstacle or "",
-        "?" if arm["q"] is None else " ".join(map(position, arm["q"], arm["units"])),
-        effector(arm),
-        "?" if mobile["node"] is None else f"node {mobile['node']}",
-        f"{task['elapsed_s']:5.1f} s" if task else "",
-        str(len(cell["queue"])),
+    queued = f" +{len(cell['queue'])}" if cell["queue"] else ""
+    words = (cell["name"], (task["text"] if task else cell["state"]) + queued, cell["step"] or "")
+    return [
+        *(Text(word, style=style) for word in words),
+        _of(arm, f"{joints(arm)}, {effector(arm)}"),
+        _of(mobile, "?" if mobile["node"] is None else f"node {mobile['node']}"),
+        Text(f"{task['elapsed_s']:.1f} s" if task else "", style=style),
     ]
-    return [Text(text, style=style) for text in texts]
 
 
-def position(value: float, unit: str) -> str:
-    """A joint position (rad or m) for a person: degrees or millimetres."""
-    return f"{math.degrees(value):5.1f}°" if unit == "rad" else f"{value * 1000:3.0f} mm"
+def _of(robot: dict[str, Any], said: str) -> Text:
+    """What a robot said last, dim where it is no longer heard."""
+    return Text(said, style="" if robot["online"] else "dim")
+
+
+def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
+    held = [cell["held_by"] for cell in snapshot["cells"] if cell["held_by"]]
+    idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
+    return held + [
+        each["obstacle"] for each in snapshot["robots"] if each["obstacle"] and each["name"] in idle
+    ]
+
+
+def joints(arm: dict[str, Any]) -> str:
+    """Joint positions for a person: degrees, then millimetres."""
+    if arm["q"] is None:
+        return "?"
+    values = list(zip(arm["q"], arm["units"], strict=True))
+    turns = " ".join(f"{math.degrees(value):.0f}" for value, unit in values if unit == "rad")
+    return f"{turns}°" + "".join(f" {value * 1000:.0f} mm" for value, unit in values if unit == "m")
 
 
 def effector(arm: dict[str, Any]) -> str:
     return {None: "?", True: "on", False: "off"}[arm["effector"]]
+
+
+def parting(snapshot: dict[str, Any]) -> list[str]:
+    """How each robot that was ever heard was left."""
+    return [_left(robot) for robot in snapshot["robots"] if robot["age_s"] is not None]
+
+
+def _left(robot: dict[str, Any]) -> str:
+    grip = f", effector {effector(robot)}" if robot["effector"] is not None else ""
+    if not robot["online"]:
+        return f"{robot['name']}: offline, not known to be still{grip}"
+    still = robot["state"] in (MotionState.STOPPED, MotionState.NOT_HOMED, MotionState.STOP_LATCHED)
+    return f"{robot['name']}: {'still' if still else 'NOT confirmed still'}{grip}"
 
 
 def summary(results: dict[str, TaskChanged], seconds: dict[str, float]) -> Table:

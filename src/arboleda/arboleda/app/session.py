@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import logging
+import shutil
 import signal
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from importlib.metadata import entry_points
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
+from queue import SimpleQueue
 from types import FrameType
 from typing import Any
 
 from rich.console import Console
-from rich.logging import RichHandler
 from rich.text import Text
 
 from arboleda.core.errors import StartError
 
 from .build import App
 from .errand import Errand
-from .screen import Screen, effector, summary
+from .screen import Screen, parting, summary
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
@@ -41,49 +44,75 @@ def ros_link(*, lan: bool) -> Any:
     return connect(lan=lan)
 
 
-def run(app: App, texts: list[str], console: Console, *, stay: bool) -> int:
-    """Run the plant with these tasks, without `stay` until they ended; 0, or 1 where one was not done."""
-    errand = Errand(texts, lambda: _finished(app, errand, console, stay=stay))
-    screen = Screen(console, app.snapshot)
-    app.listen(screen.changed, errand.changed)
-    app.watch(screen.stepped)
-    with _interruptible(), _logging(console, app.log_file):
-        try:
-            _start(app, console)
-            errand.start(app.submit)
-            with screen, suppress(KeyboardInterrupt):
-                app.wait()
-        finally:
-            _stop(app, console)
-    return 0 if stay or errand.ok else 1
+class Session:
+    """A plant in a terminal. Whatever is printed is printed by the thread that calls `run`: no trouble with
+    the terminal can reach the plant."""
+
+    def __init__(self, app: App, texts: Sequence[str], console: Console, *, stay: bool) -> None:
+        self._app = app
+        self._console = console
+        self._stay = stay
+        self._news: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        self._errand = Errand(texts, lambda: self._news.put(self._finished))
+        self._screen = Screen(console, app.snapshot)
+        self._stopping = False
+
+    def run(self) -> int:
+        """Run the plant, without `stay` until the tasks ended; 0, or 1 where one was not done."""
+        self._app.listen(lambda change: self._later(self._screen.changed, change), self._errand.changed)
+        self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot))
+        self._app.when_over(lambda: self._news.put(None))
+        with _interruptible(), _logging(self._say, self._app.log_file):
+            self._start()
+            try:
+                self._errand.start(self._app.submit)
+                with self._screen, suppress(KeyboardInterrupt):
+                    self._show()
+                    self._app.wait()
+            finally:
+                self._stop()
+        return 0 if self._stay or self._errand.ok else 1
+
+    def _later(self, show: Callable[[Any], None], what: Any) -> None:
+        self._news.put(partial(show, what))
+
+    def _say(self, line: str, style: str = "") -> None:
+        self._later(self._console.print, Text(line, style=style))
+
+    def _show(self) -> None:
+        for news in iter(self._news.get, None):
+            news()
+
+    def _start(self) -> None:
+        with self._console.status("starting ..."):
+            self._app.start()
+        for line in self._app.notes:
+            self._console.print(Text(line, style="dim"))
+
+    def _finished(self) -> None:
+        if not self._errand.texts or self._stopping:
+            return
+        self._console.print(summary(self._errand.results, self._errand.seconds))
+        if not self._stay:
+            self._app.end()
+            return
+        hint = f"The plant stays up for more tasks: {_command()} submit 'TASK'. Ctrl-C ends it."
+        self._console.print(Text(hint))
+
+    def _stop(self) -> None:
+        """Halt everything and say how each robot was left."""
+        self._stopping = True
+        self._console.print(Text("stopping: whatever moves is halted ...", style="dim"))
+        self._app.stop()
+        self._news.put(None)
+        self._show()
+        for line in parting(self._app.snapshot()):
+            self._console.print(Text(f"  {line}", style="dim"))
 
 
-def _start(app: App, console: Console) -> None:
-    with console.status("starting ..."):
-        app.start()
-    for line in app.notes:
-        console.print(Text(line, style="dim"))
-
-
-def _finished(app: App, errand: Errand, console: Console, *, stay: bool) -> None:
-    if errand.texts:
-        console.print(summary(errand.results, errand.seconds))
-    if not stay:
-        app.end()
-    elif errand.texts:
-        console.print(Text("The plant stays up for more tasks: arboleda submit 'TASK'. Ctrl-C ends it."))
-
-
-def _stop(app: App, console: Console) -> None:
-    """Halt everything and say how each robot was left."""
-    console.print(Text("stopping: whatever moves is halted ...", style="dim"))
-    app.stop()
-    for robot in app.snapshot()["robots"]:
-        if robot["state"] is None:
-            continue
-        left = "still" if robot["state"] in (0, 3, 4) else "NOT confirmed still"
-        grip = f", effector {effector(robot)}" if robot["effector"] is not None else ""
-        console.print(Text(f"  {robot['name']}: {left}{grip}", style="dim"))
+def _command() -> str:
+    """How the person who started this calls the command."""
+    return "arboleda" if shutil.which("arboleda") else sys.argv[0]
 
 
 @contextmanager
@@ -103,19 +132,31 @@ def _interruptible() -> Iterator[None]:
             signal.signal(number, handler)
 
 
+class _Teller(logging.Handler):
+    """Has every log line said."""
+
+    def __init__(self, say: Callable[[str, str], None]) -> None:
+        super().__init__(logging.INFO)
+        self._say = say
+
+    def emit(self, record: logging.LogRecord) -> None:
+        style = "dim" if record.levelno < logging.WARNING else "yellow"
+        self._say(record.getMessage(), "red" if record.levelno >= logging.ERROR else style)
+
+
 @contextmanager
-def _logging(console: Console, file: Path) -> Iterator[None]:
-    """Warnings to the terminal; details, tracebacks among them, to a file for whoever has to look."""
+def _logging(say: Callable[[str, str], None], file: Path) -> Iterator[None]:
+    """What matters to the terminal; details, tracebacks among them, to a file for whoever has to look."""
     details = RotatingFileHandler(file, maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8", delay=True)
     details.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
-    shown = RichHandler(console=console, show_path=False, show_time=False, level=logging.INFO)
+    handlers = (details, _Teller(say))
     log = logging.getLogger("arboleda")
     log.setLevel(logging.DEBUG)
-    for handler in (details, shown):
+    for handler in handlers:
         log.addHandler(handler)
     try:
         yield
     finally:
-        for handler in (details, shown):
+        for handler in handlers:
             log.removeHandler(handler)
             handler.close()

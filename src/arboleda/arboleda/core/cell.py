@@ -70,6 +70,7 @@ class CellRun:
         self.tree: Behaviour | None = None
         self.dirty = False
         self.closed = False
+        self.failure: Failure | None = None
         self.wakes: list[float] = []
         self.sent = 0
 
@@ -92,12 +93,19 @@ class CellRun:
         """Why the next task does not start, for the operator; None where nothing is in its way."""
         if self.closed:
             return "the plant is ending"
-        if self.state is CellState.HELD:
-            return f"{self.cell.name} is held after a failure; restart the plant once it is safe"
+        if self.held_by is not None:
+            return self.held_by
         if self.state is CellState.EXECUTE:
             return f"{self.cell.name} is busy"
         found = (self.plant.obstacle(robot.name) for robot in self.cell.robots)
         return next((failure.sentence for failure in found if failure), None)
+
+    @property
+    def held_by(self) -> str | None:
+        """What holds the cell and what to do about it; None where it is not held."""
+        if self.state is not CellState.HELD or self.failure is None:
+            return None
+        return f"{self.cell.name} is held ({self.failure.sentence}); restart the plant once it is safe"
 
     def advance(self) -> None:
         """Start what can start and tick until the tree rests."""
@@ -158,7 +166,7 @@ class CellRun:
         self.plant.cancel_all(self.cell.name)  # py_trees does not terminate a leaf that raised
         if state is TaskState.FAILED:
             task.fail(Failure(reason=Reason.INTERNAL, sentence=f"{task.order.text}: failed without a cause"))
-        self.task, self.tree, self.wakes = None, None, []
+        self.task, self.tree, self.wakes, self.failure = None, None, [], task.failure
         self._become(Cause.ENDED if state is TaskState.DONE else Cause.FAILED)
         task.become(state, self.now)
         self.plant.task_changed(task)

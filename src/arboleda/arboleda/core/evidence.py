@@ -54,7 +54,7 @@ class Before:
 
 def judge(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
     """The strongest feed that `report` proves about `entry`; None where it proves nothing new."""
-    broken = _broken_link(entry, before, report) or _reboot(entry, before, belief, report)
+    broken = _broken_link(entry, before, belief, report) or _reboot(entry, before, belief, report)
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, report)
@@ -83,9 +83,12 @@ def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
     return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))
 
 
-def _broken_link(entry: Entry, before: Before, report: Report) -> Verdict | None:
+def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
     if report.state is MotionState.NO_LINK:
-        return _failed(entry, Reason.LINK_LOST, "the link was lost")
+        silence_s = 0.0 if belief.heard_at is None else report.at - belief.heard_at
+        silent = silence_s >= belief.stale_after_s
+        what = f"no telemetry for {silence_s:.1f} s" if silent else "the link was lost"
+        return _failed(entry, Reason.LINK_LOST, what)
     if before.epoch is not None and report.epoch is not None and report.epoch != before.epoch:
         return _failed(entry, Reason.LINK_LOST, "the bridge restarted")
     if report.rejected == entry.command.id:

@@ -57,6 +57,7 @@ def _cell(cell: CellRun, now: float) -> dict[str, Any]:
         "step": step_of(cell.tree),
         "queue": [task.id for task in cell.queue],
         "waiting_for": cell.waiting_for() if cell.queue else None,
+        "held_by": cell.held_by,
         "tree": _nodes(cell.tree, "") if cell.tree else [],
     }
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from itertools import count
 from typing import Any
 
+from arboleda.core import view
 from arboleda.core.messages import Event, Report, SystemStart, TaskChanged, TaskRequest
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
@@ -63,6 +64,10 @@ class Rig:
     def outcomes(self) -> dict[str, TaskChanged]:
         """The last change of every accepted task, by task id."""
         return {change.task: change for change in self.changes if change.task}
+
+    def snapshot(self) -> dict[str, Any]:
+        """What a screen would show now."""
+        return view.snapshot(self.plant)
 
     def reboot(self, board: str) -> None:
         """The board loses power: its connection ends with its last will, then it is back."""

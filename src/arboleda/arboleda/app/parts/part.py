@@ -9,7 +9,7 @@ from typing import Protocol
 from arboleda.adapters.mqtt import Address, Credentials
 
 LOG = logging.getLogger(__name__)
-Crash = Callable[[str, Exception], None]  # told which part broke down, and on what
+Crash = Callable[[str, BaseException], None]  # told which part broke down, and on what
 
 
 class Part(Protocol):
