@@ -27,6 +27,7 @@ _POLL_S = 0.02
 _DIAGNOSTICS_S = 1.0
 # Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
 _DISCOVERY_S = 3.2
+_NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
 _UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
 
 
@@ -66,9 +67,12 @@ class Port:
         that were there before, about one in two.
         """
         until = self._born + wait_s
-        while not (found := _named(self.foreign_publishers())) and time.monotonic() < until:
+        while not _named(found := self.foreign_publishers()):
+            patience_s = _NAME_S if found else 0.0
+            if time.monotonic() >= until + patience_s:
+                break
             time.sleep(_POLL_S)
-        for topic, name in found or self.foreign_publishers():
+        for topic, name in _named(found) or found:
             raise StartError(
                 f"another node already commands {topic}: {name}; stop it, "
                 "or give this plant a ROS_DOMAIN_ID of its own"
