@@ -33,6 +33,9 @@ class Plant:
             raise self.view
         return self.view
 
+    def find(self, task: str) -> dict | None:
+        return QUEUED if task == QUEUED["id"] else None
+
     def submit(self, text: str) -> Future:
         self.texts.append(text)
         future: Future = Future()
@@ -50,7 +53,7 @@ def plant():
 
 @pytest.fixture
 def port(plant):
-    api = Api(plant.look, plant.submit)
+    api = Api(plant.look, plant.find, plant.submit)
     yield api.start()
     api.stop()
     assert "http api" not in {thread.name for thread in threading.enumerate()}
@@ -186,11 +189,11 @@ def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd
 
 def test_a_taken_port_is_one_sentence(port, plant):
     with pytest.raises(StartError, match=f"cannot listen on 127.0.0.1:{port}: "):
-        Api(plant.look, plant.submit, port=port).start()
+        Api(plant.look, plant.find, plant.submit, port=port).start()
 
 
 def test_it_stops_with_a_connection_open(plant):
-    api = Api(plant.look, plant.submit)
+    api = Api(plant.look, plant.find, plant.submit)
     kept = http.client.HTTPConnection("127.0.0.1", api.start(), timeout=5)
     kept.request("GET", "/api/plant")
     assert json.load(kept.getresponse()) == VIEW

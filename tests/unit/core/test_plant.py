@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import recipes
+from arboleda.core import recipes, view
 from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
@@ -21,7 +21,6 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.plant import Plant
-from arboleda.core.view import snapshot
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 
@@ -221,10 +220,10 @@ def test_the_same_id_and_text_is_the_same_task(hand: Any) -> None:
 def test_a_refused_text_changes_nothing(hand: Any) -> None:
     plant = hand(Evidence.IDS)
     plant.awake()
-    before = snapshot(plant.plant)
+    before = view.snapshot(plant.plant)
     plant.submit("sis_z 0B 7")
     assert last_change(plant).state.value == "refused"
-    assert snapshot(plant.plant) == before
+    assert view.snapshot(plant.plant) == before
 
 
 def test_a_failed_cell_is_held_and_the_others_go_on(hand: Any) -> None:
@@ -266,6 +265,18 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
         plant.tell("ra1", state=STILL, q=(0.08, 0.0, 0.0), accepted=move.id)
     assert plant.plant.at_rest
     assert plant.plant.intake.tasks.popitem()[1].failure.reason is Reason.INTERRUPTED
+
+
+def test_a_snapshot_shows_open_tasks_and_the_last_ended_ones(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    for number in range(view.RECENT + 5):
+        plant.submit(f"sis_a 0B 7 #n{number}")
+        plant.plant.intake.tasks[f"n{number}"].ended_at = plant.now
+    plant.submit("sis_b 0B 7 #open")
+    shown = [task["id"] for task in view.snapshot(plant.plant)["tasks"]]
+    assert shown == [*(f"n{number}" for number in range(5, view.RECENT + 5)), "open"]
+    assert view.task_by_id(plant.plant, "n0")["text"] == "sis_a 0B 7"
+    assert view.task_by_id(plant.plant, "n99") is None
 
 
 def test_a_mobile_elsewhere_is_driven_to_the_start_first(hand: Any) -> None:

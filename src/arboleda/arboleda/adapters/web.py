@@ -22,6 +22,7 @@ from arboleda.core.errors import ArboledaError, PayloadError, StartError, TextEr
 log = logging.getLogger(__name__)
 
 View = Callable[[], dict[str, Any]]
+Find = Callable[[str], "dict[str, Any] | None"]
 Submit = Callable[[str], "Future[dict[str, Any]]"]
 
 BODY_LIMIT = 4096
@@ -32,16 +33,18 @@ LOCAL_HOSTS = {"127.0.0.1", "localhost", "[::1]"}
 class Api:
     """`GET /api/plant`, `POST /api/tasks`, `GET /api/tasks/<id>`; whatever is refused says so in `sentence`.
 
-    `view()` is the snapshot, plain data, with a list `tasks` of `{id, text, cell, state, sentence, ...}`.
-    `submit(text)` gives a future of such a task; a state `refused` or a TextError in it is the caller's
-    mistake, any other ArboledaError means "not now". The server's thread calls both: they must not block.
+    `view()` is the snapshot and `find(id)` one task or None, both plain data. `submit(text)` gives a future
+    of a task; a state `refused` or a TextError in it is the caller's mistake, any other ArboledaError means
+    "not now". The server's thread calls all of them: they must not block.
     """
 
-    def __init__(self, view: View, submit: Submit, *, host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(
+        self, view: View, find: Find, submit: Submit, *, host: str = "127.0.0.1", port: int = 0
+    ) -> None:
         self._host = host
         self._port = port
         config = uvicorn.Config(
-            Guard(make_app(view, submit)),
+            Guard(make_app(view, find, submit)),
             log_config=None,
             log_level=logging.CRITICAL,
             access_log=False,
@@ -77,7 +80,7 @@ class Api:
             self._thread = None
 
 
-def make_app(view: View, submit: Submit) -> FastAPI:
+def make_app(view: View, find: Find, submit: Submit) -> FastAPI:
     """The routes."""
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
     app.add_exception_handler(ArboledaError, refuse)
@@ -101,10 +104,10 @@ def make_app(view: View, submit: Submit) -> FastAPI:
 
     @app.get("/api/tasks/{task_id}")
     async def task(task_id: str) -> JSONResponse:
-        for known in view()["tasks"]:
-            if known["id"] == task_id:
-                return JSONResponse(known)
-        raise HTTPException(404, f"The plant knows no task {task_id!a}.")
+        known = find(task_id)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no task {task_id!a}.")
+        return JSONResponse(known)
 
     return app
 

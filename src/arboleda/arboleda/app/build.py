@@ -51,7 +51,9 @@ class App:
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
         self._broker = _broker(model, options, own="broker" in parts)
-        self._web = WebPart(self.snapshot, self.submit, self._state.announce) if "web" in parts else None
+        self._web = (
+            WebPart(self.snapshot, self._find, self.submit, self._state.announce) if "web" in parts else None
+        )
         self._link = options.link
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
@@ -125,6 +127,9 @@ class App:
 
     def snapshot(self) -> dict[str, Any]:
         return self._plant.snapshot()
+
+    def _find(self, task: str) -> dict[str, Any] | None:
+        return self._plant.find(task)
 
     @property
     def _plant(self) -> Orchestrator:

@@ -107,8 +107,8 @@ class CellRun:
             return None
         return f"{self.cell.name} is held ({self.failure.sentence}); restart the plant once it is safe"
 
-    def advance(self) -> None:
-        """Start what can start and tick until the tree rests."""
+    def advance(self) -> bool:
+        """Start what can start and tick until the tree rests; whether anything was ticked."""
         if self.wakes and min(self.wakes) <= self.now:
             self.wakes = [at for at in self.wakes if at > self.now]
             self.dirty = True
@@ -116,7 +116,9 @@ class CellRun:
             self._tick(self.task)
         if self.task is None and self.queue and self.waiting_for() is None:
             self._start(self.queue.popleft())
-        self.dirty = False
+            self.dirty = True
+        ticked, self.dirty = self.dirty, False
+        return ticked
 
     def interrupt(self, failure: Failure) -> None:
         """End the running task as failed; whatever moves for it is halted."""

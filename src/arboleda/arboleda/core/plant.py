@@ -42,7 +42,7 @@ class Plant:
         self.intake = Intake(model, epoch)
         self.dispatcher = Dispatcher(model, epoch)
         self.cells = {cell.name: CellRun(cell, self, model.timing.dwell_s) for cell in model.cells}
-        self._task_changes = 0
+        self._changes = 0
         self._next_beat = now
         self._earliest = now
 
@@ -57,7 +57,7 @@ class Plant:
             cell.dirty = cell.dirty or cell.cell.name in self.dispatcher.ledger.changed
         self.dispatcher.ledger.changed.clear()
         for cell in self.cells.values():
-            cell.advance()
+            self._changes += cell.advance()
         self._beat()
         self._earliest = self.next_deadline
         out, self.dispatcher.outbox = self.dispatcher.outbox, []
@@ -73,7 +73,7 @@ class Plant:
     @property
     def version(self) -> int:
         """A number that changes whenever something other than a position changed."""
-        return self.dispatcher.version + self._task_changes
+        return self.dispatcher.version + self._changes
 
     @property
     def at_rest(self) -> bool:
@@ -107,7 +107,7 @@ class Plant:
 
     def task_changed(self, task: Task, request: str | None = None) -> None:
         """Announce the state a task is in."""
-        self._task_changes += 1
+        self._changes += 1
         sentence = self.cells[task.order.cell].waiting_for() if task.state is TaskState.QUEUED else None
         change = TaskChanged(
             task=task.id,

@@ -13,6 +13,10 @@ from .model import Arm
 from .plant import Plant
 from .task import Task
 
+Diagnostic = tuple[str, str, int, str, dict[str, str]]
+OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
+RECENT = 20  # ended tasks that a snapshot shows
+
 
 def snapshot(plant: Plant) -> dict[str, Any]:
     """Everything a screen shows, as of the plant's last step; positions in rad and m."""
@@ -23,9 +27,15 @@ def snapshot(plant: Plant) -> dict[str, Any]:
         "ending": plant.intake.closed,
         "cells": [_cell(cell, plant.now) for cell in plant.cells.values()],
         "robots": [_robot(belief, plant.now) for belief in plant.dispatcher.beliefs.values()],
-        "tasks": [_task(task, plant.now) for task in plant.intake.tasks.values()],
+        "tasks": [_task(task, plant.now) for task in _recent(plant)],
         "ignored": dict(plant.dispatcher.ledger.ignored),
     }
+
+
+def task_by_id(plant: Plant, id: str) -> dict[str, Any] | None:
+    """One task by its id, None where the plant knows none."""
+    known = plant.intake.tasks.get(id)
+    return _task(known, plant.now) if known else None
 
 
 def change(changed: TaskChanged) -> dict[str, Any]:
@@ -45,6 +55,14 @@ def step_of(tree: Behaviour | None) -> str | None:
     running = [node for node in tree.iterate() if node.status.value == "RUNNING"] if tree else []
     named = [node for node in running if node.parent is None or node.parent.parent is None]
     return named[0].name if named else None
+
+
+def _recent(plant: Plant) -> list[Task]:
+    """Every open task, and the RECENT ones that ended last to be accepted."""
+    tasks = list(plant.intake.tasks.values())
+    ended = [task for task in tasks if task.ended_at is not None]
+    forgotten = {task.id for task in ended[:-RECENT]}
+    return [task for task in tasks if task.id not in forgotten]
 
 
 def _cell(cell: CellRun, now: float) -> dict[str, Any]:
@@ -106,10 +124,6 @@ def _nodes(node: Behaviour, path: str) -> list[dict[str, Any]]:
     }
     children = [_nodes(child, f"{path}.{i}".lstrip(".")) for i, child in enumerate(node.children)]
     return [here, *(row for rows in children for row in rows)]
-
-
-Diagnostic = tuple[str, str, int, str, dict[str, str]]
-OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 
 
 def diagnostics(snapshot: dict[str, Any]) -> list[Diagnostic]:

@@ -14,11 +14,9 @@ from dataclasses import dataclass
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Mobile, MotionState, Robot
+from arboleda.core.view import ERROR, OK, STALE, WARN
 
 from .strict import UINT32
-
-OK, WARN, ERROR, STALE = range(4)
-"""The levels of DiagnosticStatus."""
 
 _LABEL = "id="
 _NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)

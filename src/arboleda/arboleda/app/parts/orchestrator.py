@@ -89,6 +89,9 @@ class Orchestrator:
     def snapshot(self) -> dict[str, Any]:
         return self.loop.read(view.snapshot)
 
+    def find(self, task: str) -> dict[str, Any] | None:
+        return self.loop.read(lambda plant: view.task_by_id(plant, task))
+
     def stop(self) -> None:
         """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
         self.loop.post(Shutdown(at=time.monotonic()))

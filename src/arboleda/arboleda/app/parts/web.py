@@ -17,12 +17,13 @@ class WebPart:
     def __init__(
         self,
         snapshot: Callable[[], dict[str, Any]],
+        find: Callable[[str], dict[str, Any] | None],
         submit: Callable[[str], Future[TaskChanged]],
         announce: Callable[[int], None],
     ) -> None:
         self.port = 0
         self._announce = announce
-        self._api = Api(snapshot, lambda text: _plain(submit(text)))
+        self._api = Api(snapshot, find, lambda text: _plain(submit(text)))
 
     def start(self) -> None:
         self.port = self._api.start()
