@@ -15,6 +15,11 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# How fast a machine is does not decide a test.
+settings.register_profile("arboleda", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there

@@ -7,17 +7,15 @@ from collections.abc import Callable
 import pytest
 
 from arboleda.core.messages import Reason, TaskChanged, TaskState
-from arboleda.core.model import Evidence, PlantModel
-from arboleda.testing import Rig
-
-from .conftest import at_level
+from arboleda.core.model import Evidence
+from arboleda.testing import Rig, shipped
 
 LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 
 
-def moving(model: PlantModel, evidence: Evidence) -> Rig:
+def moving(evidence: Evidence) -> Rig:
     """A plant whose arm ra1 is on its way to the pick-up pose."""
-    rig = Rig(at_level(model, evidence))
+    rig = Rig(shipped(evidence=evidence))
     rig.wait(0.5)
     rig.submit("sis_a 0B 7")
     on_its_way = rig.wait(20, until=lambda: step(rig) == "move to pick-up")
@@ -46,10 +44,8 @@ def restart_bridge(rig: Rig, gone_s: float) -> None:
 
 @LEVELS
 @pytest.mark.parametrize("gone_s", [0.0, 0.4, 1.2, 3.0])
-def test_a_bridge_that_restarts_in_a_move_fails_it_as_link_lost(
-    evidence: Evidence, gone_s: float, shipped: PlantModel
-) -> None:
-    rig = moving(shipped, evidence)
+def test_a_bridge_that_restarts_in_a_move_fails_it_as_link_lost(evidence: Evidence, gone_s: float) -> None:
+    rig = moving(evidence)
     restart_bridge(rig, gone_s)
     change = outcome(rig)
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.LINK_LOST)
@@ -57,10 +53,8 @@ def test_a_bridge_that_restarts_in_a_move_fails_it_as_link_lost(
 
 
 @LEVELS
-def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(
-    evidence: Evidence, shipped: PlantModel
-) -> None:
-    rig = moving(shipped, evidence)
+def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidence) -> None:
+    rig = moving(evidence)
     rig.stop_bridge()
     change = outcome(rig)
     by_deadline = evidence is Evidence.STATE
@@ -68,8 +62,8 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(
 
 
 @LEVELS
-def test_a_board_that_reboots_in_a_move_fails_it(evidence: Evidence, shipped: PlantModel) -> None:
-    rig = moving(shipped, evidence)
+def test_a_board_that_reboots_in_a_move_fails_it(evidence: Evidence) -> None:
+    rig = moving(evidence)
     rig.reboot("ra_1")
     change = outcome(rig)
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.LINK_LOST)
@@ -83,18 +77,16 @@ REBOOTS = {
 
 
 @LEVELS
-def test_a_reboot_without_a_last_will_is_seen_in_the_telemetry(
-    evidence: Evidence, shipped: PlantModel
-) -> None:
-    rig = moving(shipped, evidence)
+def test_a_reboot_without_a_last_will_is_seen_in_the_telemetry(evidence: Evidence) -> None:
+    rig = moving(evidence)
     rig.lost = lambda publication: publication.topic == "ra_1/conexion"
     rig.reboot("ra_1")
     assert outcome(rig).reason is REBOOTS[evidence]
 
 
 @LEVELS
-def test_a_board_that_stays_away_fails_its_move(evidence: Evidence, shipped: PlantModel) -> None:
-    rig = moving(shipped, evidence)
+def test_a_board_that_stays_away_fails_its_move(evidence: Evidence) -> None:
+    rig = moving(evidence)
     rig.lost = lambda publication: publication.topic.startswith("ra_1/")
     change = outcome(rig)
     assert change.state is TaskState.FAILED
@@ -113,8 +105,8 @@ def drop_every(nth: int, topic: str) -> Callable[[object], bool]:
 
 
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
-def test_four_of_five_telemetry_messages_may_be_lost(evidence: Evidence, shipped: PlantModel) -> None:
-    rig = Rig(at_level(shipped, evidence))
+def test_four_of_five_telemetry_messages_may_be_lost(evidence: Evidence) -> None:
+    rig = Rig(shipped(evidence=evidence))
     rig.lost = drop_every(5, "/sensores")
     rig.submit("sis_a 0B 7")
     rig.submit("sis_b 1C 3")
@@ -122,8 +114,8 @@ def test_four_of_five_telemetry_messages_may_be_lost(evidence: Evidence, shipped
     assert {change.state for change in rig.outcomes().values()} == {TaskState.DONE}
 
 
-def test_nothing_is_replayed_to_a_board_after_the_bridge_came_back(shipped: PlantModel) -> None:
-    rig = moving(shipped, Evidence.IDS)
+def test_nothing_is_replayed_to_a_board_after_the_bridge_came_back() -> None:
+    rig = moving(Evidence.IDS)
     restart_bridge(rig, 2.0)
     outcome(rig)
     rig.wait(1.0)

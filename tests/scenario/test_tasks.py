@@ -5,16 +5,14 @@ from __future__ import annotations
 import pytest
 
 from arboleda.core.messages import TaskState
-from arboleda.core.model import Evidence, PlantModel
-from arboleda.testing import Rig
-
-from .conftest import at_level
+from arboleda.core.model import Evidence
+from arboleda.testing import Rig, shipped
 
 
 @pytest.mark.parametrize("cell", ["sis_a", "sis_b", "sis_c"])
-def test_each_of_the_81_tasks_of_a_cell_is_done(cell: str, shipped: PlantModel) -> None:
-    rig = Rig(shipped)
-    where = shipped.cell(cell)
+def test_each_of_the_81_tasks_of_a_cell_is_done(cell: str) -> None:
+    rig = Rig(shipped())
+    where = rig.model.cell(cell)
     texts = [f"{cell} {path.code} {station}" for path in where.paths for station in range(9)]
     for text in texts:
         assert rig.submit(text).state in (TaskState.QUEUED, TaskState.RUNNING)
@@ -25,8 +23,8 @@ def test_each_of_the_81_tasks_of_a_cell_is_done(cell: str, shipped: PlantModel) 
 
 
 @pytest.mark.parametrize("evidence", list(Evidence))
-def test_three_cells_work_at_the_same_time_at_every_level(evidence: Evidence, shipped: PlantModel) -> None:
-    rig = Rig(at_level(shipped, evidence))
+def test_three_cells_work_at_the_same_time_at_every_level(evidence: Evidence) -> None:
+    rig = Rig(shipped(evidence=evidence))
     for text in ("sis_a 0B 7", "sis_b 0C 3", "sis_c 0A 0", "ra1 palletizing"):
         rig.submit(text)
     rig.wait(2.0)

@@ -35,21 +35,8 @@ from arboleda.core.messages import (
     TaskRequest,
     TaskState,
 )
-from arboleda.core.model import (
-    Arm,
-    Cell,
-    Evidence,
-    Grid,
-    Joint,
-    Link,
-    Mobile,
-    MotionState,
-    Palletizing,
-    Path,
-    Placement,
-    PlantModel,
-    Pose,
-)
+from arboleda.core.model import Evidence, Link, MotionState, PlantModel
+from arboleda.testing import shipped
 from arboleda.wire.status import STALE
 from arboleda_ros.link import connect, limit_discovery
 from arboleda_ros.orchestrator import NoBridge
@@ -61,39 +48,10 @@ BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATE = QoSProfile(
     depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
+PLANT = shipped("sis_a")
 MOVE = MoveJoints(id="7-1", robot="ra1", q=(0.5, -0.25, 0.0625))
+DRIVE = FollowPath(id="7-2", robot="rm_sis_a", nodes=(0, 3, 4))
 HALT = Stop(id="7-5", robot="ra1", mode=StopMode.HALT)
-
-
-def plant(link: Link = Link.MQTT, evidence: Evidence = Evidence.IDS) -> PlantModel:
-    """One cell: arm ra1 (twin r1), mobile rm on a 3x3 grid of 0.2 m."""
-    ways = {"link": link, "evidence": evidence, "timeout_s": 10.0}
-    limits = {"lower": -3.0, "upper": 3.0, "speed": 1.0, "acceleration": 1.0, "step": 0.001}
-    names = ("brazo_joint", "antebrazo_joint", "efector_joint")
-    arm = Arm(
-        name="ra1",
-        mqtt="ra_1",
-        model="scara",
-        twin="r1",
-        base=Placement(x=0.0, y=0.0),
-        joints=tuple(Joint(name=name, **limits) for name in names),
-        **ways,
-    )
-    grid = Grid(origin=Placement(x=0.0, y=0.0), pitch=0.2)
-    mobile = Mobile(name="rm", mqtt="rm", grid=grid, speed=0.5, **ways)
-    home = Pose(name="home", q=(0.0, 0.0, 0.0))
-    cell = Cell(
-        name="sis_a",
-        arm=arm,
-        mobile=mobile,
-        home=home,
-        pickup=home,
-        stations=(home,),
-        paths=(Path(code="0A", nodes=(0, 3, 6)),),
-        palletizing=Palletizing(pick=home, place=home),
-        queue_limit=4,
-    )
-    return PlantModel(name="test", cells=(cell,))
 
 
 def eventually(holds: Callable[[], object], timeout_s: float = WAIT_S) -> object:
@@ -158,8 +116,7 @@ class Stranger:
 @pytest.fixture
 def pair(links) -> SimpleNamespace:
     """The two parts as two processes would have them: a link each, matched both ways."""
-    model = plant()
-    bridge, orchestrator = Side(links(), "bridge", model), Side(links(), "orchestrator", model)
+    bridge, orchestrator = Side(links(), "bridge", PLANT), Side(links(), "orchestrator", PLANT)
     eventually(lambda: orchestrator.node.count_subscribers("ra1/joint_goals_q"))
     for publisher in orchestrator.port._commands.values():
         eventually(publisher.get_subscription_count)
@@ -173,13 +130,10 @@ def pair(links) -> SimpleNamespace:
     ("sent", "heard"),
     [
         (MOVE, MOVE),
-        (
-            FollowPath(id="7-2", robot="rm", nodes=(0, 3, 4)),
-            FollowPath(id="7-2", robot="rm", nodes=(0, 3, 4)),
-        ),
+        (DRIVE, DRIVE),
         (SetEffector(id="7-3", robot="ra1", on=True), SetEffector(id="", robot="ra1", on=True)),
         (HALT, replace(HALT, id="")),
-        (Home(id="7-6", robot="rm"), Home(id="", robot="rm")),
+        (Home(id="7-6", robot="rm_sis_a"), Home(id="", robot="rm_sis_a")),
         (Heartbeat(epoch=1_700_000_000), Heartbeat(epoch=1_700_000_000)),
     ],
     ids=lambda value: type(value).__name__,
@@ -210,7 +164,7 @@ def test_a_command_reaches_the_bridge_with_its_label(pair, sent, heard):
             effector=False,
             piece=True,
         ),
-        Report(at=0.0, robot="rm", epoch=9, state=MotionState.MOVING, node=4, homed=False),
+        Report(at=0.0, robot="rm_sis_a", epoch=9, state=MotionState.MOVING, node=4, homed=False),
     ],
     ids=["no link", "arm", "mobile"],
 )
@@ -221,46 +175,47 @@ def test_a_report_comes_back_equal(pair, report):
 
 
 def test_the_bridge_publishes_what_existing_tools_read(links):
-    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links())
     states, pieces = tool.hear(UInt8, "/ra1/motion_state"), tool.hear(Bool, "/ra1/piece_detected")
-    joints, places = tool.hear(JointState, "/r1/joint_states"), tool.hear(JointState, "/rm/joint_states")
+    joints = tool.hear(JointState, "/r1/joint_states")
+    places = tool.hear(JointState, "/rm_sis_a/joint_states")
     for voice in side.port._voices.values():
         eventually(voice.joints.get_subscription_count)
     eventually(lambda: side.port._voices["ra1"].state.get_subscription_count())
     eventually(lambda: side.port._voices["ra1"].piece.get_subscription_count())
     side.port.send(Report(at=0.0, robot="ra1", state=MotionState.NO_LINK, q=(9.0, 9.0, 9.0)))
     side.port.send(Report(at=0.0, robot="ra1", state=MotionState.STOPPED, q=(0.1, 0.2, 0.03), piece=False))
-    side.port.send(Report(at=0.0, robot="rm", state=MotionState.STOPPED, node=5))
+    side.port.send(Report(at=0.0, robot="rm_sis_a", state=MotionState.STOPPED, node=5))
     eventually(lambda: len(states) == 2 and pieces and joints and places)
     assert [message.data for message in states] == [255, 0]
     assert [message.data for message in pieces] == [False]
     assert joints[0].name == ["r1_brazo_joint", "r1_antebrazo_joint", "r1_efector_joint"]
     assert list(joints[0].position) == [0.1, 0.2, 0.03], "nothing is published while there is no link"
     assert joints[0].header.stamp.sec > 0
-    assert places[0].name == ["rm_x_joint", "rm_y_joint"]
+    assert places[0].name == ["rm_sis_a_x_joint", "rm_sis_a_y_joint"]
     assert list(places[0].position) == pytest.approx([0.4, 0.2])
 
 
 @pytest.mark.parametrize(
     ("topic", "bad", "good"),
     [
-        ("/ra1/joint_goals_q", Float32MultiArray(data=[1.0, 2.0]), Float32MultiArray(data=[1.0, 2.0, 0.5])),
+        ("/ra1/joint_goals_q", Float32MultiArray(data=[1.0, 2.0]), Float32MultiArray(data=[1.0, 2.0, 0.05])),
         (
             "/ra1/joint_goals_q",
-            Float32MultiArray(data=[1.0, math.nan, 0.5]),
+            Float32MultiArray(data=[1.0, math.nan, 0.05]),
             Float32MultiArray(data=[0.0] * 3),
         ),
-        ("/rm/path_cmd", Float32MultiArray(data=[0.0, 3.5]), Float32MultiArray(data=[0.0, 3.0])),
-        ("/rm/path_cmd", Float32MultiArray(data=[0.0, 9.0]), Float32MultiArray(data=[0.0, 1.0])),
-        ("/rm/path_cmd", Float32MultiArray(), Float32MultiArray(data=[0.0])),
+        ("/rm_sis_a/path_cmd", Float32MultiArray(data=[0.0, 3.5]), Float32MultiArray(data=[0.0, 3.0])),
+        ("/rm_sis_a/path_cmd", Float32MultiArray(data=[0.0, 9.0]), Float32MultiArray(data=[0.0, 1.0])),
+        ("/rm_sis_a/path_cmd", Float32MultiArray(), Float32MultiArray(data=[0.0])),
         ("/ra1/effector_cmd", UInt8(data=7), UInt8(data=0)),
-        ("/rm/stop_cmd", UInt8(data=9), UInt8(data=1)),
+        ("/rm_sis_a/stop_cmd", UInt8(data=9), UInt8(data=1)),
         ("/ra1/home_cmd", UInt8(data=0), UInt8(data=1)),
     ],
     ids=["2 of 3 joints", "NaN", "half a node", "node 9", "no node", "effector 7", "stop 9", "home 0"],
 )
 def test_a_bad_command_is_refused_whole_and_the_next_one_works(links, caplog, topic, bad, good):
-    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links())
     tool.say(topic, bad)
     tool.say(topic, good)
     eventually(lambda: side.events)
@@ -271,7 +226,7 @@ def test_a_bad_command_is_refused_whole_and_the_next_one_works(links, caplog, to
 
 @pytest.mark.parametrize(("label", "size"), [("id=", 3), ("id=7 1", 3), ("id=7-1", 2)])
 def test_a_broken_label_is_refused(links, label, size):
-    side, tool = Side(links(), "bridge", plant()), Stranger(links())
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links())
     broken = Float32MultiArray(data=[0.0, 0.0, 0.0])
     broken.layout.dim = [MultiArrayDimension(label=label, size=size, stride=size)]
     tool.say("/ra1/joint_goals_q", broken)
@@ -280,14 +235,15 @@ def test_a_broken_label_is_refused(links, label, size):
 
 
 def test_a_robot_on_ros_is_heard_on_its_own_topics(links):
-    side, tool = Side(links(), "orchestrator", plant(Link.ROS, Evidence.JOINTS)), Stranger(links(), "robot")
+    side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.JOINTS))
+    tool = Stranger(links(), "robot")
     tool.say("/ra1/motion_state", UInt8(data=1))
     tool.say("/ra1/piece_detected", Bool(data=True), BEST_EFFORT)
     shuffled = ["r1_efector_joint", "other_joint", "r1_brazo_joint", "r1_antebrazo_joint"]
     tool.say("/r1/joint_states", JointState(name=shuffled, position=[0.03, 8.0, 0.1, 0.2]))
-    names = ["rm_x_joint", "rm_y_joint"]
-    tool.say("/rm/joint_states", JointState(name=names, position=[0.39, 0.21]))
-    tool.say("/rm/joint_states", JointState(name=names, position=[0.30, 0.20]))
+    names = ["rm_sis_a_x_joint", "rm_sis_a_y_joint"]
+    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.39, 0.21]))
+    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.30, 0.20]))
     eventually(lambda: len(side.events) == 5)
     facts = [
         (event.robot, event.state, event.q, event.node, event.piece)
@@ -297,13 +253,14 @@ def test_a_robot_on_ros_is_heard_on_its_own_topics(links):
         ("ra1", MotionState.MOVING, None, None, None),
         ("ra1", None, None, None, True),
         ("ra1", None, (0.1, 0.2, 0.03), None, None),
-        ("rm", None, None, 5, None),
-        ("rm", None, None, None, None),
+        ("rm_sis_a", None, None, 5, None),
+        ("rm_sis_a", None, None, None, None),
     }
 
 
 def test_a_person_answers_by_hand_at_evidence_state(links):
-    side, person = Side(links(), "orchestrator", plant(Link.ROS, Evidence.STATE)), Stranger(links(), "person")
+    side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.STATE))
+    person = Stranger(links(), "person")
     goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
     eventually(lambda: side.port._commands["ra1", MoveJoints].get_subscription_count())
     side.port.send(MOVE)
@@ -317,7 +274,7 @@ def test_a_person_answers_by_hand_at_evidence_state(links):
 
 
 def test_task_texts_and_triggers_become_requests(links):
-    side, user = Side(links(), "orchestrator", plant()), Stranger(links(), "user")
+    side, user = Side(links(), "orchestrator", PLANT), Stranger(links(), "user")
     user.say("/task_request", String(data="sis_a 0B 7"))
     eventually(lambda: side.events)
     for value in (0, 5, 1):
@@ -328,7 +285,7 @@ def test_task_texts_and_triggers_become_requests(links):
 
 
 def test_a_late_listener_still_sees_the_task_status_and_the_view(links):
-    side = Side(links(), "orchestrator", plant())
+    side = Side(links(), "orchestrator", PLANT)
     for state in (TaskState.QUEUED, TaskState.RUNNING):
         side.port.send(TaskChanged(task="t-1", text="sis_a 0B 7", cell="sis_a", state=state))
     for n in (1, 2):
@@ -343,7 +300,7 @@ def test_a_late_listener_still_sees_the_task_status_and_the_view(links):
 
 
 def test_notices_reach_other_nodes(links):
-    side, tool = Side(links(), "orchestrator", plant()), Stranger(links(), "tool")
+    side, tool = Side(links(), "orchestrator", PLANT), Stranger(links(), "tool")
     starts, beats = tool.hear(UInt8, "/system/start"), tool.hear(UInt32, "/plant/heartbeat")
     diagnostics = tool.hear(DiagnosticArray, "/diagnostics")
     for publisher in (side.port._start, side.port._heartbeat, side.port._diagnostics):
@@ -362,7 +319,7 @@ def test_notices_reach_other_nodes(links):
 
 
 def test_a_command_that_no_bridge_hears_is_not_sent(links):
-    side = Side(links(), "orchestrator", plant())
+    side = Side(links(), "orchestrator", PLANT)
     with pytest.raises(NoBridge, match="/ra1/joint_goals_q"):
         side.port.send(MOVE)
 
@@ -370,7 +327,7 @@ def test_a_command_that_no_bridge_hears_is_not_sent(links):
 def test_a_second_commander_at_start_is_refused_by_name(links):
     other = Stranger(links(), "other_plant")
     other.node.create_publisher(Float32MultiArray, "/ra1/joint_goals_q", 10)
-    side = Side(links(), "orchestrator", plant())
+    side = Side(links(), "orchestrator", PLANT)
     with pytest.raises(
         StartError, match="another node already commands /ra1/joint_goals_q: /other_plant; stop"
     ):
@@ -379,20 +336,20 @@ def test_a_second_commander_at_start_is_refused_by_name(links):
 
 
 def test_a_second_orchestrator_of_the_same_name_is_another_node(links):
-    first = Side(links(), "orchestrator", plant())
+    first = Side(links(), "orchestrator", PLANT)
     first.port.check_alone(0.0)
-    second = Side(links(), "orchestrator", plant())
+    second = Side(links(), "orchestrator", PLANT)
     with pytest.raises(StartError, match="/orchestrator"):
         second.port.check_alone(WAIT_S)
 
 
 def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
-    side = Side(links(), "orchestrator", plant())
+    side = Side(links(), "orchestrator", PLANT)
     side.port.check_alone(0.1)
     assert side.port.health().errors == ()
     diagnostics = Stranger(links(), "screen").hear(DiagnosticArray, "/diagnostics")
-    Stranger(links(), "intruder").node.create_publisher(UInt8, "/rm/stop_cmd", 10)
-    sentence = "another node commands /rm/stop_cmd: /intruder"
+    Stranger(links(), "intruder").node.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
+    sentence = "another node commands /rm_sis_a/stop_cmd: /intruder"
     eventually(lambda: side.port.health().errors == (sentence,))
     eventually(lambda: any(message.status[0].message == sentence for message in diagnostics))
     assert diagnostics[-1].status[0].level == b"\x02"
@@ -400,7 +357,7 @@ def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
 
 
 def test_an_incompatible_endpoint_is_one_warning_and_the_plant_goes_on(links, caplog):
-    side, tool = Side(links(), "bridge", plant()), Stranger(links(), "tool")
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links(), "tool")
     for _ in range(2):
         tool.node.create_publisher(UInt8, "/ra1/effector_cmd", BEST_EFFORT)
     eventually(lambda: side.port.health().warnings)
@@ -422,7 +379,7 @@ def test_a_handler_that_raises_does_not_end_the_thread(links, caplog):
             raise RuntimeError("boom")
         events.append(event)
 
-    port = link.bridge(plant(), fragile, time.monotonic)
+    port = link.bridge(PLANT, fragile, time.monotonic)
     link.start()
     tool = Stranger(links())
     for epoch in (13, 14):
@@ -438,7 +395,7 @@ def test_close_is_quick_and_leaves_no_thread(links, monkeypatch, fallback):
     if fallback:
         monkeypatch.setitem(__import__("sys").modules, "rclpy.experimental", None)
     before = set(threading.enumerate())
-    side = Side(links(), "bridge", plant())
+    side = Side(links(), "bridge", PLANT)
     Stranger(side.link).say("/plant/heartbeat", UInt32(data=1))
     eventually(lambda: side.events)
     began = time.monotonic()

@@ -6,16 +6,15 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from arboleda.app.config import load
 from arboleda.app.screen import Screen, joints, parting, table
 from arboleda.core.messages import Reason, TaskChanged, TaskState
 from arboleda.core.model import MotionState
-from arboleda.testing import Rig
+from arboleda.testing import Rig, shipped
 
 
 @pytest.fixture
 def rig() -> Rig:
-    rig = Rig(load(None))
+    rig = Rig(shipped())
     rig.wait(0.5)
     for text in ("sis_a 0B 7", "sis_a 0B 3", "sis_b 1C 3", "sis_c 2A 5"):
         rig.submit(text)

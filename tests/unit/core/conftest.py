@@ -1,20 +1,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from arboleda.app.config import load
 from arboleda.core.messages import Report, TaskChanged, TaskRequest
 from arboleda.core.model import Evidence, MotionState, PlantModel
 from arboleda.core.plant import Plant
-
-
-@pytest.fixture(scope="session")
-def shipped() -> PlantModel:
-    return load(None)
+from arboleda.testing import shipped
 
 
 class Hand:
@@ -67,16 +61,6 @@ class Hand:
 
 
 @pytest.fixture
-def hand(shipped: PlantModel) -> Callable[[Evidence], Hand]:
+def hand() -> Callable[[Evidence], Hand]:
     """A hand-driven plant whose robots all prove what `evidence` says."""
-
-    def make(evidence: Evidence) -> Hand:
-        cells = tuple(
-            replace(
-                cell, arm=replace(cell.arm, evidence=evidence), mobile=replace(cell.mobile, evidence=evidence)
-            )
-            for cell in shipped.cells
-        )
-        return Hand(replace(shipped, cells=cells))
-
-    return make
+    return lambda evidence: Hand(shipped(evidence=evidence))

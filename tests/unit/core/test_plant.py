@@ -21,6 +21,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.plant import Plant
+from arboleda.testing import shipped
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 
@@ -297,9 +298,9 @@ def test_the_heartbeat_names_the_epoch_every_quarter_second(hand: Any) -> None:
     assert plant.commands(Heartbeat) == [Heartbeat(epoch=7)] * 5
 
 
-def test_the_same_inputs_give_the_same_outputs(shipped: Any) -> None:
+def test_the_same_inputs_give_the_same_outputs() -> None:
     def run() -> list[Any]:
-        plant = Plant(shipped, epoch=3, now=0.0)
+        plant = Plant(shipped(), epoch=3, now=0.0)
         return [plant.step(0.1 * n, [TaskRequest(at=0.1 * n, text="sis_a 0B 7")]) for n in range(5)]
 
     assert run() == run()

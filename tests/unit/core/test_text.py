@@ -4,13 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.app.config import load
 from arboleda.core.errors import TextError
-from arboleda.core.model import PlantModel
 from arboleda.core.task import Order, Recipe
 from arboleda.core.text import parse
+from arboleda.testing import shipped
 
-SHIPPED = load(None)
+SHIPPED = shipped()
 
 
 @pytest.mark.parametrize(
@@ -18,20 +17,20 @@ SHIPPED = load(None)
     ["sis_a 0B 7", "  SIS_A   0b\t7 ", "Sis_A 0B 7\n"],
     ids=["plain", "spaces and case", "newline"],
 )
-def test_case_and_spaces_do_not_matter(text: str, shipped: PlantModel) -> None:
-    order = parse(text, shipped)
+def test_case_and_spaces_do_not_matter(text: str) -> None:
+    order = parse(text, SHIPPED)
     assert order.text == "sis_a 0B 7"
     assert order.path is not None and order.path.nodes == (0, 3, 4, 7)
-    assert order.station is shipped.cell("sis_a").stations[7]
+    assert order.station is SHIPPED.cell("sis_a").stations[7]
 
 
-def test_an_id_after_the_hash_keeps_its_case(shipped: PlantModel) -> None:
-    assert parse("sis_a 0B 7 #Lot_42.b-1", shipped).id == "Lot_42.b-1"
+def test_an_id_after_the_hash_keeps_its_case() -> None:
+    assert parse("sis_a 0B 7 #Lot_42.b-1", SHIPPED).id == "Lot_42.b-1"
 
 
 @pytest.mark.parametrize("name", ["sis_b", "ra2", "RA2"])
-def test_palletizing_is_asked_for_by_cell_or_arm(name: str, shipped: PlantModel) -> None:
-    order = parse(f"{name} palletizing", shipped)
+def test_palletizing_is_asked_for_by_cell_or_arm(name: str) -> None:
+    order = parse(f"{name} palletizing", SHIPPED)
     assert (order.cell, order.recipe) == ("sis_b", Recipe.PALLETIZING)
 
 
@@ -55,11 +54,9 @@ def test_palletizing_is_asked_for_by_cell_or_arm(name: str, shipped: PlantModel)
         ("sis_a \x1b[31m 7", ["\\x1b[31m"]),
     ],
 )
-def test_a_wrong_text_is_refused_naming_word_and_choice(
-    text: str, names: list[str], shipped: PlantModel
-) -> None:
+def test_a_wrong_text_is_refused_naming_word_and_choice(text: str, names: list[str]) -> None:
     with pytest.raises(TextError) as refusal:
-        parse(text, shipped)
+        parse(text, SHIPPED)
     for name in names:
         assert name in str(refusal.value)
 

@@ -9,6 +9,7 @@ import pytest
 from arboleda.core.messages import StopMode
 from arboleda.core.model import MotionState
 from arboleda.sim.arm import ArmBody
+from arboleda.testing import shipped
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
 
@@ -29,6 +30,11 @@ class Sender:
 
     def move(self, *q):
         self(Channel.JOINTS, JointsGoal, q=q)
+
+    def go(self, *q):
+        """Move there and arrive."""
+        self.move(*q)
+        self.bench.run(5)
 
     def drive(self, *nodes):
         self(Channel.PATH, PathGoal, nodes=nodes)
@@ -62,15 +68,13 @@ def nodes_seen(bench):
 
 
 def test_targets_are_rounded_to_the_nearest_motor_step(arm, bench):
-    arm.move(45.0, 10.0, 50.0)
-    bench.run(5)
+    arm.go(45.0, 10.0, 50.0)
     assert bench.last(ARM).q == (round(2333 * 0.01929, 4), 9.9, 50.4)
     assert bench.devices.boards[ARM].body.position == (2333, 11, 56)
 
 
 def test_targets_below_zero_are_rounded_alike(arm, bench):
-    arm.move(-45.0, -10.0, 0.0)
-    bench.run(5)
+    arm.go(-45.0, -10.0, 0.0)
     assert bench.devices.boards[ARM].body.position == (-2333, -11, 0)
 
 
@@ -86,15 +90,14 @@ def test_a_move_takes_the_time_of_its_ramp(arm, bench):
 
 def test_six_axes_move_together_and_end_with_the_slowest(bench):
     arm = Sender(bench, SIX_AXES)
-    arm.move(35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
-    bench.run(5)
+    arm.go(35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
     assert bench.last(SIX_AXES).q == (35.0, 10.0, -5.0, 1.0, 2.0, -3.0)
     assert bench.last(SIX_AXES).done == 1
 
 
 @pytest.mark.parametrize("rate", [10, 1000, 100_000])
-def test_axes_faster_than_the_board_can_step_still_arrive(model, rate):
-    six_axes = model.robots["ra3"]
+def test_axes_faster_than_the_board_can_step_still_arrive(rate):
+    six_axes = shipped().robots["ra3"]
     fast = (
         replace(joint, speed=joint.speed * rate, acceleration=joint.acceleration * rate**2)
         for joint in six_axes.joints
@@ -115,8 +118,7 @@ def test_a_move_to_where_the_arm_stands_is_moving_once_and_then_done(arm, bench)
 def test_a_new_goal_replaces_the_one_under_way(arm, bench):
     arm.move(90.0, 0.0, 0.0)
     bench.run(0.5)
-    arm.move(-9.0, 0.0, 0.0)
-    bench.run(5)
+    arm.go(-9.0, 0.0, 0.0)
     assert bench.last(ARM).q[0] == pytest.approx(-9, abs=0.01)
     assert {said.done for said in bench.heard(ARM)} == {None, 2}
 
@@ -139,18 +141,14 @@ def test_the_arm_carries_a_piece_from_its_pickup_to_where_it_lets_go(arm, bench)
 def test_an_effector_that_arrives_switched_on_grips(arm, bench):
     arm.effector(True)
     assert bench.last(ARM).piece is False
-    arm.move(*PICKUP)
-    bench.run(5)
-    arm.move(0.0, 0.0, 0.0)
-    bench.run(5)
+    arm.go(*PICKUP)
+    arm.go(0.0, 0.0, 0.0)
     assert bench.last(ARM).piece is True
 
 
 def test_an_effector_left_off_takes_nothing_along(arm, bench):
-    arm.move(*PICKUP)
-    bench.run(5)
-    arm.move(0.0, 0.0, 0.0)
-    bench.run(5)
+    arm.go(*PICKUP)
+    arm.go(0.0, 0.0, 0.0)
     assert bench.last(ARM).piece is False
 
 

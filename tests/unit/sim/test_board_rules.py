@@ -298,7 +298,7 @@ def test_a_board_that_never_heard_a_beat_moves_on_in_silence(bench):
 
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
 def test_an_older_board_obeys_without_numbers_and_tells_only_joints_and_state(make_bench, evidence):
-    bench = make_bench(evidence)
+    bench = make_bench(evidence=evidence)
     move(bench, None, epoch=None)
     assert bench.last(BOARD).state is MotionState.MOVING
     bench.run(5)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arboleda.core.model import Link
@@ -106,8 +106,7 @@ def test_an_event_older_than_the_last_step_is_taken_as_of_now(bench):
     assert bench.last("ra_1").done == 1
 
 
-# the fixture is a function: every example makes its own boards
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25)
 @given(naps=st.lists(st.floats(min_value=0.0001, max_value=0.9), min_size=1, max_size=12))
 def test_late_steps_change_what_is_said_but_not_what_is_done(make_bench, naps):
     punctual, sleepy = make_bench(), make_bench()

@@ -1,93 +1,29 @@
-"""A small plant and a bridge whose time, plant, broker and boards are moved by hand."""
+"""A bridge to one shipped cell, whose time, plant, broker and boards are moved by hand."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from arboleda.core.messages import Command, Heartbeat, Report
-from arboleda.core.model import (
-    Arm,
-    Cell,
-    Evidence,
-    Grid,
-    Joint,
-    Link,
-    Mobile,
-    MotionState,
-    Palletizing,
-    Path,
-    Placement,
-    PlantModel,
-    Pose,
-)
+from arboleda.core.model import Evidence, MotionState
+from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge, FromPlant, Message
 from arboleda.wire.payloads import Payload, Presence, Telemetry, decode, encode
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 EPOCH = 1_000
-PINION_M = 0.0225
-
-
-def scara_joint(name: str, limit_deg: float, step_deg: float) -> Joint:
-    return Joint(
-        name=name,
-        lower=-math.radians(limit_deg),
-        upper=math.radians(limit_deg),
-        speed=math.radians(90),
-        acceleration=math.radians(180),
-        step=math.radians(step_deg),
-    )
-
-
-SCARA = (
-    scara_joint("brazo_joint", 150, 0.01929),
-    scara_joint("antebrazo_joint", 135, 0.9),
-    Joint(
-        name="efector_joint",
-        lower=0.0,
-        upper=0.1,
-        speed=0.06,
-        acceleration=0.2,
-        step=math.radians(0.9) * PINION_M,
-        pinion_radius_m=PINION_M,
-    ),
-)
-
-
-def plant(evidence: Evidence, *, has_stop: bool = True) -> PlantModel:
-    """Cell sis_a with ra1 and rm_sis_a, both at this evidence."""
-    common = {"link": Link.MQTT, "evidence": evidence, "has_stop": has_stop}
-    floor = Placement(x=0.0, y=0.0)
-    arm = Arm(
-        name="ra1", mqtt="ra_1", timeout_s=10.0, model="scara", twin="r1", base=floor, joints=SCARA, **common
-    )
-    grid = Grid(origin=floor, pitch=0.2)
-    mobile = Mobile(name="rm_sis_a", mqtt="rm_sis_a", timeout_s=20.0, grid=grid, speed=0.2, **common)
-    home = Pose(name="home", q=(0.0, 0.0, 0.0))
-    cell = Cell(
-        name="sis_a",
-        arm=arm,
-        mobile=mobile,
-        home=home,
-        pickup=home,
-        stations=(home,),
-        paths=(Path(code="0A", nodes=(0, 3, 6)),),
-        palletizing=Palletizing(pick=home, place=home),
-        queue_limit=4,
-    )
-    return PlantModel(name="bench", cells=(cell,))
 
 
 class Bench:
     """Drives a bridge and remembers what came out of it; `now` only moves where a test says so."""
 
-    def __init__(self, evidence: Evidence = Evidence.IDS, *, has_stop: bool = True) -> None:
-        self.model = plant(evidence, has_stop=has_stop)
+    def __init__(self, **declared: Any) -> None:
+        self.model = shipped("sis_a", **declared)
         self.now = 100.0
         self.bridge = Bridge(self.model, epoch=EPOCH, now=self.now)
         self._told: dict[str, Telemetry] = {}
@@ -166,7 +102,8 @@ def linked() -> Bench:
 
 @pytest.fixture(scope="session")
 def make_linked() -> Callable[..., Bench]:
-    return lambda *args, **kwargs: link(Bench(*args, **kwargs))
+    """`make_linked(has_stop=False)`: connected, both robots heard; they declare this."""
+    return lambda **declared: link(Bench(**declared))
 
 
 def link(bench: Bench) -> Bench:
@@ -184,8 +121,3 @@ def _reports() -> Callable[[list[Message]], list[Report]]:
 @pytest.fixture(scope="session", name="sent")
 def _sent() -> Callable[[list[Message]], list[tuple[str, Payload]]]:
     return sent
-
-
-@pytest.fixture(scope="session")
-def make_plant() -> Callable[..., PlantModel]:
-    return plant

@@ -49,7 +49,7 @@ HAPPENINGS = st.one_of(
 @pytest.mark.parametrize("evidence", Evidence, ids=lambda level: level.value)
 @given(happenings=st.lists(HAPPENINGS, max_size=30))
 def test_the_promises_hold(make_linked, sent, evidence: Evidence, happenings: list) -> None:
-    bench = make_linked(evidence)
+    bench = make_linked(evidence=evidence)
     numbered = evidence is Evidence.IDS
     asked: set[str] = set()
     online = {"ra_1": True, "rm_sis_a": True}

@@ -55,7 +55,7 @@ def test_one_board_counts_over_all_its_topics_and_each_board_for_itself(linked, 
 
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
 def test_a_board_without_ids_gets_no_numbers(make_linked, sent, evidence: Evidence) -> None:
-    (_, (_, goal)) = sent(make_linked(evidence).order(move(1)))
+    (_, (_, goal)) = sent(make_linked(evidence=evidence).order(move(1)))
     assert (goal.seq, goal.epoch) == (None, None)
 
 

@@ -65,7 +65,7 @@ def test_standing_still_alone_does_not_end_a_motion_of_a_board_with_ids(linked, 
 
 @pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
 def test_without_ids_moving_and_then_still_ends_it(make_linked, sent, evidence: Evidence) -> None:
-    bench = make_linked(evidence)
+    bench = make_linked(evidence=evidence)
     bench.order(MOVE)
     bench.tell(state=STOPPED)
     assert sent(bench.heartbeat()) == BEAT
@@ -75,14 +75,14 @@ def test_without_ids_moving_and_then_still_ends_it(make_linked, sent, evidence: 
 
 
 def test_at_joints_a_robot_already_at_its_goal_needs_no_beats(make_linked, sent) -> None:
-    bench = make_linked(Evidence.JOINTS)
+    bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(MOVE)
     bench.tell(state=STOPPED, q=TARGET_DEG)
     assert sent(bench.heartbeat()) == []
 
 
 def test_at_joints_a_mobile_at_its_last_node_needs_no_beats(make_linked, sent) -> None:
-    bench = make_linked(Evidence.JOINTS)
+    bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(FollowPath(id="7-1", robot="rm_sis_a", nodes=(0, 3)))
     bench.tell("rm_sis_a", node=3)
     assert sent(bench.heartbeat()) == []

@@ -112,7 +112,7 @@ def test_silence_is_reported_once_when_it_has_lasted(linked) -> None:
 
 
 def test_a_robot_at_state_is_never_stale(make_linked) -> None:
-    assert make_linked(Evidence.STATE).wait(1_000.0) == []
+    assert make_linked(evidence=Evidence.STATE).wait(1_000.0) == []
 
 
 def test_losing_the_broker_loses_every_robot_once(linked) -> None:
@@ -187,7 +187,7 @@ def test_a_bad_message_is_counted_by_robot_and_changes_nothing(
 
 
 def test_a_board_without_ids_reports_what_it_has(make_linked, reports) -> None:
-    bench = make_linked(Evidence.JOINTS)
+    bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(move(1))
     (report,) = reports(bench.tell(state=MOVING, q=(9.0, 0.0, 0.0)))
     assert report.state is MOVING

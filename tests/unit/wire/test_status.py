@@ -10,15 +10,11 @@ from hypothesis import strategies as st
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.core.model import MotionState
+from arboleda.testing import shipped
 from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status
 
-
-@pytest.fixture(scope="module")
-def robots(make_plant) -> dict[str, Robot]:
-    return make_plant(Evidence.IDS).robots
-
-
+ROBOTS = shipped("sis_a").robots
 UINT = st.integers(0, 2**32 - 1)
 IDS = st.none() | st.from_regex(r"[0-9]{1,10}-[0-9]{1,6}", fullmatch=True)
 FLAG = st.none() | st.booleans()
@@ -37,18 +33,18 @@ REJECTED = st.sampled_from([{}, {"rejected": "7-1", "refusal": "sin_ref"}])
 
 
 @given(said=st.fixed_dictionaries(SAID), q=JOINTS, rejected=REJECTED)
-def test_a_report_of_an_arm_comes_back(robots, said: dict, q: tuple | None, rejected: dict) -> None:
+def test_a_report_of_an_arm_comes_back(said: dict, q: tuple | None, rejected: dict) -> None:
     report = Report(at=3.0, robot="ra1", q=q, **said, **rejected)
-    assert from_status(3.0, robots["ra1"], to_status(robots["ra1"], report)) == report
+    assert from_status(3.0, ROBOTS["ra1"], to_status(ROBOTS["ra1"], report)) == report
 
 
 @given(said=st.fixed_dictionaries(SAID), node=st.none() | st.integers(0, 8))
-def test_a_report_of_a_mobile_comes_back(robots, said: dict, node: int | None) -> None:
+def test_a_report_of_a_mobile_comes_back(said: dict, node: int | None) -> None:
     report = Report(at=3.0, robot="rm_sis_a", node=node, **said)
-    assert from_status(3.0, robots["rm_sis_a"], to_status(robots["rm_sis_a"], report)) == report
+    assert from_status(3.0, ROBOTS["rm_sis_a"], to_status(ROBOTS["rm_sis_a"], report)) == report
 
 
-def test_it_reads_like_a_diagnostic(robots) -> None:
+def test_it_reads_like_a_diagnostic() -> None:
     report = Report(
         at=3.0,
         robot="ra1",
@@ -58,7 +54,7 @@ def test_it_reads_like_a_diagnostic(robots) -> None:
         homed=True,
         accepted="7-1",
     )
-    assert to_status(robots["ra1"], report) == Status(
+    assert to_status(ROBOTS["ra1"], report) == Status(
         name="arboleda: ra1",
         hardware_id="ra_1",
         level=0,
@@ -67,8 +63,8 @@ def test_it_reads_like_a_diagnostic(robots) -> None:
     )
 
 
-def test_a_robot_without_link_is_stale(robots) -> None:
-    status = to_status(robots["ra1"], Report(at=0.0, robot="ra1", state=MotionState.NO_LINK))
+def test_a_robot_without_link_is_stale() -> None:
+    status = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", state=MotionState.NO_LINK))
     assert (status.level, status.message) == (STALE, "no link")
 
 
@@ -93,23 +89,23 @@ BAD = {
 
 
 @pytest.mark.parametrize("values", BAD.values(), ids=BAD.keys())
-def test_a_wrong_value_is_refused_by_key(robots, values: dict[str, str]) -> None:
-    good = to_status(robots["ra1"], Report(at=0.0, robot="ra1", state=MotionState.STOPPED))
+def test_a_wrong_value_is_refused_by_key(values: dict[str, str]) -> None:
+    good = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", state=MotionState.STOPPED))
     with pytest.raises(PayloadError, match=next(iter(values))):
-        from_status(0.0, robots["ra1"], replace(good, values={**good.values, **values}))
+        from_status(0.0, ROBOTS["ra1"], replace(good, values={**good.values, **values}))
 
 
-def test_the_status_of_another_robot_is_refused(robots) -> None:
-    status = to_status(robots["rm_sis_a"], Report(at=0.0, robot="rm_sis_a"))
+def test_the_status_of_another_robot_is_refused() -> None:
+    status = to_status(ROBOTS["rm_sis_a"], Report(at=0.0, robot="rm_sis_a"))
     with pytest.raises(PayloadError, match="rm_sis_a"):
-        from_status(0.0, robots["ra1"], status)
+        from_status(0.0, ROBOTS["ra1"], status)
 
 
 @given(values=st.dictionaries(st.sampled_from(["epoch", "q", "node", "state", "homed", "done"]), st.text()))
-def test_whatever_the_values_the_answer_is_a_report_or_a_payload_error(robots, values: dict) -> None:
+def test_whatever_the_values_the_answer_is_a_report_or_a_payload_error(values: dict) -> None:
     status = Status(name="arboleda: ra1", hardware_id="", level=0, message="", values=values)
     try:
-        sentence = repr(from_status(0.0, robots["ra1"], status))
+        sentence = repr(from_status(0.0, ROBOTS["ra1"], status))
     except PayloadError as error:
         sentence = str(error)
     assert sentence.isprintable()

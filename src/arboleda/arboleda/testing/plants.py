@@ -1,0 +1,26 @@
+"""Plants for tests: the shipped one, or some of its cells, with robots that declare something else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from arboleda.app.config import load
+from arboleda.core.model import Cell, PlantModel
+
+
+def shipped(*cells: str, **declared: Any) -> PlantModel:
+    """The shipped plant, or only these cells of it; every robot declares `declared`, as `link=Link.ROS`."""
+    plant = _loaded()
+    by_name = {cell.name: cell for cell in plant.cells}
+    return replace(plant, cells=tuple(_declaring(by_name[name], declared) for name in cells or by_name))
+
+
+@cache
+def _loaded() -> PlantModel:
+    return load()
+
+
+def _declaring(cell: Cell, declared: dict[str, Any]) -> Cell:
+    return replace(cell, arm=replace(cell.arm, **declared), mobile=replace(cell.mobile, **declared))
