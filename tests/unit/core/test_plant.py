@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from arboleda.core import recipes, view
+from arboleda.core.cell_states import CellState
 from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
@@ -127,6 +128,7 @@ def test_a_fault_fails_the_task_with_its_reason(
     plant, move = driven_to_the_arm(hand, evidence)
     for report in reports:
         plant.tell("ra1", **{key: move.id if value == "ID" else value for key, value in report.items()})
+    plant.wait(20)
     change = last_change(plant)
     assert (change.state.value, change.reason) == ("failed", reason)
     assert "ra1" in change.sentence and "pick-up" in change.sentence
@@ -137,10 +139,11 @@ def test_a_fault_fails_the_task_with_its_reason(
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
 def test_a_silent_robot_fails_its_move_and_is_halted(hand: Any, evidence: Evidence) -> None:
     plant, _ = driven_to_the_arm(hand, evidence)
-    plant.wait(1.6)
+    plant.wait(20)
     assert last_change(plant).sentence == "ra1: no telemetry for 1.5 s while moving to pick-up"
     assert last_change(plant).reason is Reason.LINK_LOST
     assert [(stop.robot, stop.mode) for stop in plant.commands(Stop)] == [("ra1", StopMode.HALT)]
+    assert plant.plant.cells["sis_a"].state is CellState.HELD
 
 
 @pytest.mark.parametrize("evidence", list(Evidence))
@@ -148,6 +151,7 @@ def test_a_move_that_never_ends_meets_its_deadline(hand: Any, evidence: Evidence
     plant, move = driven_to_the_arm(hand, evidence)
     for _ in range(120):
         plant.tell("ra1", after=0.1, state=MOVING, q=SHORT, accepted=move.id)
+    plant.wait(20)
     assert last_change(plant).reason is Reason.DEADLINE
     assert [stop.mode for stop in plant.commands(Stop)] == [StopMode.HALT]
 
@@ -165,6 +169,9 @@ def test_a_report_stamped_after_the_deadline_is_too_late(hand: Any) -> None:
     plant, _ = driven_to_the_arm(hand, Evidence.STATE)
     plant.tell("ra1", state=MOVING)
     plant.tell("ra1", after=60, state=STILL)
+    assert not plant.commands(SetEffector)
+    plant.tell("ra1", state=MotionState.FAULT)
+    plant.wait(20)
     assert last_change(plant).reason is Reason.DEADLINE
 
 
@@ -230,6 +237,9 @@ def test_a_refused_text_changes_nothing(hand: Any) -> None:
 def test_a_failed_cell_is_held_and_the_others_go_on(hand: Any) -> None:
     plant, _ = driven_to_the_arm(hand, Evidence.IDS)
     plant.tell("ra1", state=MotionState.FAULT)
+    for _ in range(12):
+        for robot in plant.plant.model.robots:
+            plant.tell(robot, after=0.1)
     plant.submit("sis_a 0B 7")
     assert last_change(plant).state.value == "queued" and "held" in last_change(plant).sentence
     plant.submit("sis_b 1C 3")

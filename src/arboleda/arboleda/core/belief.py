@@ -5,6 +5,7 @@ from __future__ import annotations
 from .messages import Failure, Reason, Report
 from .model import Arm, Evidence, Link, MotionState, Robot
 
+STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 MERGED = ("epoch", "boot_id", "accepted", "done", "state", "q", "node", "homed", "effector", "piece")
 
 
@@ -26,12 +27,20 @@ class Belief:
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
         self.position_at = 0.0
+        self.position_no = 0
+        self.state_no = 0
+        self.reports = 0
+        self.piece_at = 0.0
+        self.piece_since = 0.0
+        self.displaced = False
+        self._rested_from = 0
         self.homed: bool | None = None
         self.effector: bool | None = None
         self.piece: bool | None = None
 
     def merge(self, report: Report) -> None:
         """Take over what the report says; what it leaves out stays."""
+        self._count(report)
         for name in MERGED:
             value = getattr(report, name)
             if value is not None:
@@ -43,6 +52,31 @@ class Belief:
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False
+
+    def _count(self, report: Report) -> None:
+        """Number the reports, so that "since" never hangs on two clocks agreeing."""
+        self.reports += 1
+        self.state_no = self.reports if report.state is not None else self.state_no
+        said = report.q if isinstance(self.robot, Arm) else report.node
+        if said is not None:
+            moved = said != self.position
+            self._rested_from = self.reports if moved or not self._rested_from else self.position_no
+            self.position_no = self.reports
+        if report.piece is not None:
+            self.piece_at = report.at
+            self.piece_since = report.at if report.piece is not self.piece else self.piece_since
+
+    @property
+    def still(self) -> bool:
+        """Whether its last two words agree that it stands still."""
+        return self.still_since(0)
+
+    def still_since(self, count: int) -> bool:
+        """Whether it stands still for sure: a still code and, where it reports its position, the same one in
+        two reports, all of them after its first `count` reports."""
+        if self.state not in STILL or self.state_no <= count:
+            return False
+        return not self.supervised or count < self._rested_from < self.position_no
 
     @property
     def supervised(self) -> bool:
@@ -74,11 +108,16 @@ class Belief:
     @property
     def known_q(self) -> tuple[float, ...] | None:
         """The joints, where they can be believed: online and not unhomed."""
-        return self.q if self.online and self.homed is not False else None
+        return self.q if self.online and not self.unhomed else None
 
     @property
     def known_node(self) -> int | None:
-        return self.node if self.online and self.homed is not False else None
+        return self.node if self.online and not self.unhomed else None
+
+    @property
+    def unhomed(self) -> bool:
+        """Whether its position means nothing: it says so, or it must have rebooted."""
+        return self.homed is False or self.displaced or self.state is MotionState.NOT_HOMED
 
     def obstacle(self) -> Failure | None:
         """Why no command may go to this robot; None where it is ready."""
@@ -87,7 +126,7 @@ class Belief:
             return self._failure(Reason.LINK_LOST, said)
         if not self.answered:
             return self._failure(Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
-        if self.homed is False:
+        if self.unhomed:
             return self._failure(Reason.NOT_HOMED, "is not homed")
         return self._failure(*OBSTACLES[self.state]) if self.state in OBSTACLES else None
 
@@ -98,6 +137,5 @@ class Belief:
 OBSTACLES: dict[MotionState | None, tuple[Reason, str]] = {
     MotionState.MOVING: (Reason.REJECTED, "is still moving"),
     MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
-    MotionState.NOT_HOMED: (Reason.NOT_HOMED, "is not homed"),
     MotionState.STOP_LATCHED: (Reason.STOPPED, "is stopped (latched)"),
 }

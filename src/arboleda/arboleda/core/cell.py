@@ -3,84 +3,45 @@
 from __future__ import annotations
 
 from collections import deque
-from enum import Enum
-from typing import Protocol
+from collections.abc import Callable
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from . import recipes
-from .errors import ArboledaError, IllegalTransition, QueueFull
-from .leaves import Make
-from .ledger import Entry
-from .messages import Failure, Notice, Reason, TaskState
+from .cell_states import Cause, CellState, after
+from .context import Context
+from .errors import QueueFull
+from .ledger import State
+from .messages import Failure, Reason, TaskState
 from .model import Cell
 from .task import Task
-
-TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
-
-
-class CellState(str, Enum):
-    """Where a cell is, in the words of PackML (ISA-TR88.00.02)."""
-
-    IDLE = "idle"
-    EXECUTE = "execute"
-    HELD = "held"
-
-
-class Cause(str, Enum):
-    """What moves a cell from one state to another."""
-
-    TASK = "task"
-    ENDED = "ended"
-    FAILED = "failed"
-
-
-TABLE: dict[tuple[CellState, Cause], CellState] = {
-    (CellState.IDLE, Cause.TASK): CellState.EXECUTE,
-    (CellState.EXECUTE, Cause.ENDED): CellState.IDLE,
-    (CellState.EXECUTE, Cause.FAILED): CellState.HELD,
-}
-
-
-class Plant(Protocol):
-    """What a cell needs of the plant it works in."""
-
-    now: float
-
-    def send(self, make: Make, cell: str, doing: str) -> Entry: ...
-    def cancel(self, entry: Entry) -> None: ...
-    def cancel_all(self, cell: str) -> None: ...
-    def notify(self, notice: Notice) -> None: ...
-    def task_changed(self, task: Task) -> None: ...
-    def obstacle(self, robot: str) -> Failure | None: ...
-    def node(self, robot: str) -> int | None: ...
+from .tree_run import TreeRun
 
 
 class CellRun:
-    """The moving part of a cell; it is the context of its leaves."""
+    """The moving part of a cell; `changed(task)` is told of every change of one of its tasks."""
 
-    def __init__(self, cell: Cell, plant: Plant, dwell_s: float) -> None:
+    def __init__(self, cell: Cell, context: Context, changed: Callable[[Task], None]) -> None:
         self.cell = cell
-        self.plant = plant
-        self.dwell_s = dwell_s
+        self.context = context
         self.state = CellState.IDLE
         self.queue: deque[Task] = deque()
+        self.queue_paused = False
         self.task: Task | None = None
-        self.tree: Behaviour | None = None
+        self.run = TreeRun(context)
+        self.trouble: Failure | None = None  # why it is held
         self.dirty = False
         self.closed = False
-        self.failure: Failure | None = None
-        self.wakes: list[float] = []
-        self.sent = 0
+        self._changed = changed
+        self._cancelling = False
+        self._stopped_after: dict[str, int] = {}
+        self._stop_by = 0.0
 
     @property
-    def now(self) -> float:
-        return self.plant.now
-
-    @property
-    def next_deadline(self) -> float | None:
-        return min(self.wakes, default=None)
+    def tree(self) -> Behaviour | None:
+        """The tree that runs; None while there is none."""
+        return self.run.tree
 
     def enqueue(self, task: Task) -> None:
         """Take a task in; QueueFull at the limit."""
@@ -91,110 +52,248 @@ class CellRun:
 
     def waiting_for(self) -> str | None:
         """Why the next task does not start, for the operator; None where nothing is in its way."""
+        name = self.cell.name
         if self.closed:
             return "the plant is ending"
-        if self.held_by is not None:
-            return self.held_by
         if self.state is CellState.EXECUTE:
-            return f"{self.cell.name} is busy"
-        found = (self.plant.obstacle(robot.name) for robot in self.cell.robots)
-        return next((failure.sentence for failure in found if failure), None)
+            return f"{name} is busy"
+        if self.state is not CellState.IDLE:
+            why = f" ({self.trouble.sentence})" if self.trouble else ""
+            return self.held_by or f"{name} is {self.state.value}{why}; {NEXT[self.state].format(name)}"
+        if self.queue_paused:
+            return f"the queue of {name} is paused; resume {name} starts it"
+        return self._unready()
 
     @property
     def held_by(self) -> str | None:
-        """What holds the cell and what to do about it; None where it is not held."""
-        if self.state is not CellState.HELD or self.failure is None:
+        """What holds the cell and what can be done about it; None where it is not held."""
+        if self.state is not CellState.HELD:
             return None
-        return f"{self.cell.name} is held ({self.failure.sentence}); restart the plant once it is safe"
-
-    def advance(self) -> bool:
-        """Start what can start and tick until the tree rests; whether anything was ticked."""
-        if self.wakes and min(self.wakes) <= self.now:
-            self.wakes = [at for at in self.wakes if at > self.now]
-            self.dirty = True
-        if self.dirty and self.task is not None:
-            self._tick(self.task)
-        if self.task is None and self.queue and self.waiting_for() is None:
-            self._start(self.queue.popleft())
-            self.dirty = True
-        ticked, self.dirty = self.dirty, False
-        return ticked
-
-    def interrupt(self, failure: Failure) -> None:
-        """End the running task as failed; whatever moves for it is halted."""
+        name, arm = self.cell.name, self.cell.arm.name
+        why = self.trouble.sentence if self.trouble else "by the operator"
         if self.task is not None:
-            self.task.fail(failure)
-            self._end(self.task, TaskState.FAILED)
+            ways = f"retry {name} or abandon {name}" if self.trouble else f"resume {name} or abandon {name}"
+        else:
+            release = f"release {arm} opens the effector; " if self.context.holding() else ""
+            ways = f"{release}retry {name} recovers, abandon {name} leaves it as it is"
+        return f"{name} is held ({why}); {ways}"
+
+    def advance(self, *, woken: bool) -> bool:
+        """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
+        did = self._transit()
+        self.dirty = self.context.woken() or woken or self.dirty
+        if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
+            self._look(self.run.tick())
+            did = True
+        if self.state is CellState.IDLE and self.queue and self.waiting_for() is None:
+            self._start(self.queue.popleft())
+            did = True
+        self.dirty = False
+        return did
+
+    def start_in(self, state: CellState) -> None:
+        """The plant starts with a stop of an earlier start: it is not over before clear and reset."""
+        self.queue_paused = True
+        self.state = state
+
+    def stop(self) -> None:
+        """The operator's stop (software): the task has failed; the robots are latched by the caller."""
+        self.queue_paused = True
+        self.become(Cause.STOP)
+        self.context.go_on()
+        self.trouble = None
+        self._stopped_after = self.context.reports()
+        self._stop_by = self.context.now + self.context.timing.stop_timeout_s
+        failure = Failure(reason=Reason.STOPPED, sentence=f"{self.cell.name} was stopped by the operator")
+        self.interrupt(failure)
+        self.context.cancel_all()
+        self.context.wake_at(self._stop_by)
+
+    def hold(self) -> None:
+        """Halt at once and keep everything for `resume`."""
+        self.queue_paused = True
+        self.become(Cause.HOLD)
+        self.context.pause()
+        self.context.cancel_motions()
+
+    def resume(self) -> None:
+        """Go on where `hold` interrupted, each interrupted step given anew; let an idle cell's queue run."""
+        if self.state is CellState.HELD:
+            self._again(Cause.RESUME)
+        self.queue_paused = False
+        self.dirty = True
+
+    def retry(self) -> None:
+        """Give the step that failed anew; without a task, recover anew."""
+        if self.task is not None:
+            self._again(Cause.RETRY)
+        else:
+            self.become(Cause.RETRY)
+            self.context.start_afresh()
+            self._recover()
+
+    def abandon(self) -> None:
+        """Give the task up and recover; without a task, leave the cell as it is."""
+        if self.task is None:
+            self.become(Cause.ENDED)
+            self.trouble = None
+            return
+        self.become(Cause.ABANDON)
+        given_up = Failure(reason=Reason.CANCELLED, sentence="abandoned by the operator")
+        self.task.fail(self.trouble or given_up)
+        self._recover()
+
+    def drop(self, task: Task, failure: Failure) -> None:
+        """Take a task that waits out of the queue; it is cancelled."""
+        self.queue.remove(task)
+        task.fail(failure)
+        task.become(TaskState.CANCELLED, self.context.plant_now)
+        self._changed(task)
+
+    def cancel(self) -> None:
+        """End the running task: halt, recover, then it is cancelled."""
+        self._cancelling = True
+        if self.task is not None:
+            self.task.fail(Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator"))
+        if self.state is CellState.HELD:
+            self.become(Cause.ABANDON)
+        if not self.run.recovering:
+            self._recover()
 
     def close(self) -> None:
         """The plant ends: the running task is interrupted, no other one starts."""
         self.closed = True
         self.interrupt(Failure(reason=Reason.INTERRUPTED, sentence="the plant was asked to end"))
+        self.context.cancel_all()
+
+    def interrupt(self, failure: Failure) -> None:
+        """End the task as failed without recovery; whatever moves for it is halted."""
+        task, cancelled = self.task, self._cancelling
+        self.run.drop()
+        if task is not None:
+            task.fail(failure)
+            self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)
+
+    def become(self, cause: Cause) -> None:
+        """Change the state by its table; IllegalTransition where it has no row."""
+        self.state = after(self.state, cause, self.cell.name)
+        self.dirty = True
+
+    def _transit(self) -> bool:
+        """Leave a state that only waits for something to come true."""
+        holding = self.state is CellState.HOLDING
+        if holding and not any(entry.is_motion for entry in self.context.open_commands()):
+            self.become(Cause.HALTED)
+            self.trouble = self._fault()
+            return True
+        if self.state is CellState.ABORTING:
+            return self._aborted()
+        if self.state is CellState.CLEARING and not self.context.reports_a_latch():
+            self.become(Cause.CLEARED)
+            return True
+        if self.state is CellState.IDLE and self.context.holding() and not self.context.open_commands():
+            arm = self.cell.arm.name
+            sentence = f"{arm} may hold a part, its effector is {self.context.grip.value}"
+            self._stuck(Failure(reason=Reason.INTERRUPTED, sentence=sentence))
+            return True
+        if self.state is CellState.HELD and self.task is None and self._grip_settled():
+            self.become(Cause.ENDED)
+            self.trouble = None
+            return True
+        if self.state is CellState.HELD and self.task is not None and self.trouble is None:
+            self.trouble = self._fault()
+        return False
+
+    def _aborted(self) -> bool:
+        """Leave `aborting` once every online robot is seen still, or the time for it is over."""
+        moving = self.context.moving_since(self._stopped_after)
+        if moving and self.context.now < self._stop_by:
+            return False
+        if moving:
+            sentence = f"{', '.join(moving)} did not confirm the stop"
+            self.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
+        self.become(Cause.HALTED)
+        return True
+
+    def _grip_settled(self) -> bool:
+        only_grip = self.trouble is not None and self.trouble.reason is Reason.INTERRUPTED
+        return only_grip and not self.context.holding()
+
+    def _unready(self) -> str | None:
+        found = [self.context.obstacle(robot.name) for robot in self.cell.robots]
+        found.append(self.context.astray())
+        return next((failure.sentence for failure in found if failure), None)
+
+    def _fault(self) -> Failure | None:
+        """What went wrong while the cell was held: an interrupted step that failed, a robot that cannot."""
+        for act in self.run.interrupted():
+            if act.entry is not None and act.entry.state is State.FAILED:
+                return act.entry.failure
+        found = (self.context.obstacle(robot.name) for robot in self.cell.robots)
+        return next((failure for failure in found if failure), None)
+
+    def _again(self, cause: Cause) -> None:
+        self.become(cause)
+        self.trouble = None
+        self.context.go_on()
+        for act in self.run.interrupted():
+            act.send()
 
     def _start(self, task: Task) -> None:
-        self.task = task
-        self._become(Cause.TASK)
-        task.become(TaskState.RUNNING, self.now)
-        self.plant.task_changed(task)
-        self._tick(task)
+        self.task, self._cancelling = task, False
+        self.become(Cause.TASK)
+        task.become(TaskState.RUNNING, self.context.plant_now)
+        self._changed(task)
+        self.context.start_afresh()
+        self._look(self.run.begin(lambda: recipes.build(task.order, self.context)))
 
-    def _tick(self, task: Task) -> None:
-        try:
-            self.tree = self.tree or recipes.build(task.order, self)
-            status = self._tick_to_rest(self.tree)
-        except Exception as error:  # noqa: BLE001 - a leaf may be user code: it ends its task, not the plant
-            sentence = f"{self.cell.name}: {type(error).__name__} in the tree: {error}"
-            self.interrupt(Failure(reason=Reason.INTERNAL, sentence=sentence))
+    def _recover(self) -> None:
+        """Drop what runs, halting it, and run the recovery alone."""
+        self.run.drop()
+        self.context.go_on()
+        self.trouble = None
+        self.context.carried = False
+        self._look(self.run.begin(lambda: recipes.recovery(self.context)))
+
+    def _look(self, status: Status) -> None:
+        if status is not Status.RUNNING:
+            self._ended(recovered=status is Status.SUCCESS)
+
+    def _ended(self, *, recovered: bool) -> None:
+        """The tree has come to its end: the task is over, and the cell ready or held."""
+        task, found = self.task, self.context.failure
+        self.run.drop()
+        if not recovered:
+            unknown = Failure(reason=Reason.INTERNAL, sentence=f"{self.cell.name} failed without a cause")
+            self._stuck(self.context.last_failure or unknown)
+        else:
+            self.become(Cause.ENDED)
+        if task is None:
             return
-        if status is Status.SUCCESS:
-            self._end(task, TaskState.DONE)
-        elif status is not Status.RUNNING:
-            self._end(task, TaskState.FAILED)
+        if found is not None:
+            task.fail(found)
+        if self._cancelling:
+            self._finish(task, TaskState.CANCELLED)
+        else:
+            self._finish(task, TaskState.FAILED if task.failure else TaskState.DONE)
 
-    def _tick_to_rest(self, tree: Behaviour) -> Status:
-        for _ in range(TICK_BOUND):
-            before = self._signature(tree)
-            tree.tick_once()
-            if tree.status is not Status.RUNNING or self._signature(tree) == before:
-                return tree.status
-        raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
+    def _stuck(self, failure: Failure) -> None:
+        self.queue_paused = True
+        self.trouble = failure
+        self.become(Cause.STUCK)
 
-    def _signature(self, tree: Behaviour) -> tuple[object, ...]:
-        return (self.sent, *(node.status for node in tree.iterate()))
+    def _finish(self, task: Task, state: TaskState) -> None:
+        self.task = None
+        task.become(state, self.context.plant_now)
+        self._changed(task)
 
-    def _end(self, task: Task, state: TaskState) -> None:
-        if self.tree is not None:
-            self.tree.stop(Status.INVALID)
-        self.plant.cancel_all(self.cell.name)  # py_trees does not terminate a leaf that raised
-        if state is TaskState.FAILED:
-            task.fail(Failure(reason=Reason.INTERNAL, sentence=f"{task.order.text}: failed without a cause"))
-        self.task, self.tree, self.wakes, self.failure = None, None, [], task.failure
-        self._become(Cause.ENDED if state is TaskState.DONE else Cause.FAILED)
-        task.become(state, self.now)
-        self.plant.task_changed(task)
 
-    def _become(self, cause: Cause) -> None:
-        after = TABLE.get((self.state, cause))
-        if after is None:
-            raise IllegalTransition(f"cell {self.cell.name} is {self.state.value}: no {cause.value} there")
-        self.state = after
-
-    def send(self, make: Make, doing: str) -> Entry:
-        self.sent += 1
-        return self.plant.send(make, self.cell.name, doing)
-
-    def cancel(self, entry: Entry) -> None:
-        self.plant.cancel(entry)
-
-    def node(self) -> int | None:
-        return self.plant.node(self.cell.mobile.name)
-
-    def wake_at(self, at: float) -> None:
-        self.wakes.append(at)
-
-    def notify(self, notice: Notice) -> None:
-        self.plant.notify(notice)
-
-    def fail(self, failure: Failure) -> None:
-        if self.task is not None:
-            self.task.fail(failure)
+NEXT = {
+    CellState.HOLDING: "wait until it stands still",
+    CellState.HELD: "resume {0} or abandon {0}",
+    CellState.ABORTING: "wait until it stands still",
+    CellState.ABORTED: "clear {0}, then reset {0}",
+    CellState.CLEARING: "wait until its robots have left their stop",
+    CellState.STOPPED: "reset {0}",
+    CellState.RESETTING: "wait",
+}

@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 
 from . import evidence
 from .belief import Belief
 from .evidence import Before, Verdict
-from .leaves import Make
+from .grips import Grip, Grips
 from .ledger import Entry, Feed, Ledger, State
 from .messages import (
     Command,
+    Fact,
     Failure,
     FollowPath,
+    Home,
     MoveJoints,
     Notice,
     Reason,
+    Remember,
     Report,
     SetEffector,
     Stop,
     StopMode,
 )
-from .model import Arm, Evidence, Mobile, PlantModel
+from .model import Arm, Cell, Evidence, Mobile, MotionState, PlantModel
 
+Make = Callable[..., Command]  # called with id=<the new command's id>
+Memory = Mapping[Fact, Mapping[str, str]]
+LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
+HOMING_S = 30.0  # a slow search for the switch, and back off it
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 
 
 class Dispatcher:
-    """Every robot's belief and open commands; `outbox` collects what must leave."""
+    """Every robot's belief, open commands and latch; `outbox` collects what must leave, in order."""
 
-    def __init__(self, model: PlantModel, epoch: int) -> None:
+    def __init__(self, model: PlantModel, epoch: int, memory: Memory) -> None:
         self.model = model
         self.epoch = epoch
         self.ledger = Ledger()
@@ -37,6 +46,14 @@ class Dispatcher:
         self.version = 0  # changes whenever something other than a position changed
         stale_after_s = model.timing.stale_after_s
         self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
+        self.grips = Grips([cell.arm.name for cell in model.cells], memory.get(Fact.EFFECTOR, {}))
+        stopped = memory.get(Fact.LATCH, {})
+        self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
+        self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
+        self.reached: dict[str, tuple[float, ...]] = {}  # the goal of each arm's last move, once it is done
+        self._kept: dict[tuple[Fact, str], str | None] = {
+            (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
+        }
         self._count = 0
 
     @property
@@ -49,40 +66,110 @@ class Dispatcher:
         command = make(id=self._new_id())
         deadline = now + self._allowed_s(command)
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
-        obstacle = self._obstacle(command)
+        obstacle = self._obstacle_to(command)
         if obstacle is not None:
             entry.refuse(replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}"))
             return entry
         entry.settles_at = self._settles_at(command, now)
         self.ledger.open(entry)
+        if isinstance(command, SetEffector):
+            self._grip(command.robot, Grip.SWITCHING)
+        elif not isinstance(command, Stop):
+            self.reached.pop(command.robot, None)
         self.outbox.append(command)
         return entry
 
     def cancel(self, entry: Entry, now: float) -> None:
         """Ask an open command to end; a motion is halted."""
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
+        entry.cancelled_after = self.beliefs[entry.command.robot].reports
         entry.deadline = now + self.model.timing.stop_timeout_s
-        if entry.is_motion:
-            self._halt(entry.command.robot)
+        if entry.is_motion and entry.command.robot not in self.latched:
+            self._stop(entry.command.robot, StopMode.HALT)
 
     def cancel_all(self, cell: str, now: float) -> None:
         """Ask every command of a cell that is not yet ending to end."""
-        for entry in list(self.ledger.entries.values()):
-            if entry.cell == cell and entry.state is not State.CANCELLING:
+        for entry in self.ledger.of_cell(cell):
+            if entry.state is not State.CANCELLING:
                 self.cancel(entry, now)
+
+    def obstacle(self, robot: str) -> Failure | None:
+        """Why a robot takes no command now."""
+        if robot in self.latched:
+            return Failure(reason=Reason.STOPPED, sentence=f"{robot} is stopped (latched)")
+        return self.beliefs[robot].obstacle()
+
+    def latch(self, robot: str) -> None:
+        """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
+        self.latched.add(robot)
+        self.remember(Fact.LATCH, robot, LATCHED)
+        self._stop(robot, StopMode.LATCH)
+
+    def unlatch(self, robot: str) -> None:
+        """Clear a robot's stop; it moves nothing, and the cell still needs its reset."""
+        self.latched.discard(robot)
+        self.remember(Fact.LATCH, robot, CLEARED)
+        self._stop(robot, StopMode.CLEAR)
+
+    def forget_stop(self, robot: str) -> None:
+        """A cleared robot's cell was reset: the stop is over."""
+        self.remember(Fact.LATCH, robot, None)
+
+    def remember(self, fact: Fact, name: str, value: str | None) -> None:
+        """Have a fact kept before anything sent after it leaves; what is kept already is not told again."""
+        if self._kept.get((fact, name)) != value:
+            self._kept[fact, name] = value
+            self.outbox.append(Remember(fact=fact, name=name, value=value))
+
+    def home(self, robot: str, now: float) -> None:
+        """Have a robot run its homing routine."""
+        cell = self.model.cell_of[robot].name
+        self.send(partial(Home, robot=robot), cell, "homing", now)
+
+    def declare_homed(self, robot: str) -> None:
+        """An operator has put a robot that cannot say so at its reference."""
+        self.beliefs[robot].displaced = False
+        self.wake([robot])
+
+    def forget_zone(self, zone: str) -> None:
+        """Nobody is in this zone any more."""
+        self.remember(Fact.QUARANTINE, zone, None)
+
+    def wake(self, robots: Iterable[str]) -> None:
+        """Have the trees of these robots' cells look again."""
+        self.ledger.changed |= {self.model.cell_of[robot].name for robot in robots}
+
+    def seen_outside(self, cell: Cell) -> bool:
+        """Whether the cell's arm stands, as far as its evidence goes, at one of its zone-free poses."""
+        arm, belief = cell.arm, self.beliefs[cell.arm.name]
+        poses = [pose for pose in cell.poses if not pose.zones]
+        free = [q for pose in poses for q in (pose.q, pose.above) if q is not None]
+        if not belief.online or belief.unhomed or belief.state is MotionState.MOVING:
+            return False
+        if not belief.supervised:
+            return self.reached.get(arm.name) in free
+        return belief.q is not None and any(arm.reached(belief.q, arm.quantised(q)) for q in free)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves; reports of unknown robots are ignored."""
         belief = self.beliefs.get(report.robot)
         if belief is None:
             return
-        before, obstacle = Before.of(belief), belief.obstacle()
+        before, told = Before.of(belief), self._told(belief)
+        returned = _returned(belief, report)
         belief.merge(report)
+        if evidence.displaced(before, belief, report):
+            belief.displaced = True
         for entry in self.ledger.of_robot(report.robot):
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
-        self.version += belief.obstacle() != obstacle
+        self._settle_grip(belief)
+        if returned and report.robot in self.latched:
+            self._stop(report.robot, StopMode.LATCH)
+        if self._told(belief) != told:
+            self.version += 1
+            self.ledger.changed.add(self.model.cell_of[report.robot].name)
 
     def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
         """Fail a command that could not leave this process."""
@@ -103,14 +190,38 @@ class Dispatcher:
         self._count += 1
         return f"{self.epoch}-{self._count}"
 
-    def _halt(self, robot: str) -> None:
-        self.outbox.append(Stop(id=self._new_id(), robot=robot, mode=StopMode.HALT))
+    def _stop(self, robot: str, mode: StopMode) -> None:
+        self.outbox.append(Stop(id=self._new_id(), robot=robot, mode=mode))
 
-    def _obstacle(self, command: Command) -> Failure | None:
-        moving = any(entry.is_motion for entry in self.ledger.of_robot(command.robot))
-        if moving and not isinstance(command, SetEffector):
-            return Failure(reason=Reason.REJECTED, sentence=f"{command.robot} has an open motion command")
-        return self.beliefs[command.robot].obstacle()
+    def _told(self, belief: Belief) -> tuple[object, ...]:
+        """What of a belief trees and screens react to: everything but positions."""
+        return (belief.obstacle(), belief.piece, belief.effector)
+
+    def _obstacle_to(self, command: Command) -> Failure | None:
+        robot = command.robot
+        if any(entry.is_motion for entry in self.ledger.of_robot(robot)):
+            return Failure(reason=Reason.REJECTED, sentence=f"{robot} has an open motion command")
+        obstacle = self.obstacle(robot)
+        if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
+            return None
+        moving = obstacle is not None and obstacle.reason is Reason.REJECTED
+        if moving and self.beliefs[robot].supervised:
+            return None  # its last code may be older than the end of its last move, which was proven
+        opening = isinstance(command, SetEffector) and not command.on
+        if opening and obstacle and obstacle.reason is Reason.STOPPED:
+            return None
+        return obstacle
+
+    def _grip(self, arm: str, grip: Grip) -> None:
+        if self.grips.set(arm, grip):
+            self.version += 1
+            self.remember(Fact.EFFECTOR, arm, grip.value)
+
+    def _settle_grip(self, belief: Belief) -> None:
+        """An effector that nobody is switching is what its board reports."""
+        switching = any(isinstance(e.command, SetEffector) for e in self.ledger.of_robot(belief.robot.name))
+        if belief.effector is not None and not switching:
+            self._grip(belief.robot.name, Grip.ON if belief.effector else Grip.OFF)
 
     def _allowed_s(self, command: Command) -> float:
         """How long a command may take: by its distance, never below the robot's `timeout_s`."""
@@ -119,6 +230,8 @@ class Dispatcher:
             travel_s = robot.travel_s(self.beliefs[robot.name].known_q, command.q)
         elif isinstance(command, FollowPath) and isinstance(robot, Mobile):
             travel_s = robot.travel_s(command.nodes)
+        elif isinstance(command, Home):
+            travel_s = HOMING_S
         else:
             return timing.effector_timeout_s
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
@@ -138,18 +251,36 @@ class Dispatcher:
         before = entry.state
         self.ledger.feed(entry.command.id, verdict.feed, now, verdict.failure)
         self.version += entry.state is not before
+        if entry.state is State.DONE:
+            self._done(entry.command)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
         if failed and entry.is_motion and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
-            self._halt(entry.command.robot)
+            self._stop(entry.command.robot, StopMode.HALT)
+
+    def _done(self, command: Command) -> None:
+        if isinstance(command, SetEffector):
+            self._grip(command.robot, Grip.ON if command.on else Grip.OFF)
+        elif isinstance(command, MoveJoints):
+            self.reached[command.robot] = command.q
+        elif isinstance(command, Home):
+            self.beliefs[command.robot].displaced = False
 
     def _went_stale(self, belief: Belief, now: float) -> None:
         belief.stale = True
         self.version += 1
+        self.ledger.changed.add(self.model.cell_of[belief.robot.name].name)
         for entry in self.ledger.of_robot(belief.robot.name):
             silence = f"no telemetry for {belief.stale_after_s:g} s"
             sentence = f"{belief.robot.name}: {silence} while {entry.doing}"
             failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
             self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+
+
+def _returned(belief: Belief, report: Report) -> bool:
+    """Whether a robot that is heard again, or through a new bridge or boot, may have forgotten its stop."""
+    back = not belief.online and report.state is not MotionState.NO_LINK
+    new_bridge = report.epoch is not None and report.epoch != belief.epoch
+    return back or new_bridge or (report.boot_id is not None and report.boot_id != belief.boot_id)
 
 
 def _overdue(entry: Entry) -> Verdict:

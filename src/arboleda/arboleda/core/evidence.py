@@ -19,7 +19,6 @@ REFUSALS: dict[str, Reason] = {
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
 }
-STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED})
 JITTER_S = 0.1  # one telemetry period: two reports may arrive closer together than they were made
 
 
@@ -58,7 +57,7 @@ def judge(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdi
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, report)
-    return _device(entry, report) or _stopping(entry, belief, report) or _progress(entry, belief, report)
+    return _device(entry, report) or _progress(entry, belief, report) or _stopping(entry, belief)
 
 
 def _look(entry: Entry, report: Report) -> None:
@@ -67,6 +66,7 @@ def _look(entry: Entry, report: Report) -> None:
     has_position = report.q is not None or report.node is not None
     seen.position = seen.position or has_position
     seen.moving = seen.moving or report.state is MotionState.MOVING
+    seen.unhomed = seen.unhomed or report.homed is False
     seen.position_since_state = has_position or (seen.position_since_state and report.state is None)
 
 
@@ -100,13 +100,26 @@ def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -
 
 
 def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
-    evidence = belief.robot.evidence
-    new_boot = None not in (before.boot_id, report.boot_id) and before.boot_id != report.boot_id
-    if evidence is Evidence.IDS and new_boot:
+    if rebooted(before, belief, report):
         return _failed(entry, Reason.REBOOTED, "the board rebooted")
-    if evidence is Evidence.JOINTS and _jumped(before, belief, report):
+    if belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report):
         return _failed(entry, Reason.REBOOTED, "the joints jumped, the board must have rebooted,")
     return None
+
+
+def displaced(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether a robot that cannot say so must have lost its position: a new boot, or a jump."""
+    if belief.robot.evidence is not Evidence.JOINTS:
+        return False
+    return rebooted(before, belief, report) or _jumped(before, belief, report)
+
+
+def rebooted(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
+    if None in (before.boot_id, report.boot_id) or before.boot_id == report.boot_id:
+        return False
+    evidence = belief.robot.evidence
+    return evidence is Evidence.IDS or (evidence is Evidence.JOINTS and before.epoch == report.epoch)
 
 
 def _jumped(before: Before, belief: Belief, report: Report) -> bool:
@@ -121,9 +134,9 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
 def _device(entry: Entry, report: Report) -> Verdict | None:
     if report.state is MotionState.FAULT:
         return _failed(entry, Reason.DEVICE_FAULT, "the board reports a fault")
-    if isinstance(entry.command, Home) or not entry.is_motion:
+    if not entry.is_motion:
         return None
-    if report.state is MotionState.NOT_HOMED:
+    if report.state is MotionState.NOT_HOMED and not isinstance(entry.command, Home):
         return _failed(entry, Reason.NOT_HOMED, "the position is unknown, the robot is not homed,")
     if report.state is MotionState.STOP_LATCHED and entry.state is not State.CANCELLING:
         sentence = f"{entry.command.robot}: stopped and latched while {entry.doing}"
@@ -131,23 +144,18 @@ def _device(entry: Entry, report: Report) -> Verdict | None:
     return None
 
 
-def _stopping(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """A halt is confirmed by a still code and, from `joints` up, equal positions in two reports."""
-    if entry.cancelled_at is None or report.at < entry.cancelled_at or not entry.is_motion:
+def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
+    if entry.cancelled_at is None or not entry.is_motion:
         return None
-    seen = entry.seen
-    if report.state is not None:
-        seen.still = report.state in STILL
-    position = report.q if isinstance(belief.robot, Arm) else report.node
-    rested = position is not None and position == seen.rest
-    seen.rest = seen.rest if position is None else position
-    confirmed = seen.still and (rested or belief.robot.evidence is Evidence.STATE)
-    return Verdict(feed=Feed.HALTED) if confirmed else None
+    return Verdict(feed=Feed.HALTED) if belief.still_since(entry.cancelled_after) else None
 
 
 def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     rule = RULES.get((type(entry.command), belief.robot.evidence))
-    return rule(entry, belief, report) if rule else None
+    verdict = rule(entry, belief, report) if rule else None
+    if verdict is not None and verdict.feed is Feed.FAILED and entry.cancelled_at is not None:
+        return None  # it was asked to stop short
+    return verdict
 
 
 def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -171,8 +179,8 @@ def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | N
 
 
 def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    if entry.seen.moving and report.state is MotionState.STOPPED:
-        return Verdict(feed=Feed.DONE)
+    if entry.seen.moving and report.state is MotionState.STOPPED and entry.cancelled_at is None:
+        return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
     return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
 
 
@@ -182,6 +190,13 @@ def _effector_reported(entry: Entry, belief: Belief, report: Report) -> Verdict 
     if isinstance(command, SetEffector) and report.effector is command.on:
         return Verdict(feed=Feed.DONE)
     return None
+
+
+def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """Homing shows in `homed`: seen false, then true, and still."""
+    if entry.seen.unhomed and report.homed and report.state is MotionState.STOPPED:
+        return Verdict(feed=Feed.DONE)
+    return Verdict(feed=Feed.ACCEPTED) if entry.seen.unhomed and entry.state is State.SENT else None
 
 
 def _off_target(entry: Entry) -> Verdict:
@@ -200,6 +215,7 @@ RULES: dict[tuple[type, Evidence], Rule] = {
     (FollowPath, Evidence.JOINTS): _move_by_joints,
     (MoveJoints, Evidence.STATE): _move_by_state,
     (FollowPath, Evidence.STATE): _move_by_state,
+    (Home, Evidence.IDS): _homed_by_ids,
     (SetEffector, Evidence.IDS): _effector_reported,
     (SetEffector, Evidence.JOINTS): _effector_reported,
 }

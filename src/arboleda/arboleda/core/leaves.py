@@ -1,77 +1,99 @@
-"""The few py_trees leaves that every recipe is made of, and the context they share."""
+"""The few py_trees leaves that every recipe is made of."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from functools import partial
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from .context import Context, Make
 from .ledger import Entry, State
-from .messages import Command, Failure, Notice, Reason
-from .model import Cell
+from .messages import Failure, Notice, Reason
 
-Make = Callable[..., Command]  # called with id=<the new command's id>
-
-
-class Context(Protocol):
-    """What a leaf may touch: the step's time, its cell, and ways to send, cancel, wait and fail."""
-
-    cell: Cell
-    dwell_s: float
-
-    @property
-    def now(self) -> float:
-        """The time of this step, s."""
-
-    def send(self, make: Make, doing: str) -> Entry:
-        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
-
-    def node(self) -> int | None:
-        """Where the cell's mobile robot is known to stand."""
-
-    def cancel(self, entry: Entry) -> None:
-        """Halt an open command."""
-
-    def wake_at(self, at: float) -> None:
-        """Have the tree ticked again at `at`."""
-
-    def notify(self, notice: Notice) -> None:
-        """Tell the outside."""
-
-    def fail(self, failure: Failure) -> None:
-        """Name the cause of a failure; the first one named becomes the task's."""
+Guard = Callable[[], "Failure | None"]
+RETRYABLE = frozenset(
+    {
+        Reason.LINK_LOST,
+        Reason.REJECTED,
+        Reason.DEADLINE,
+        Reason.STOPPED_SHORT,
+        Reason.NOT_REACHED,
+        Reason.NO_PIECE,
+        Reason.NOT_GRIPPED,
+    }
+)
 
 
 class Act(Behaviour):
-    """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted."""
+    """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted.
 
-    def __init__(self, name: str, context: Context, make: Make, doing: str) -> None:
+    A failure that a retry can help is tried again as the cell's `retry` says, after its back-off.
+    `guard`, where given, is asked at every tick; what it returns fails the command at once.
+    """
+
+    def __init__(
+        self, name: str, context: Context, make: Make, doing: str, *, guard: Guard | None = None
+    ) -> None:
         super().__init__(name)
         self.context = context
         self.make = make
         self.doing = doing
+        self.guard = guard
         self.entry: Entry | None = None
+        self.tries = 0
+        self.again_at: float | None = None
 
     def initialise(self) -> None:
+        self.tries = 0
+        self.send()
+
+    def send(self) -> None:
+        """Give the command, or give it anew."""
         self.feedback_message = self.doing
+        self.again_at = None
         self.entry = self.context.send(self.make, self.doing)
 
     def update(self) -> Status:
+        if self.again_at is not None:
+            return self._wait()
+        if self.guard is not None and (found := self.guard()) is not None:
+            return self._failed(found)
         if self.entry is None or self.entry.open:
             return Status.RUNNING
         if self.entry.state is State.DONE:
             return Status.SUCCESS
         cancelled = Failure(reason=Reason.CANCELLED, sentence=f"cancelled while {self.doing}")
         failure = self.entry.failure or cancelled
+        retry = self.context.cell.retry
+        if failure.reason in RETRYABLE and self.tries < retry.times:
+            self.tries += 1
+            self.feedback_message = f"{failure.sentence}; try {self.tries} of {retry.times} follows"
+            self.again_at = self.context.now + retry.backoff_s
+            self.context.wake_at(self.again_at)
+            return Status.RUNNING
+        return self._failed(failure)
+
+    def _wait(self) -> Status:
+        if self.again_at is not None and self.context.now >= self.again_at:
+            self.send()
+            return self.update()
+        return Status.RUNNING
+
+    def _failed(self, failure: Failure) -> Status:
         self.feedback_message = failure.sentence
         self.context.fail(failure)
+        self._halt()
         return Status.FAILURE
 
-    def terminate(self, new_status: Status) -> None:
-        if new_status is Status.INVALID and self.entry is not None and self.entry.open:
+    def _halt(self) -> None:
+        if self.entry is not None and self.entry.open:
             self.context.cancel(self.entry)
+
+    def terminate(self, new_status: Status) -> None:
+        if new_status is Status.INVALID:
+            self._halt()
 
 
 class Dwell(Behaviour):
@@ -107,7 +129,7 @@ class Announce(Behaviour):
 class Require(Behaviour):
     """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
 
-    def __init__(self, name: str, context: Context, obstacle: Callable[[], Failure | None]) -> None:
+    def __init__(self, name: str, context: Context, obstacle: Guard) -> None:
         super().__init__(name)
         self.context = context
         self.obstacle = obstacle
@@ -119,3 +141,106 @@ class Require(Behaviour):
         self.feedback_message = failure.sentence
         self.context.fail(failure)
         return Status.FAILURE
+
+
+class Unless(Behaviour):
+    """SUCCESS where `holds()`, else FAILURE without a cause: the way past a branch that is not needed."""
+
+    def __init__(self, name: str, holds: Callable[[], bool]) -> None:
+        super().__init__(name)
+        self.holds = holds
+
+    def update(self) -> Status:
+        return Status.SUCCESS if self.holds() else Status.FAILURE
+
+
+class Await(Behaviour):
+    """RUNNING until `arrived()`, at most `seconds`; FAILURE then, `otherwise()` its cause if `final`."""
+
+    def __init__(
+        self,
+        name: str,
+        context: Context,
+        arrived: Callable[[], bool],
+        seconds: float,
+        otherwise: Callable[[], Failure],
+        *,
+        final: bool = True,
+    ) -> None:
+        super().__init__(name)
+        self.context = context
+        self.arrived = arrived
+        self.seconds = seconds
+        self.otherwise = otherwise
+        self.final = final
+        self.until = 0.0
+
+    def initialise(self) -> None:
+        self.until = self.context.now + self.seconds
+        self.context.wake_at(self.until)
+
+    def update(self) -> Status:
+        if self.arrived():
+            return Status.SUCCESS
+        if self.context.now < self.until:
+            return Status.RUNNING
+        failure = self.otherwise()
+        self.feedback_message = failure.sentence
+        if self.final:
+            self.context.fail(failure)
+        return Status.FAILURE
+
+
+class Piece(Await):
+    """Wait at most `seconds` for the piece sensor's fresh, debounced word that a piece is there."""
+
+    def __init__(
+        self, name: str, context: Context, seconds: float, failure: Failure, *, final: bool = True
+    ) -> None:
+        super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
+        self.since = 0.0
+
+    def initialise(self) -> None:
+        super().initialise()
+        self.since = self.context.now
+
+    def _seen(self) -> bool:
+        return self.context.piece(self.since) is True
+
+
+class Carry(Behaviour):
+    """Note that the checked part is being carried, or no longer is."""
+
+    def __init__(self, name: str, context: Context, carried: bool) -> None:
+        super().__init__(name)
+        self.context = context
+        self.carried = carried
+
+    def update(self) -> Status:
+        self.context.carried = self.carried
+        return Status.SUCCESS
+
+
+class TakeZones(Await):
+    """Wait until the arm has these zones, all at once; left early, it waits no longer."""
+
+    def __init__(self, name: str, context: Context, zones: frozenset[str], *, inside: bool = False) -> None:
+        names = ", ".join(sorted(zones))
+        arm, wait_s = context.cell.arm.name, context.cell.zone_wait_s
+        sentence = f"{arm}: zone {names} was not free within {wait_s:g} s"
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+        taken = partial(context.take_zones, zones, inside=inside)
+        super().__init__(name, context, taken, wait_s, lambda: failure)
+
+    def terminate(self, new_status: Status) -> None:
+        if new_status is not Status.SUCCESS:
+            self.context.leave_zones()
+
+
+class LeaveZones(Await):
+    """Give the arm's zones back once it is seen outside."""
+
+    def __init__(self, name: str, context: Context) -> None:
+        arm = context.cell.arm.name
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=f"{arm} was not seen outside its zones")
+        super().__init__(name, context, context.leave_zones, context.timing.stop_timeout_s, lambda: failure)

@@ -55,14 +55,13 @@ TABLE: dict[tuple[State, Feed], State] = {
 
 
 class Seen:
-    """What reports have shown since a command was sent and, for the last two, since it was cancelled."""
+    """What reports have shown since a command was sent."""
 
     def __init__(self) -> None:
         self.moving = False
         self.position = False
         self.position_since_state = False
-        self.still = False
-        self.rest: tuple[float, ...] | int | None = None
+        self.unhomed = False
 
 
 class Entry:
@@ -78,6 +77,7 @@ class Entry:
         self.state = State.SENT
         self.accepted_at: float | None = None
         self.cancelled_at: float | None = None
+        self.cancelled_after = 0  # the count of the robot's reports then
         self.failure: Failure | None = None
         self.seen = Seen()
 
@@ -108,11 +108,14 @@ class Ledger:
 
     def open(self, entry: Entry) -> None:
         self.entries[entry.command.id] = entry
-        self.changed.add(entry.cell)
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
         return [entry for entry in self.entries.values() if entry.command.robot == robot]
+
+    def of_cell(self, cell: str) -> list[Entry]:
+        """The open commands of a cell, oldest first."""
+        return [entry for entry in self.entries.values() if entry.cell == cell]
 
     def feed(self, id: str, feed: Feed, now: float, failure: Failure | None = None) -> None:
         """Apply one feed; an unknown or finished id is counted and ignored."""

@@ -57,6 +57,22 @@ class StopMode(int, Enum):
     HALT = 2
 
 
+class Verb(str, Enum):
+    """What an operator can ask for; the same words on every screen."""
+
+    STOP = "stop"
+    CLEAR = "clear"
+    RESET = "reset"
+    HOLD = "hold"
+    RESUME = "resume"
+    CANCEL = "cancel"
+    RETRY = "retry"
+    ABANDON = "abandon"
+    RELEASE = "release"
+    HOME = "home"
+    OVERRIDE = "override"
+
+
 @dataclass(frozen=True, kw_only=True)
 class MoveJoints:
     """Drive an arm to `q` (rad; m for a prismatic joint)."""
@@ -128,9 +144,45 @@ class TaskChanged:
     request: str | None = None
 
 
+@dataclass(frozen=True, kw_only=True)
+class OperatorAnswer:
+    """What became of an operator's request; `refusal` says why nothing was done, None where it was."""
+
+    verb: Verb
+    scope: str
+    refusal: str | None = None
+    request: str | None = None
+
+
+class Fact(str, Enum):
+    """What must survive a restart of the plant."""
+
+    LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
+    EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
+    QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remember:
+    """A fact to keep before anything sent after it leaves; None forgets it."""
+
+    fact: Fact
+    name: str
+    value: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Journal:
+    """One act of an operator, kept for good."""
+
+    verb: Verb
+    scope: str
+    sentence: str
+
+
 Motion = MoveJoints | FollowPath | Home
 Command = MoveJoints | FollowPath | SetEffector | Stop | Home
-Notice = Heartbeat | SystemStart | TaskChanged
+Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,11 +213,15 @@ class Report:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskRequest:
-    """Somebody asks for a task; `request` comes back in the TaskChanged that answers it."""
+    """Somebody asks for a task; `request` comes back in the TaskChanged that answers it.
+
+    `trigger` marks a machine's start signal, which may be refused during the arm's own cycle.
+    """
 
     at: float
     text: str
     request: str | None = None
+    trigger: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,4 +241,18 @@ class Shutdown:
     at: float
 
 
-Event = Report | TaskRequest | Undelivered | Shutdown
+@dataclass(frozen=True, kw_only=True)
+class OperatorRequest:
+    """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override) or a task (cancel).
+
+    `by_hand` (home) declares a robot homed that stands at its reference.
+    """
+
+    at: float
+    verb: Verb
+    scope: str = ""
+    by_hand: bool = False
+    request: str | None = None
+
+
+Event = Report | TaskRequest | OperatorRequest | Undelivered | Shutdown

@@ -127,6 +127,7 @@ class Robot:
     evidence: Evidence
     timeout_s: float
     assume_homed: bool = False
+    home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
     has_stop: bool = True
 
 
@@ -139,6 +140,8 @@ class Arm(Robot):
     base: Placement
     joints: tuple[Joint, ...]
     tolerance: tuple[float, ...] | None = None
+    piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
+    queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
 
     @cached_property
     def tolerances(self) -> tuple[float, ...]:
@@ -174,11 +177,21 @@ class Mobile(Robot):
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """A named arm pose; `above` is the point over it where the pose has an approach height."""
+    """A named arm pose; `above` the point over it where it has an approach height, `zones` where it lies."""
 
     name: str
     q: tuple[float, ...]
     above: tuple[float, ...] | None = None
+    zones: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """The moves between two zone-free poses, in either direction, that cross zones."""
+
+    a: str  # names of poses
+    b: str
+    zones: frozenset[str]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,6 +211,14 @@ class Palletizing:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Retry:
+    """How often a failed step is tried again, where that can help, and the pause before each, s."""
+
+    times: int = 0
+    backoff_s: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
 class Cell:
     """One arm, one mobile robot, one storage rack."""
 
@@ -211,6 +232,10 @@ class Cell:
     palletizing: Palletizing
     queue_limit: int
     drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
+    retry: Retry = Retry()
+    piece_check: bool = False
+    crossings: tuple[Crossing, ...] = ()
+    zone_wait_s: float = 30.0
 
     def path(self, code: str) -> Path:
         return next(path for path in self.paths if path.code == code)
@@ -218,6 +243,11 @@ class Cell:
     @property
     def robots(self) -> tuple[Robot, ...]:
         return (self.arm, self.mobile)
+
+    @property
+    def poses(self) -> tuple[Pose, ...]:
+        """Every named pose of the arm; a palletizing pose is one of them."""
+        return (self.home, self.pickup, *self.stations)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -231,6 +261,8 @@ class Timing:
     stop_timeout_s: float = 5.0
     deadline_factor: float = 1.5
     deadline_floor_s: float = 2.0
+    piece_wait_s: float = 2.0
+    piece_debounce_s: float = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -241,6 +273,7 @@ class PlantModel:
     cells: tuple[Cell, ...]
     timing: Timing = Timing()
     mqtt_version: int = 4  # paho's protocol number of MQTT 3.1.1; 5 for MQTT 5
+    zones: tuple[str, ...] = ()
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)

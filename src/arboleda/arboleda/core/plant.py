@@ -8,17 +8,19 @@ from typing import Any
 
 from . import text
 from .cell import CellRun
-from .dispatcher import Dispatcher
-from .errors import QueueFull, TextError
+from .cell_states import CellState
+from .context import Context
+from .dispatcher import Dispatcher, Memory
+from .errors import ArboledaError, IllegalTransition, QueueFull, TextError
 from .intake import Intake
-from .leaves import Make
-from .ledger import Entry
 from .messages import (
     Command,
     Event,
-    Failure,
+    Fact,
     Heartbeat,
     Notice,
+    OperatorAnswer,
+    OperatorRequest,
     Report,
     Shutdown,
     TaskChanged,
@@ -26,22 +28,32 @@ from .messages import (
     TaskState,
     Undelivered,
 )
-from .model import PlantModel
-from .task import Task
+from .model import Cell, PlantModel
+from .operator import Operator, Refused
+from .task import Recipe, Task
+from .zones import Zones
 
 HEARTBEAT_S = 0.25
+ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
 
 
 class Plant:
-    """All cells of a plant; `epoch` names this start and must be higher than any before."""
+    """All cells of a plant; `epoch` names this start and must be higher than any before.
 
-    def __init__(self, model: PlantModel, *, epoch: int, now: float) -> None:
+    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied.
+    """
+
+    def __init__(self, model: PlantModel, *, epoch: int, now: float, memory: Memory | None = None) -> None:
+        memory = memory or {}
         self.model = model
         self.epoch = epoch
         self.now = now
         self.intake = Intake(model, epoch)
-        self.dispatcher = Dispatcher(model, epoch)
-        self.cells = {cell.name: CellRun(cell, self, model.timing.dwell_s) for cell in model.cells}
+        self.dispatcher = Dispatcher(model, epoch, memory)
+        self.zones = Zones(model.zones, memory.get(Fact.QUARANTINE, {}))
+        self.cells = {cell.name: self._run(cell) for cell in model.cells}
+        self._operator = Operator(self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now)
+        self._homed_once: set[str] = set()
         self._changes = 0
         self._next_beat = now
         self._earliest = now
@@ -53,11 +65,8 @@ class Plant:
             self._expire(math.nextafter(event.at, -math.inf))
             HANDLERS[type(event)](self, event)
         self._expire(now)
-        for cell in self.cells.values():
-            cell.dirty = cell.dirty or cell.cell.name in self.dispatcher.ledger.changed
-        self.dispatcher.ledger.changed.clear()
-        for cell in self.cells.values():
-            self._changes += cell.advance()
+        self._watch_zones()
+        self._advance()
         self._beat()
         self._earliest = self.next_deadline
         out, self.dispatcher.outbox = self.dispatcher.outbox, []
@@ -66,7 +75,7 @@ class Plant:
     @property
     def next_deadline(self) -> float:
         """When `step` is due again without any event, s."""
-        cells = [cell.next_deadline for cell in self.cells.values()]
+        cells = [cell.context.next_deadline for cell in self.cells.values()]
         due = [self._next_beat, self.dispatcher.next_deadline, *cells]
         return min(at for at in due if at is not None)
 
@@ -78,35 +87,25 @@ class Plant:
     @property
     def at_rest(self) -> bool:
         """Whether no task runs and no command is open."""
-        return not self.dispatcher.ledger.entries and all(cell.task is None for cell in self.cells.values())
+        return not self.dispatcher.ledger.entries and all(cell.tree is None for cell in self.cells.values())
 
     def sleepers(self) -> list[str]:
-        """Cells whose task runs with nothing left to wake its tree; anything here is a defect."""
+        """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
         awake = {entry.cell for entry in self.dispatcher.ledger.entries.values()}
-        runs = [cell for cell in self.cells.values() if cell.task is not None and not cell.wakes]
-        return [cell.cell.name for cell in runs if cell.cell.name not in awake]
+        runs = [cell for cell in self.cells.values() if cell.tree and cell.state is CellState.EXECUTE]
+        asleep = [cell.cell.name for cell in runs if not cell.context.wakes]
+        return [name for name in asleep if name not in awake]
 
-    def send(self, make: Make, cell: str, doing: str) -> Entry:
-        return self.dispatcher.send(make, cell, doing, self.now)
+    def _run(self, cell: Cell) -> CellRun:
+        context = Context(cell, self.dispatcher, self.zones, lambda: self.now)
+        run = CellRun(cell, context, self._task_changed)
+        if any(robot.name in self.dispatcher.latched for robot in cell.robots):
+            run.start_in(CellState.ABORTED)
+        elif any(robot.name in self.dispatcher.cleared for robot in cell.robots):
+            run.start_in(CellState.STOPPED)
+        return run
 
-    def cancel(self, entry: Entry) -> None:
-        self.dispatcher.cancel(entry, self.now)
-
-    def cancel_all(self, cell: str) -> None:
-        """Halt what is still under way for a cell."""
-        self.dispatcher.cancel_all(cell, self.now)
-
-    def obstacle(self, robot: str) -> Failure | None:
-        return self.dispatcher.beliefs[robot].obstacle()
-
-    def node(self, robot: str) -> int | None:
-        return self.dispatcher.beliefs[robot].known_node
-
-    def notify(self, notice: Notice) -> None:
-        self.dispatcher.outbox.append(notice)
-
-    def task_changed(self, task: Task, request: str | None = None) -> None:
-        """Announce the state a task is in."""
+    def _task_changed(self, task: Task, request: str | None = None) -> None:
         self._changes += 1
         sentence = self.cells[task.order.cell].waiting_for() if task.state is TaskState.QUEUED else None
         change = TaskChanged(
@@ -118,19 +117,55 @@ class Plant:
             sentence=task.failure.sentence if task.failure else sentence or "",
             request=request,
         )
-        self.notify(change)
+        self.dispatcher.outbox.append(change)
 
     def _expire(self, limit: float) -> None:
         if limit >= self._earliest:
             self.dispatcher.expire(limit, self.now)
 
+    def _advance(self) -> None:
+        """Let every cell do what it can, again while one of them gave another something to do."""
+        for _ in range(ROUND_BOUND):
+            changed = self.dispatcher.ledger.changed
+            self.dispatcher.ledger.changed = set()
+            did = [cell.advance(woken=name in changed) for name, cell in self.cells.items()]
+            self._changes += any(did)
+            if not any(did) and not self.dispatcher.ledger.changed:
+                return
+        raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
+
+    def _watch_zones(self) -> None:
+        """An arm that is not heard may still be where it was; one that is seen outside is not."""
+        for cell in self.cells.values() if self.model.zones else ():
+            arm = cell.cell.arm.name
+            belief = self.dispatcher.beliefs[arm]
+            if self.zones.held_by(arm) and (not belief.online or belief.unhomed):
+                self.zones.quarantine(arm)
+            elif self.zones.held_by(arm) and cell.tree is None:
+                cell.context.leave_zones()
+
     def _beat(self) -> None:
         if self.now >= self._next_beat:
             self._next_beat = self.now + HEARTBEAT_S
-            self.notify(Heartbeat(epoch=self.epoch))
+            self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
 
     def _on_report(self, report: Report) -> None:
         self.dispatcher.report(report, self.now)
+        cell = self.model.cell_of.get(report.robot)
+        if cell is None:
+            return
+        if report.piece is not None and self.cells[cell.name].context.awaits_piece:
+            self.dispatcher.ledger.changed.add(cell.name)
+        self._home_at_start(report.robot)
+
+    def _home_at_start(self, robot: str) -> None:
+        belief = self.dispatcher.beliefs[robot]
+        if not belief.robot.home_at_start or not belief.answered or belief.homed is None:
+            return
+        if robot not in self._homed_once:
+            self._homed_once.add(robot)
+            if belief.unhomed:
+                self.dispatcher.home(robot, self.now)
 
     def _on_undelivered(self, event: Undelivered) -> None:
         self.dispatcher.undelivered(event.id, event.robot, event.sentence, self.now)
@@ -139,12 +174,33 @@ class Plant:
         try:
             task = self.intake.task(request.text, self.now)
             if not self.intake.knows(task):
+                self._refuse_trigger(request, task)
                 self.cells[task.order.cell].enqueue(task)
                 self.intake.remember(task)
         except (TextError, QueueFull) as refusal:
-            self.notify(_refused(request, str(refusal)))
+            self.dispatcher.outbox.append(_refused(request, str(refusal)))
             return
-        self.task_changed(task, request.request)
+        self._task_changed(task, request.request)
+
+    def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
+        """Raise QueueFull for a trigger during the arm's own cycle, where the plant file says so."""
+        cell = self.cells[task.order.cell]
+        own = [each for each in (cell.task, *cell.queue) if each and each.order.recipe is Recipe.PALLETIZING]
+        if request.trigger and own and not cell.cell.arm.queue_triggers:
+            raise QueueFull(
+                f"{cell.cell.arm.name} is in its own cycle; its plant file refuses a trigger then"
+            )
+
+    def _on_operator_request(self, request: OperatorRequest) -> None:
+        refusal = None
+        try:
+            self._operator.act(request)
+        except (Refused, IllegalTransition) as error:
+            refusal = str(error)
+        answer = OperatorAnswer(
+            verb=request.verb, scope=request.scope, refusal=refusal, request=request.request
+        )
+        self.dispatcher.outbox.append(answer)
 
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
@@ -166,6 +222,7 @@ def _refused(request: TaskRequest, sentence: str) -> TaskChanged:
 HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
     Report: Plant._on_report,
     TaskRequest: Plant._on_task_request,
+    OperatorRequest: Plant._on_operator_request,
     Undelivered: Plant._on_undelivered,
     Shutdown: Plant._on_shutdown,
 }

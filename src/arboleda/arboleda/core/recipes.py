@@ -1,17 +1,27 @@
-"""Order -> tree, one function per recipe, each made of the same few idioms."""
+"""Order -> tree, one function per recipe, each made of the same few idioms.
+
+A recipe is a Selector with memory over its work and its recovery: once the work has failed, the
+recovery runs to its end. Recovered is not delivered: the task has failed all the same.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
+from py_trees import composites
 from py_trees.behaviour import Behaviour
-from py_trees.composites import Sequence
 
-from .leaves import Act, Announce, Context, Dwell, Require
+from . import zone_plan
+from .context import Context
+from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, Require, TakeZones, Unless
 from .messages import Failure, FollowPath, MoveJoints, Reason, SetEffector, SystemStart
 from .model import Path, Pose
 from .task import Order, Recipe
+
+MAIN, RECOVERY = PHASES = ("main", "recovery")
+SETTLE_S = 1.0  # after the last stop was confirmed or given up
+Visit = tuple[Pose, list[Behaviour]]  # a pose of the arm, and the work to do there
 
 
 def build(order: Order, context: Context) -> Behaviour:
@@ -22,27 +32,24 @@ def build(order: Order, context: Context) -> Behaviour:
 def storage(order: Order, context: Context) -> Behaviour:
     """Drive the mobile, pick the part up, put it into its station, go home."""
     assert order.path is not None and order.station is not None
-    cell = context.cell
-    return _sequence(
-        "storage",
-        _start(context),
-        *_drive(context, order.path),
-        *_pick(context, cell.pickup),
-        *_place(context, order.station),
-        _move(context, cell.home),
-    )
+    cell, station = context.cell, order.station
+    way = zone_plan.storage_way(cell, station, context.standing())
+    visits: list[Visit] = [
+        (cell.pickup, _grip(context, cell.pickup)),
+        (station, _let_go(context)),
+        (cell.home, []),
+    ]
+    work = [_start(context), *_drive(context, order.path), *_visit(context, way, visits)]
+    return _recovering(Recipe.STORAGE, work, context)
 
 
 def palletizing(order: Order, context: Context) -> Behaviour:
     """Home, pick, place: the arm alone."""
     cell = context.cell
-    return _sequence(
-        "palletizing",
-        _start(context),
-        _move(context, cell.home),
-        *_pick(context, cell.palletizing.pick),
-        *_place(context, cell.palletizing.place),
-    )
+    pick, place = cell.palletizing.pick, cell.palletizing.place
+    way = zone_plan.palletizing_way(cell, context.standing())
+    visits: list[Visit] = [(cell.home, []), (pick, _grip(context, pick)), (place, _let_go(context))]
+    return _recovering(Recipe.PALLETIZING, [_start(context), *_visit(context, way, visits)], context)
 
 
 RECIPES: dict[Recipe, Callable[[Order, Context], Behaviour]] = {
@@ -51,13 +58,62 @@ RECIPES: dict[Recipe, Callable[[Order, Context], Behaviour]] = {
 }
 
 
-def _sequence(name: str, *children: Behaviour) -> Sequence:
-    return Sequence(name, memory=True, children=list(children))
+def recovery(context: Context) -> Behaviour:
+    """Wait until all has come to rest; carry a part that is held back to the pick-up pose; go home."""
+    cell = context.cell
+    back = _sequence("carry back", *_at(context, cell.pickup, _effector(context, False)))
+    zones = zone_plan.recovery_zones(cell)
+    return _sequence(
+        RECOVERY,
+        _settle(context),
+        *_rise(context),
+        *([TakeZones("take zones", context, zones, inside=True)] if zones else []),
+        _selector("part back", Unless("holds nothing", lambda: not context.holding()), back),
+        _move(context, cell.home),
+        *([LeaveZones("leave zones", context)] if zones else []),
+    )
+
+
+def _recovering(recipe: Recipe, work: list[Behaviour], context: Context) -> Behaviour:
+    return _selector(recipe.value, _sequence(MAIN, *work), recovery(context))
+
+
+def _sequence(name: str, *children: Behaviour) -> Behaviour:
+    return composites.Sequence(name, memory=True, children=list(children))
+
+
+def _selector(name: str, *children: Behaviour) -> Behaviour:
+    return composites.Selector(name, memory=True, children=list(children))
 
 
 def _start(context: Context) -> Behaviour:
     announce = Announce("announce", context, SystemStart(cell=context.cell.name))
-    return _sequence("system start", announce, Dwell("dwell", context, context.dwell_s))
+    return _sequence("system start", announce, Dwell("dwell", context, context.timing.dwell_s))
+
+
+def _rise(context: Context) -> list[Behaviour]:
+    """Where poses have an approach height, an arm that may stand low goes straight up first."""
+    if not any(pose.above for pose in context.cell.poses):
+        return []
+
+    def make(id: str) -> MoveJoints:
+        return MoveJoints(id=id, robot=context.cell.arm.name, q=context.risen())
+
+    return [Act("rise", context, make, "rising")]
+
+
+def _settle(context: Context) -> Behaviour:
+    arm = context.cell.arm.name
+
+    def settled() -> bool:
+        return not context.open_commands() and context.obstacle(arm) is None
+
+    def unsettled() -> Failure:
+        failure = context.obstacle(arm)
+        sentence = f"{arm} has commands that do not end"
+        return failure or Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
+
+    return Await("settle", context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
 
 
 def _drive(context: Context, path: Path) -> list[Behaviour]:
@@ -81,38 +137,94 @@ def _not_at_start(context: Context, path: Path) -> Failure | None:
 
 
 def _follow(context: Context, name: str, nodes: tuple[int, ...]) -> Behaviour:
+    """Drive over nodes; given anew after a hold or a failure, only over what remains of them."""
     mobile = context.cell.mobile.name
     doing = name.replace("drive", "driving", 1)
-    return Act(name, context, partial(FollowPath, robot=mobile, nodes=nodes), doing)
+
+    def make(id: str) -> FollowPath:
+        node = context.node()
+        rest = nodes[nodes.index(node) :] if node in nodes else nodes
+        return FollowPath(id=id, robot=mobile, nodes=rest)
+
+    return Act(name, context, make, doing)
 
 
-def _move(context: Context, pose: Pose, *, above: bool = False) -> Behaviour:
-    arm, target = context.cell.arm.name, pose.above if above and pose.above else pose.q
-    where = f"above {pose.name}" if above else pose.name
-    return Act(f"move to {where}", context, partial(MoveJoints, robot=arm, q=target), f"moving to {where}")
-
-
-def _effector(context: Context, on: bool) -> Behaviour:
-    arm, word = context.cell.arm.name, "on" if on else "off"
-    act = Act("switch", context, partial(SetEffector, robot=arm, on=on), f"switching the effector {word}")
-    return _sequence(f"effector {word}", act, Dwell("dwell", context, context.dwell_s))
+def _visit(context: Context, way: Sequence[Pose], visits: list[Visit]) -> list[Behaviour]:
+    """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
+    legs = zone_plan.plan(context.cell, way)
+    steps: list[Behaviour] = []
+    for index, (pose, work) in enumerate(visits):
+        steps += [
+            TakeZones("take zones", context, leg.zones) for leg in legs if leg.start == index and leg.zones
+        ]
+        steps += _at(context, pose, *work)
+        steps += [LeaveZones("leave zones", context) for leg in legs if leg.end == index + 1 and leg.zones]
+    return steps
 
 
 def _at(context: Context, pose: Pose, *work: Behaviour) -> list[Behaviour]:
     """Go to a pose, do the work there and, where the pose has an approach height, come back up."""
     if pose.above is None:
         return [_move(context, pose), *work]
+    above = partial(_move, context, pose, above=True)
+    return [above(), _move(context, pose), *work, above()]
+
+
+def _move(context: Context, pose: Pose, *, above: bool = False) -> Behaviour:
+    arm, target = context.cell.arm.name, pose.above if above and pose.above else pose.q
+    where = f"above {pose.name}" if above else pose.name
+    make = partial(MoveJoints, robot=arm, q=target)
+    return Act(f"move to {where}", context, make, f"moving to {where}", guard=partial(_part_lost, context))
+
+
+def _part_lost(context: Context) -> Failure | None:
+    """The part left an effector that holds it while it was carried."""
+    if not context.cell.piece_check or not context.carried or context.piece(0.0) is not False:
+        return None
+    sentence = f"{context.cell.arm.name}: the part was lost on the way"
+    return Failure(reason=Reason.PART_LOST, sentence=sentence)
+
+
+def _effector(context: Context, on: bool) -> Behaviour:
+    arm, word = context.cell.arm.name, "on" if on else "off"
+    act = Act("switch", context, partial(SetEffector, robot=arm, on=on), f"switching the effector {word}")
+    return _sequence(f"effector {word}", act, Dwell("dwell", context, context.timing.dwell_s))
+
+
+def _grip(context: Context, pose: Pose) -> list[Behaviour]:
+    """Effector on, checked before and after where the cell checks pieces."""
+    on = _effector(context, True)
+    if not context.cell.piece_check:
+        return [on]
+    arm, retry, wait_s = context.cell.arm.name, context.cell.retry, context.timing.piece_wait_s
+    none = Failure(reason=Reason.NO_PIECE, sentence=f"{arm}: no piece at {pose.name}")
+    patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
+    attempts = [_attempt(context, pose, number) for number in range(retry.times + 1)]
     return [
-        _move(context, pose, above=True),
-        _move(context, pose),
-        *work,
-        _move(context, pose, above=True),
+        Piece("piece there", context, patience_s, none),
+        _selector("grip", *attempts),
+        Carry("carry", context, True),
     ]
 
 
-def _pick(context: Context, pose: Pose) -> list[Behaviour]:
-    return _at(context, pose, _effector(context, True))
+def _attempt(context: Context, pose: Pose, number: int) -> Behaviour:
+    """Effector on and the piece seen in it; a later attempt opens the effector first."""
+    arm, retry = context.cell.arm.name, context.cell.retry
+    sentence = f"{arm}: the piece at {pose.name} was not gripped"
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=sentence)
+    final = number == retry.times
+    seen = Piece("piece gripped", context, context.timing.piece_wait_s, missed, final=final)
+    return _sequence(
+        f"try {number + 1}", *(_again(context) if number else []), _effector(context, True), seen
+    )
 
 
-def _place(context: Context, pose: Pose) -> list[Behaviour]:
-    return _at(context, pose, _effector(context, False))
+def _again(context: Context) -> list[Behaviour]:
+    """What a further attempt begins with; there is none after another failure than a missed grip."""
+    only_missed = Unless("only missed", lambda: context.failure is None)
+    return [only_missed, _effector(context, False), Dwell("back-off", context, context.cell.retry.backoff_s)]
+
+
+def _let_go(context: Context) -> list[Behaviour]:
+    off = _effector(context, False)
+    return [Carry("arrived", context, False), off] if context.cell.piece_check else [off]

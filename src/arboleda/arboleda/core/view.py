@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
+from . import recipes
 from .belief import Belief
 from .cell import CellRun
 from .messages import TaskChanged
@@ -26,8 +28,9 @@ def snapshot(plant: Plant) -> dict[str, Any]:
         "at": plant.now,
         "ending": plant.intake.closed,
         "cells": [_cell(cell, plant.now) for cell in plant.cells.values()],
-        "robots": [_robot(belief, plant.now) for belief in plant.dispatcher.beliefs.values()],
+        "robots": [_robot(plant, belief) for belief in plant.dispatcher.beliefs.values()],
         "tasks": [_task(task, plant.now) for task in _recent(plant)],
+        "zones": plant.zones.snapshot(),
         "ignored": dict(plant.dispatcher.ledger.ignored),
     }
 
@@ -51,10 +54,15 @@ def change(changed: TaskChanged) -> dict[str, Any]:
 
 
 def step_of(tree: Behaviour | None) -> str | None:
-    """The name of the step that runs: the deepest running node, a step's own parts left out."""
-    running = [node for node in tree.iterate() if node.status.value == "RUNNING"] if tree else []
-    named = [node for node in running if node.parent is None or node.parent.parent is None]
-    return named[0].name if named else None
+    """The name of the step that runs, a step's own parts left out; a recovery's steps say so."""
+    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
+    if not running:
+        return None
+    step = running[0]
+    while step.parent is not None and step.parent.name not in recipes.PHASES:
+        step = step.parent
+    phase = step.parent.name if step.parent else ""
+    return f"{phase}: {step.name}" if phase == recipes.RECOVERY else step.name
 
 
 def _recent(plant: Plant) -> list[Task]:
@@ -74,6 +82,7 @@ def _cell(cell: CellRun, now: float) -> dict[str, Any]:
         "task": _task(cell.task, now) if cell.task else None,
         "step": step_of(cell.tree),
         "queue": [task.id for task in cell.queue],
+        "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
         "held_by": cell.held_by,
         "tree": _nodes(cell.tree, "") if cell.tree else [],
@@ -94,8 +103,9 @@ def _task(task: Task, now: float) -> dict[str, Any]:
     }
 
 
-def _robot(belief: Belief, now: float) -> dict[str, Any]:
-    robot, obstacle = belief.robot, belief.obstacle()
+def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
+    robot, now = belief.robot, plant.now
+    obstacle = plant.dispatcher.obstacle(robot.name)
     return {
         "name": robot.name,
         "mqtt": robot.mqtt,
@@ -107,6 +117,7 @@ def _robot(belief: Belief, now: float) -> dict[str, Any]:
         "units": [joint.unit for joint in robot.joints] if isinstance(robot, Arm) else None,
         "node": belief.node,
         "homed": belief.homed,
+        "latched": robot.name in plant.dispatcher.latched,
         "effector": belief.effector,
         "piece": belief.piece,
         "boot_id": belief.boot_id,
@@ -142,6 +153,7 @@ def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
 
 
 def _cell_diagnostic(cell: dict[str, Any]) -> Diagnostic:
-    level = WARN if cell["state"] == "held" else OK
+    level = OK if cell["state"] in ("idle", "execute") and not cell["paused"] else WARN
+    message = cell["held_by"] or cell["waiting_for"] or cell["state"]
     values = {"state": cell["state"], "queued": str(len(cell["queue"])), "step": cell["step"] or ""}
-    return (f"arboleda: {cell['name']}", "", level, cell["waiting_for"] or cell["state"], values)
+    return (f"arboleda: {cell['name']}", "", level, message, values)

@@ -1,0 +1,71 @@
+"""The states of a cell and what moves it from one to the next, in the words of PackML.
+
+ISA-TR88.00.02; our stop (software) is its abort. It is not a safety function.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from .errors import IllegalTransition
+
+
+class CellState(str, Enum):
+    """Where a cell is."""
+
+    IDLE = "idle"
+    EXECUTE = "execute"
+    HOLDING = "holding"
+    HELD = "held"
+    ABORTING = "aborting"
+    ABORTED = "aborted"
+    CLEARING = "clearing"
+    STOPPED = "stopped"
+    RESETTING = "resetting"
+
+
+class Cause(str, Enum):
+    """What moves a cell; `stuck` is a recovery that failed, or a part found in an idle arm's effector."""
+
+    TASK = "task"
+    ENDED = "ended"
+    STUCK = "stuck"
+    HOLD = "hold"
+    HALTED = "halted"
+    RESUME = "resume"
+    RETRY = "retry"
+    ABANDON = "abandon"
+    STOP = "stop"
+    CLEAR = "clear"
+    CLEARED = "cleared"
+    RESET = "reset"
+    READY = "ready"
+
+
+TABLE: dict[tuple[CellState, Cause], CellState] = {
+    (CellState.IDLE, Cause.TASK): CellState.EXECUTE,
+    (CellState.IDLE, Cause.STUCK): CellState.HELD,
+    (CellState.EXECUTE, Cause.ENDED): CellState.IDLE,
+    (CellState.EXECUTE, Cause.STUCK): CellState.HELD,
+    (CellState.EXECUTE, Cause.HOLD): CellState.HOLDING,
+    (CellState.HOLDING, Cause.HALTED): CellState.HELD,
+    (CellState.HELD, Cause.RESUME): CellState.EXECUTE,
+    (CellState.HELD, Cause.RETRY): CellState.EXECUTE,
+    (CellState.HELD, Cause.ABANDON): CellState.EXECUTE,
+    (CellState.HELD, Cause.ENDED): CellState.IDLE,
+    (CellState.ABORTING, Cause.HALTED): CellState.ABORTED,
+    (CellState.ABORTED, Cause.CLEAR): CellState.CLEARING,
+    (CellState.CLEARING, Cause.CLEAR): CellState.CLEARING,
+    (CellState.CLEARING, Cause.CLEARED): CellState.STOPPED,
+    (CellState.STOPPED, Cause.RESET): CellState.RESETTING,
+    (CellState.RESETTING, Cause.READY): CellState.IDLE,
+    **{(state, Cause.STOP): CellState.ABORTING for state in CellState},
+}
+
+
+def after(state: CellState, cause: Cause, cell: str) -> CellState:
+    """The next state; IllegalTransition where the table has no row."""
+    found = TABLE.get((state, cause))
+    if found is None:
+        raise IllegalTransition(f"{cell} is {state.value}: no {cause.value} there")
+    return found

@@ -1,0 +1,216 @@
+"""What the leaves of a cell's trees may touch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from .dispatcher import Dispatcher, Make
+from .grips import Grip
+from .ledger import Entry
+from .messages import Fact, Failure, Notice, Reason
+from .model import Cell, Evidence, MotionState, Pose, Timing
+from .zones import Zones
+
+__all__ = ["Context", "Make"]
+
+
+class Context:
+    """A cell's own time, and its ways to send, cancel, wait, ask and fail.
+
+    The cell's time stands still while the cell is held, so what waits in a tree waits on.
+    """
+
+    def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones, clock: Callable[[], float]) -> None:
+        self.cell = cell
+        self.timing: Timing = dispatcher.model.timing
+        self.wakes: list[float] = []
+        self.sent = 0
+        self.awaits_piece = False
+        self.carried = False  # a part that was seen in the effector is on its way
+        self.failure: Failure | None = None
+        self.last_failure: Failure | None = None
+        self._dispatcher = dispatcher
+        self._zones = zones
+        self._clock = clock
+        self._paused_s = 0.0
+        self._paused_at: float | None = None
+
+    @property
+    def now(self) -> float:
+        """The cell's time, s."""
+        at = self._clock() if self._paused_at is None else self._paused_at
+        return at - self._paused_s
+
+    @property
+    def plant_now(self) -> float:
+        """The plant's time, s; it never stands still."""
+        return self._clock()
+
+    @property
+    def next_deadline(self) -> float | None:
+        """When the tree is to be woken, s of the plant's time; None while held."""
+        if self._paused_at is not None or not self.wakes:
+            return None
+        at = min(self.wakes)
+        due = at + self._paused_s
+        while (
+            due - self._paused_s < at
+        ):  # rounding must not wake the plant an instant before `now` gets there
+            due = math.nextafter(due, math.inf)
+        return due
+
+    def pause(self) -> None:
+        """The cell's time stands still from now on."""
+        if self._paused_at is None:
+            self._paused_at = self._clock()
+
+    def go_on(self) -> None:
+        """The cell's time passes again."""
+        if self._paused_at is not None:
+            self._paused_s += self._clock() - self._paused_at
+            self._paused_at = None
+
+    def woken(self) -> bool:
+        """Whether a time that the tree waits for has come; each is told once."""
+        due = [at for at in self.wakes if at <= self.now]
+        self.wakes = [at for at in self.wakes if at > self.now]
+        return bool(due)
+
+    def start_afresh(self) -> None:
+        """Forget what the last tree waited for and why it failed."""
+        self.wakes, self.awaits_piece, self.carried = [], False, False
+        self.failure = self.last_failure = None
+
+    def send(self, make: Make, doing: str) -> Entry:
+        """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
+        self.sent += 1
+        return self._dispatcher.send(make, self.cell.name, doing, self._clock())
+
+    def cancel(self, entry: Entry) -> None:
+        """Halt an open command."""
+        self._dispatcher.cancel(entry, self._clock())
+
+    def cancel_all(self) -> None:
+        """Ask every command of the cell to end; what moves is halted."""
+        self._dispatcher.cancel_all(self.cell.name, self._clock())
+
+    def cancel_motions(self) -> None:
+        """Halt what moves; an effector may finish switching."""
+        for entry in self.open_commands():
+            if entry.is_motion and entry.cancelled_at is None:
+                self.cancel(entry)
+
+    def open_commands(self) -> list[Entry]:
+        """The cell's commands that have not ended."""
+        return self._dispatcher.ledger.of_cell(self.cell.name)
+
+    def node(self) -> int | None:
+        """Where the cell's mobile robot is known to stand."""
+        return self._dispatcher.beliefs[self.cell.mobile.name].known_node
+
+    def obstacle(self, robot: str) -> Failure | None:
+        """Why a robot takes no command now."""
+        return self._dispatcher.obstacle(robot)
+
+    @property
+    def grip(self) -> Grip:
+        """What the arm's effector is known to be."""
+        return self._dispatcher.grips[self.cell.arm.name]
+
+    def holding(self) -> bool:
+        """Whether a part may hang in the arm's effector."""
+        return self._dispatcher.grips.holding(self.cell.arm.name)
+
+    def standing(self) -> Pose:
+        """The zone-free pose at which the arm's next way begins: where it is seen, else home."""
+        place, belief = self.cell.palletizing.place, self._dispatcher.beliefs[self.cell.arm.name]
+        q = belief.known_q
+        seen = q is not None and self.cell.arm.reached(q, self.cell.arm.quantised(place.q))
+        return place if seen and not place.zones else self.cell.home
+
+    def reports(self) -> dict[str, int]:
+        """How many reports each robot of the cell has given, for `still_since`."""
+        return {robot.name: self._dispatcher.beliefs[robot.name].reports for robot in self.cell.robots}
+
+    def moving_since(self, reports: dict[str, int]) -> list[str]:
+        """The online robots of the cell that were not seen still since then."""
+        beliefs = {name: self._dispatcher.beliefs[name] for name in reports}
+        return [name for name, b in beliefs.items() if b.online and not b.still_since(reports[name])]
+
+    def reports_a_latch(self) -> bool:
+        """Whether an online robot of the cell still says that it is stopped and latched."""
+        beliefs = [self._dispatcher.beliefs[robot.name] for robot in self.cell.robots]
+        return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)
+
+    def risen(self) -> tuple[float, ...]:
+        """Where the arm stands, its prismatic joints as high as the highest approach; home where unknown."""
+        here = self._dispatcher.beliefs[self.cell.arm.name].known_q
+        heights = [pose.above for pose in self.cell.poses if pose.above]
+        if here is None or not heights:
+            return self.cell.home.q
+        rows = zip(self.cell.arm.joints, here, *heights, strict=True)
+        return tuple(q if joint.pinion_radius_m is None else min(q, *up) for joint, q, *up in rows)
+
+    def piece(self, since: float) -> bool | None:
+        """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""
+        belief, arm = self._dispatcher.beliefs[self.cell.arm.name], self.cell.arm
+        fresh = arm.piece_on_change or belief.piece_at >= since + self._paused_s
+        self.awaits_piece = True
+        if belief.piece is None or not belief.online or not fresh:
+            return None
+        settled_at = belief.piece_since + self.timing.piece_debounce_s
+        if self._clock() < settled_at:
+            self.wake_at(settled_at - self._paused_s)
+            return None
+        return belief.piece
+
+    def astray(self) -> Failure | None:
+        """Why no way may begin where the arm stands: in a cell with zones it must be seen outside them."""
+        cell, arm = self.cell, self.cell.arm.name
+        shared = cell.crossings or any(pose.zones for pose in cell.poses)
+        unknown = not self._dispatcher.beliefs[arm].supervised and arm not in self._dispatcher.reached
+        if not shared or unknown or self._dispatcher.seen_outside(cell):
+            return None
+        by_hand = "" if cell.arm.evidence is Evidence.IDS else " --by-hand, once it stands at its reference,"
+        sentence = f"{arm} is not seen at a pose outside the shared zones; home {arm}{by_hand} mends that"
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def take_zones(self, zones: frozenset[str], *, inside: bool = False) -> bool:
+        """Ask for zones, all at once; whether the arm has them.
+
+        `inside`: an arm that stands in a zone may go on with what it holds, to get out.
+        """
+        arm = self.cell.arm.name
+        held = self._zones.held_by(arm)
+        if not (inside or zones <= held if held else self._zones.request(arm, zones)):
+            return False
+        for zone in self._zones.held_by(arm):
+            self._dispatcher.remember(Fact.QUARANTINE, zone, arm)
+        return True
+
+    def leave_zones(self) -> bool:
+        """Stop waiting for zones, and give them back if the arm is seen outside; whether it holds none."""
+        arm = self.cell.arm.name
+        granted = self._zones.withdraw(arm)
+        held = self._zones.held_by(arm)
+        if held and self._dispatcher.seen_outside(self.cell):
+            granted += self._zones.restore(arm) + self._zones.release(arm)
+            for zone in held:
+                self._dispatcher.remember(Fact.QUARANTINE, zone, None)
+        self._dispatcher.wake(granted)
+        return not self._zones.held_by(arm)
+
+    def wake_at(self, at: float) -> None:
+        """Have the tree ticked again at `at`, s of `now`."""
+        self.wakes.append(at)
+
+    def notify(self, notice: Notice) -> None:
+        """Tell the outside."""
+        self._dispatcher.outbox.append(notice)
+
+    def fail(self, failure: Failure) -> None:
+        """Name the cause of a failure; the first one named counts. What was carried is now for recovery."""
+        self.failure = self.failure or failure
+        self.last_failure = failure
+        self.carried = False

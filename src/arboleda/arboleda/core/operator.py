@@ -1,0 +1,238 @@
+"""What the operator's verbs do, and when each is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .cell import CellRun
+from .cell_states import Cause, CellState
+from .dispatcher import Dispatcher
+from .errors import ArboledaError, IllegalTransition
+from .intake import Intake
+from .messages import Failure, Journal, OperatorRequest, Reason, SetEffector, TaskState, Verb
+from .model import Arm, Evidence
+from .zones import Zones
+
+
+class Refused(ArboledaError):
+    """A verb that changes nothing now; the sentence says why and what is possible."""
+
+
+class Operator:
+    """Carries out verbs on the cells and robots of a scope; all of the scope or nothing."""
+
+    def __init__(
+        self,
+        cells: dict[str, CellRun],
+        dispatcher: Dispatcher,
+        zones: Zones,
+        intake: Intake,
+        clock: Callable[[], float],
+    ) -> None:
+        self._cells = cells
+        self._dispatcher = dispatcher
+        self._zones = zones
+        self._intake = intake
+        self._clock = clock
+
+    def act(self, request: OperatorRequest) -> None:
+        """Do it and journal it; Refused says why nothing was done."""
+        scope = request.scope.strip().lower() if request.verb is not Verb.CANCEL else request.scope.strip()
+        if request.verb is Verb.OVERRIDE:
+            self._override(scope)
+        elif request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
+            self._cancel_task(scope.lstrip("#"))
+        else:
+            self._on_robots(request, scope)
+        sentence = f"{request.verb.value} {scope or 'plant'}{' by hand' if request.by_hand else ''}"
+        self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=sentence))
+
+    def _on_robots(self, request: OperatorRequest, scope: str) -> None:
+        robots = self._robots(scope)
+        if request.verb is Verb.HOME:
+            self._home(robots, by_hand=request.by_hand)
+            return
+        cells = {
+            name: cell
+            for name, cell in self._cells.items()
+            if any(r.name in robots for r in cell.cell.robots)
+        }
+        check, act = ACTS[request.verb]
+        obstacles = [why for cell in cells.values() if (why := check(self, cell, robots))]
+        concerned = [cell for cell in cells.values() if cell.state in MUST_ALL.get(request.verb, ())]
+        firm = [why for cell in concerned if (why := check(self, cell, robots))]
+        if firm or len(obstacles) == len(cells):
+            raise Refused((firm or obstacles)[0])
+        for cell in cells.values():
+            if not check(self, cell, robots):
+                act(self, cell, robots)
+
+    def _robots(self, scope: str) -> set[str]:
+        """The robots of a scope: the plant, a cell, or one robot."""
+        names = self._dispatcher.beliefs
+        if scope in ("", "plant"):
+            return set(names)
+        if scope in self._cells:
+            return {robot.name for robot in self._cells[scope].cell.robots}
+        if scope in names:
+            return {scope}
+        known = ", ".join([*self._cells, *names])
+        raise Refused(f"'{scope[:40]}' is neither a cell nor a robot of this plant; there are {known}")
+
+    def _override(self, zone: str) -> None:
+        try:
+            granted = self._zones.override(zone)
+        except IllegalTransition as error:
+            raise Refused(str(error)) from error
+        self._dispatcher.forget_zone(zone)
+        self._dispatcher.wake(granted)
+
+    def _cancel_task(self, id: str) -> None:
+        task = self._intake.tasks[id]
+        cell = self._cells[task.order.cell]
+        if task.state is TaskState.QUEUED:
+            cell.drop(task, Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator"))
+        elif task is cell.task:
+            if why := _not_cancellable(self, cell, set()):
+                raise Refused(why)
+            cell.cancel()
+        else:
+            raise Refused(f"task {id} has ended already ({task.state.value})")
+
+    def _home(self, robots: set[str], *, by_hand: bool) -> None:
+        for name in sorted(robots):
+            obstacle = self._not_homeable(name, by_hand=by_hand)
+            if obstacle:
+                raise Refused(obstacle)
+        for name in sorted(robots):
+            if by_hand:
+                self._dispatcher.declare_homed(name)
+            else:
+                self._dispatcher.home(name, self._clock())
+
+    def _not_homeable(self, name: str, *, by_hand: bool) -> str | None:
+        cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        belief = self._dispatcher.beliefs[name]
+        if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
+            return refusal
+        says_itself = belief.robot.evidence is Evidence.IDS
+        if by_hand:
+            return (
+                f"{name} says itself whether it is homed; home {name} runs its routine"
+                if says_itself
+                else None
+            )
+        if not says_itself:
+            return f"{name} cannot report a homing; put it at its reference and say: home {name} --by-hand"
+        obstacle = self._dispatcher.obstacle(name)
+        return obstacle.sentence if obstacle and obstacle.reason is not Reason.NOT_HOMED else None
+
+    def _stop(self, cell: CellRun, robots: set[str]) -> None:
+        for robot in cell.cell.robots:
+            if robot.name in robots:
+                self._dispatcher.latch(robot.name)
+        cell.stop()
+
+    def _not_clearable(self, cell: CellRun, robots: set[str]) -> str | None:
+        if cell.state not in (CellState.ABORTED, CellState.CLEARING):
+            return f"{cell.cell.name} is {cell.state.value}; only a stopped (aborted) cell can be cleared"
+        mine = [robot.name for robot in cell.cell.robots if robot.name in robots]
+        beliefs = [self._dispatcher.beliefs[name] for name in mine]
+        moving = [belief.robot.name for belief in beliefs if belief.online and not belief.still]
+        return f"{', '.join(moving)} is not still yet" if moving else None
+
+    def _clear(self, cell: CellRun, robots: set[str]) -> None:
+        for robot in cell.cell.robots:
+            if robot.name in robots:
+                self._dispatcher.unlatch(robot.name)
+        if not any(robot.name in self._dispatcher.latched for robot in cell.cell.robots):
+            cell.become(Cause.CLEAR)
+
+    def _reset(self, cell: CellRun, robots: set[str]) -> None:
+        for robot in cell.cell.robots:
+            self._dispatcher.forget_stop(robot.name)
+        cell.become(Cause.RESET)
+        cell.become(Cause.READY)
+
+    def _not_resumable(self, cell: CellRun, robots: set[str]) -> str | None:
+        if cell.state is CellState.IDLE:
+            return None if cell.queue_paused else f"{cell.cell.name} is idle and its queue runs"
+        if cell.state is not CellState.HELD:
+            return (
+                f"{cell.cell.name} is {cell.state.value}; only a held cell or a paused queue can be resumed"
+            )
+        if cell.task is None or cell.trouble is not None:
+            return cell.held_by
+        return None
+
+    def _release(self, cell: CellRun, robots: set[str]) -> None:
+        arm = cell.cell.arm.name
+        entry = self._dispatcher.send(
+            lambda id: SetEffector(id=id, robot=arm, on=False),
+            cell.cell.name,
+            "releasing by hand",
+            self._clock(),
+        )
+        if entry.failure is not None:
+            raise Refused(entry.failure.sentence)
+
+
+def _always(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+    return None
+
+
+def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], str | None]:
+    def check(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+        if cell.state in states:
+            return None
+        allowed = " or ".join(state.value for state in states)
+        return f"{cell.cell.name} is {cell.state.value}; this needs a cell that is {allowed}"
+
+    return check
+
+
+def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+    refusal = _in(CellState.HELD)(operator, cell, robots)
+    if refusal is None and cell.task is not None and cell.trouble is None:
+        return f"{cell.cell.name} is held without a fault; resume {cell.cell.name} goes on"
+    return refusal
+
+
+def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+    refusal = _in(CellState.HELD)(operator, cell, robots)
+    if refusal is None and cell.task is None and cell.context.holding():
+        return f"{cell.cell.arm.name} may hold a part; release {cell.cell.arm.name} first"
+    return refusal
+
+
+def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+    if cell.task is None:
+        return f"{cell.cell.name} has no running task"
+    return _in(CellState.EXECUTE, CellState.HELD)(operator, cell, robots)
+
+
+def _not_releasable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+    if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
+        return f"{cell.cell.name} is {cell.state.value}; hold or stop it first"
+    if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
+        return f"{cell.cell.mobile.name} has no effector"
+    return None
+
+
+Check = Callable[[Operator, CellRun, "set[str]"], "str | None"]
+Do = Callable[[Operator, CellRun, "set[str]"], None]
+ACTS: dict[Verb, tuple[Check, Do]] = {
+    Verb.STOP: (_always, Operator._stop),
+    Verb.CLEAR: (Operator._not_clearable, Operator._clear),
+    Verb.RESET: (_in(CellState.STOPPED), Operator._reset),
+    Verb.HOLD: (_in(CellState.EXECUTE), lambda operator, cell, robots: cell.hold()),
+    Verb.RESUME: (Operator._not_resumable, lambda operator, cell, robots: cell.resume()),
+    Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel()),
+    Verb.RETRY: (_not_retryable, lambda operator, cell, robots: cell.retry()),
+    Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
+    Verb.RELEASE: (_not_releasable, Operator._release),
+}
+# A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.
+MUST_ALL: dict[Verb, tuple[CellState, ...]] = {
+    Verb.CLEAR: (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING),
+}

@@ -1,0 +1,79 @@
+"""The tree that runs in a cell: built, ticked until it rests, dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from . import recipes
+from .context import Context
+from .errors import ArboledaError
+from .leaves import Act
+from .ledger import State
+from .messages import Failure, Reason
+
+TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
+
+
+class TreeRun:
+    """At most one tree; whatever is raised in it is a failure of it, and named in the context."""
+
+    def __init__(self, context: Context) -> None:
+        self.tree: Behaviour | None = None
+        self._context = context
+
+    @property
+    def recovering(self) -> bool:
+        """Whether the recovery is what runs."""
+        return any(node.name == recipes.RECOVERY for node in self._running())
+
+    def begin(self, make: Callable[[], Behaviour]) -> Status:
+        """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""
+        try:
+            self.tree = make()
+        except Exception as error:  # noqa: BLE001 - a recipe may be user code: it ends its task, not the plant
+            return self._raised(error)
+        return self.tick()
+
+    def tick(self) -> Status:
+        """Tick until neither a status nor a command changes any more; the status of the tree then."""
+        try:
+            return self._tick_to_rest()
+        except Exception as error:  # noqa: BLE001 - a leaf may be user code: it ends its task, not the plant
+            return self._raised(error)
+
+    def drop(self) -> None:
+        """End what runs; whatever moves for it is halted."""
+        if self.tree is not None:
+            self.tree.stop(Status.INVALID)
+        self.tree = None
+        self._context.cancel_all()  # py_trees does not terminate a leaf that raised
+
+    def interrupted(self) -> list[Act]:
+        """The steps that were under way and have ended without being done."""
+        acts = [node for node in self._running() if isinstance(node, Act)]
+        return [act for act in acts if act.entry and not act.entry.open and act.entry.state is not State.DONE]
+
+    def _running(self) -> list[Behaviour]:
+        nodes = self.tree.iterate() if self.tree else ()
+        return [node for node in nodes if node.status is Status.RUNNING]
+
+    def _tick_to_rest(self) -> Status:
+        tree = self.tree
+        assert tree is not None
+        for _ in range(TICK_BOUND):
+            before = self._signature(tree)
+            tree.tick_once()
+            if tree.status is not Status.RUNNING or self._signature(tree) == before:
+                return tree.status
+        raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
+
+    def _signature(self, tree: Behaviour) -> tuple[object, ...]:
+        return (self._context.sent, *(node.status for node in tree.iterate()))
+
+    def _raised(self, error: Exception) -> Status:
+        sentence = f"{self._context.cell.name}: {type(error).__name__} in the tree: {error}"
+        self._context.fail(Failure(reason=Reason.INTERNAL, sentence=sentence))
+        return Status.FAILURE

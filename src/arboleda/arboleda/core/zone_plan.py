@@ -1,0 +1,80 @@
+"""Which shared zones a way of the arm needs, and from where to where it must hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from .errors import ConfigError
+from .model import Cell, Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leg:
+    """From one zone-free pose of a way to the next, by index: `zones` are taken before the first move.
+
+    They are kept until the work at the end pose is done, for recovery may start there.
+    """
+
+    start: int
+    end: int
+    zones: frozenset[str]
+
+
+def storage_way(cell: Cell, station: Pose, start: Pose) -> tuple[Pose, ...]:
+    """The poses of the storage recipe for an arm that stands at `start`."""
+    return (start, cell.pickup, station, cell.home)
+
+
+def palletizing_way(cell: Cell, start: Pose) -> tuple[Pose, ...]:
+    """The poses of the palletizing recipe for an arm that stands at `start`; it stays at the last one."""
+    return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
+
+
+def plan(cell: Cell, way: Sequence[Pose]) -> list[Leg]:
+    """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way."""
+    for pose in (way[0], way[-1]):
+        if pose.zones:
+            raise ConfigError((f"cell {cell.name}: {_lying(pose)}, so no way may start or end there",))
+    free = [index for index, pose in enumerate(way) if not pose.zones]
+    left = max((index for index, pose in enumerate(way) if pose.name != cell.home.name), default=0)
+    return [
+        Leg(start=start, end=end, zones=_zones(cell, way[start : end + 1], carrying=start < left))
+        for start, end in pairwise(free)
+    ]
+
+
+def recovery_zones(cell: Cell) -> frozenset[str]:
+    """What the way to the pick-up pose and home needs, where the arm holds nothing yet."""
+    return _zones(cell, (cell.pickup, cell.home), carrying=True)
+
+
+def plan_problems(cell: Cell) -> dict[str, str]:
+    """Why no recipe of the cell can be planned: a sentence by the name of the pose that is in the way."""
+    problems = {}
+    if (place := cell.palletizing.place).zones:
+        rule = "palletizing ends and waits there, so it must be outside all zones"
+        problems[place.name] = f"cell {cell.name}: {_lying(place)}; {rule}"
+    if cell.home.zones:
+        rule = "the arm waits there, so it must be outside all zones"
+        problems[cell.home.name] = f"cell {cell.name}: {_lying(cell.home)}; {rule}"
+    return problems
+
+
+def _zones(cell: Cell, poses: Sequence[Pose], *, carrying: bool) -> frozenset[str]:
+    """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
+    recovery = (cell.pickup, cell.home) if carrying else (cell.home,)
+    moves = [*pairwise(poses), *combinations(recovery, 2)]
+    moves += [(pose, goal) for pose in poses for goal in recovery]
+    inside = (pose.zones for pose in (*poses, *recovery))
+    return frozenset[str]().union(*inside, *(_crossed(cell, a, b) for a, b in moves))
+
+
+def _crossed(cell: Cell, a: Pose, b: Pose) -> frozenset[str]:
+    ends = {a.name, b.name}
+    return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} == ends))
+
+
+def _lying(pose: Pose) -> str:
+    return f"{pose.name} lies in zone {', '.join(sorted(pose.zones))}"

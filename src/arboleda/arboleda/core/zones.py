@@ -1,0 +1,128 @@
+"""Shared zones: who is in which, who waits for which; first come, first served."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from .errors import IllegalTransition
+
+
+class Zones:
+    """At most one robot per zone.
+
+    A robot takes all the zones of a way at once, from outside, so nobody who holds a zone waits for another
+    one and there is no deadlock. A quarantined zone may still have its silent robot in it.
+    """
+
+    def __init__(self, names: Iterable[str], quarantined: Mapping[str, str] | None = None) -> None:
+        """`quarantined`: zone -> robot, kept from an earlier start; what is not in `names` is left out."""
+        self._names = tuple(names)
+        self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self._names}
+        self._quarantined = set(self._holders)
+        self._waiting: dict[str, frozenset[str]] = {}  # in the order of asking
+
+    @property
+    def waiting(self) -> tuple[tuple[str, frozenset[str]], ...]:
+        """Each waiting robot with all it asked for, the first one first."""
+        return tuple(self._waiting.items())
+
+    def holder(self, zone: str) -> str | None:
+        """The robot that is, or in quarantine may be, in the zone."""
+        return self._holders.get(zone)
+
+    def held_by(self, robot: str) -> frozenset[str]:
+        """The zones of which it is the holder, quarantined ones too."""
+        return frozenset(zone for zone, holder in self._holders.items() if holder == robot)
+
+    def is_quarantined(self, zone: str) -> bool:
+        return zone in self._quarantined
+
+    def snapshot(self) -> list[dict[str, Any]]:
+        """Plain data for screens, in the order of the plant file."""
+        return [self._row(zone) for zone in self._names]
+
+    def request(self, robot: str, zones: frozenset[str]) -> bool:
+        """Ask for all of `zones`: True where it holds them now, else it waits; asking again changes nothing.
+
+        IllegalTransition for a zone there is not, for more than the robot holds, for other zones than it
+        waits for, and while any of its zones is quarantined.
+        """
+        for zone in sorted(zones):
+            self._require_known(zone)
+        held = self.held_by(robot)
+        if held & self._quarantined:
+            rule = "it gets none before it is back, homed and seen outside"
+            raise IllegalTransition(f"{robot} may still be in {_named(held)}, which is quarantined: {rule}")
+        if zones <= held:
+            return True
+        if held:
+            rule = "nobody standing in a zone waits for another"
+            raise IllegalTransition(f"{robot} holds {_named(held)} and asks for {_named(zones)}: {rule}")
+        if self._waiting.setdefault(robot, zones) != zones:
+            asked = _named(self._waiting[robot])
+            raise IllegalTransition(f"{robot} waits for {asked} and asks for {_named(zones)}: withdraw first")
+        return robot in self._grant()
+
+    def withdraw(self, robot: str) -> tuple[str, ...]:
+        """It gives up waiting; the robots that get their zones by this, the first one first."""
+        self._waiting.pop(robot, None)
+        return self._grant()
+
+    def release(self, robot: str) -> tuple[str, ...]:
+        """It is seen outside of all it holds; what is quarantined stays so. Returns as `withdraw`."""
+        return self._free(self.held_by(robot) - self._quarantined)
+
+    def quarantine(self, robot: str) -> None:
+        """It fell silent: what it holds stays occupied until `restore` or `override`."""
+        self._quarantined |= self.held_by(robot)
+
+    def restore(self, robot: str) -> tuple[str, ...]:
+        """It is back, homed and seen outside: its quarantined zones are free. Returns as `withdraw`."""
+        return self._free(self.held_by(robot) & self._quarantined)
+
+    def override(self, zone: str) -> tuple[str, ...]:
+        """An operator answers for one quarantined zone being empty: it is free. Returns as `withdraw`.
+
+        IllegalTransition where there is nothing to override.
+        """
+        self._require_known(zone)
+        if zone not in self._quarantined:
+            holder = self.holder(zone)
+            now = f"held by {holder}, which still reports" if holder else "free"
+            raise IllegalTransition(f"zone {zone} is {now}; only a quarantined zone can be overridden")
+        return self._free(frozenset({zone}))
+
+    def _free(self, zones: frozenset[str]) -> tuple[str, ...]:
+        self._quarantined -= zones
+        for zone in zones:
+            del self._holders[zone]
+        return self._grant()
+
+    def _grant(self) -> tuple[str, ...]:
+        """Serve the waiting in order; nobody gets past an earlier one that wants one of the same zones."""
+        granted = []
+        taken = set(self._holders)
+        for robot, zones in self.waiting:
+            if zones.isdisjoint(taken):
+                del self._waiting[robot]
+                self._holders.update(dict.fromkeys(zones, robot))
+                granted.append(robot)
+            taken |= zones
+        return tuple(granted)
+
+    def _require_known(self, zone: str) -> None:
+        if zone not in self._names:
+            known = ", ".join(self._names) or "none"
+            raise IllegalTransition(f'there is no zone "{zone}"; zones of this plant: {known}')
+
+    def _row(self, zone: str) -> dict[str, Any]:
+        state = (
+            "free" if zone not in self._holders else "quarantined" if self.is_quarantined(zone) else "held"
+        )
+        waiting = [robot for robot, zones in self.waiting if zone in zones]
+        return {"zone": zone, "state": state, "robot": self.holder(zone), "waiting": waiting}
+
+
+def _named(zones: frozenset[str]) -> str:
+    return ", ".join(sorted(zones))
