@@ -1,0 +1,287 @@
+"""The plant's memory in real SQLite files."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from arboleda.adapters.store import VERSION, Store
+from arboleda.core.errors import ArboledaError, StartError
+from arboleda.core.messages import Fact, Journal, Remember, Verb
+
+LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
+ACT = Journal(verb=Verb.OVERRIDE, scope="mesa", sentence="mesa is free: ra1 was carried away")
+NOBODY = 65534
+AT_FULL = """
+import os, sys, time
+from pathlib import Path
+from arboleda.adapters.store import Store
+from arboleda.core.messages import Fact, Journal, Remember, Verb
+store = Store(Path(sys.argv[1]))
+store.open()
+for fact in Fact:
+    store.keep(Remember(fact=fact, name="ra1", value="on"))
+store.journal(Journal(verb=Verb.STOP, scope="", sentence="everything stopped"), 5.0)
+print("kept", flush=True)
+time.sleep(60)
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "plant.sqlite"
+
+
+@pytest.fixture
+def store(path):
+    with Store(path) as opened:
+        yield opened
+
+
+@pytest.fixture
+def on_connect(monkeypatch):
+    """Has something done to every connection from now on."""
+    connect = sqlite3.connect
+
+    def register(do: Callable[[sqlite3.Connection], object]) -> None:
+        def connected(*args, **options):
+            db = connect(*args, **options)
+            do(db)
+            return db
+
+        monkeypatch.setattr(sqlite3, "connect", connected)
+
+    return register
+
+
+@pytest.fixture
+def small_disk(on_connect):
+    """From now on a database may have so many pages."""
+    return lambda pages: on_connect(lambda db: db.execute(f"PRAGMA max_page_count = {pages}"))
+
+
+def everything(path: Path) -> tuple:
+    with Store(path) as store:
+        return [store.facts(fact) for fact in Fact], store.entries()
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(StartError) as refused:
+        Store(path).open()
+    assert str(refused.value).startswith(f"The plant's memory {path} ")
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+def test_a_new_memory_is_empty(store):
+    assert [store.facts(fact) for fact in Fact] == [{}, {}, {}]
+    assert store.entries() == []
+
+
+def test_a_fact_is_kept_replaced_and_forgotten(path):
+    with Store(path) as store:
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="switching"))
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra2", value="off"))
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        store.keep(LATCH)
+    with Store(path) as store:
+        assert store.facts(Fact.EFFECTOR) == {"ra1": "on", "ra2": "off"}
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None))
+        store.keep(Remember(fact=Fact.QUARANTINE, name="nowhere", value=None))
+        assert store.facts(Fact.EFFECTOR) == {"ra2": "off"}
+        assert store.facts(Fact.LATCH) == {"ra1": "on"}
+
+
+NAMES = st.sampled_from(["ra1", "ra2", "mesa ñ 'x'"])
+FACTS = st.builds(
+    Remember, fact=st.sampled_from(Fact), name=NAMES, value=st.sampled_from(["on", "off", "", None])
+)
+
+
+@given(st.lists(FACTS, max_size=20))
+def test_the_last_word_on_each_fact_counts(facts):
+    with Store(Path(":memory:")) as store:
+        for fact in facts:
+            store.keep(fact)
+        last = {fact.fact: {} for fact in facts}
+        for fact in facts:
+            last[fact.fact][fact.name] = fact.value
+        for kind, values in last.items():
+            assert store.facts(kind) == {name: value for name, value in values.items() if value is not None}
+
+
+def test_the_journal_is_read_newest_first(path):
+    with Store(path) as store:
+        store.journal(Journal(verb=Verb.STOP, scope="sis_a", sentence="ra1 and rm_sis_a stopped"), 1000.25)
+        store.journal(ACT, 999.5)
+    with Store(path) as store:
+        newest, oldest = store.entries()
+        assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
+        assert (newest.scope, newest.sentence) == (ACT.scope, ACT.sentence)
+        assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
+        assert store.entries(limit=1) == [newest]
+
+
+def test_open_and_close_may_be_called_twice(path):
+    store = Store(path)
+    store.close()
+    store.open()
+    store.open()
+    store.keep(LATCH)
+    store.close()
+    store.close()
+    with pytest.raises(ArboledaError, match="is closed"):
+        store.keep(LATCH)
+    assert os.listdir(path.parent) == [path.name]
+
+
+def test_what_was_kept_survives_kill_9(path):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", AT_FULL, str(path)]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as child:
+        try:
+            assert child.stdout.readline() == "kept\n"
+        finally:
+            child.send_signal(signal.SIGKILL)
+    assert child.returncode == -signal.SIGKILL
+    facts, [entry] = everything(path)
+    assert facts == [{"ra1": "on"}] * 3
+    assert entry.sentence == "everything stopped"
+
+
+def test_a_thousand_facts_are_all_there(path):
+    with Store(path) as store:
+        for n in range(1000):
+            store.keep(Remember(fact=Fact.QUARANTINE, name=f"zone{n % 400}", value=f"ra{n}"))
+    with Store(path) as store:
+        assert store.facts(Fact.QUARANTINE) == {f"zone{n % 400}": f"ra{n}" for n in range(600, 1000)}
+
+
+def test_a_log_that_breaks_off_costs_only_what_was_being_written(path, tmp_path):
+    copy = tmp_path / "copy.sqlite"
+    log = Path(f"{copy}-wal")
+    with Store(path) as store:
+        store.keep(LATCH)
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        shutil.copy(path, copy)
+        shutil.copy(f"{path}-wal", log)
+    os.truncate(log, log.stat().st_size - 100)
+    assert everything(copy)[0] == [{"ra1": "on"}, {}, {}]
+
+
+def test_a_reader_neither_waits_nor_makes_wait(store, path):
+    store.keep(LATCH)
+    reader = sqlite3.connect(path, timeout=0, isolation_level=None)
+    reader.execute("BEGIN")
+    query = "SELECT name FROM fact"
+    assert reader.execute(query).fetchall() == [("ra1",)]
+    store.keep(Remember(fact=Fact.LATCH, name="ra2", value="on"))
+    assert reader.execute(query).fetchall() == [("ra1",)]
+    reader.execute("COMMIT")
+    assert reader.execute(query).fetchall() == [("ra1",), ("ra2",)]
+    reader.close()
+
+
+def test_a_file_that_another_program_writes_is_said_to_be(path, monkeypatch):
+    monkeypatch.setattr("arboleda.adapters.store.BUSY_S", 0)
+    writer = sqlite3.connect(path, isolation_level=None)
+    with Store(path) as store:
+        writer.execute("BEGIN IMMEDIATE")
+        with pytest.raises(ArboledaError, match=r"\(database is locked\): close the other program"):
+            store.keep(LATCH)
+        writer.execute("ROLLBACK")
+        store.keep(LATCH)
+    writer.close()
+
+
+def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
+    said: list[str] = []
+    on_connect(lambda db: db.set_trace_callback(said.append))
+    with Store(path) as store:
+        del said[:]
+        store.keep(LATCH)
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        store.journal(ACT, 5.0)
+    modes = [each.rpartition(" ")[2] for each in said if "synchronous" in each]
+    assert modes == ["FULL", "NORMAL", "FULL"]
+
+
+def test_a_file_of_a_newer_arboleda_is_left_as_it_is(path):
+    db = sqlite3.connect(path)
+    db.execute(f"PRAGMA user_version = {VERSION + 1}")
+    db.close()
+    before = path.read_bytes()
+    assert f"is of a newer Arboleda (format {VERSION + 1}, known: {VERSION}): use that one" in refusal(path)
+    assert path.read_bytes() == before
+
+
+def test_another_kind_of_file_is_refused_with_what_its_loss_means(path):
+    path.write_text("Dear diary, " * 100)
+    sentence = refusal(path)
+    assert "(file is not a database): move it away" in sentence
+    assert "lost with it are stop latches, what the effectors hold, quarantined zones" in sentence
+    assert path.read_text().startswith("Dear diary")
+
+
+def test_a_damaged_file_is_found_at_the_start(path):
+    with Store(path) as store:
+        for n in range(500):
+            store.journal(ACT, float(n))
+    with path.open("r+b") as file:
+        file.seek(4096 * 4)
+        file.write(b"\xaa" * 4096 * 4)
+    assert "malformed): move it away, together with its -wal and -shm files" in refusal(path)
+
+
+def test_a_directory_that_is_missing_is_named(tmp_path):
+    sentence = refusal(tmp_path / "nowhere" / "plant.sqlite")
+    assert "(unable to open database file): make its directory, and let this user read and write" in sentence
+
+
+@pytest.fixture
+def locked_up():
+    """A memory that this process may read but not write, root or not."""
+    with tempfile.TemporaryDirectory() as made:
+        path = Path(made, "plant.sqlite")
+        with Store(path):
+            pass
+        path.chmod(0o444)
+        path.parent.chmod(0o555)
+        root = os.geteuid() == 0
+        if root:
+            os.seteuid(NOBODY)
+        yield path
+        if root:
+            os.seteuid(0)
+        path.parent.chmod(0o755)
+
+
+def test_a_file_that_may_not_be_written_is_refused_at_the_start(locked_up):
+    assert "let this user" in refusal(locked_up)
+
+
+def test_a_full_disk_at_the_start_is_named(path, small_disk):
+    small_disk(1)
+    assert "(database or disk is full): make room on the disk and start again" in refusal(path)
+
+
+def test_a_fact_that_finds_no_room_is_an_error_and_what_was_kept_stays(path, small_disk):
+    small_disk(8)
+    long = Remember(fact=Fact.QUARANTINE, name="mesa", value="x" * 40_000)
+    with Store(path) as store:
+        store.keep(LATCH)
+        with pytest.raises(ArboledaError, match="make room on the disk"):
+            store.keep(long)
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="off"))
+    assert everything(path)[0] == [{"ra1": "on"}, {"ra1": "off"}, {}]
