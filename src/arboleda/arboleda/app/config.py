@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, PlantModel, Timing
+from arboleda.core.model import Cell, PlantModel, Retry, Timing
 
 from .plant_file import rack
 from .plant_file.document import Document, Place, shown
@@ -16,8 +16,9 @@ from .plant_file.paths import paths
 from .plant_file.poses import PoseReader
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
-from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, TimingShape
+from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, RetryShape, TimingShape
 from .plant_file.yaml_marks import LARGEST
+from .plant_file.zones import with_zones, zones
 
 SHARED = ("paths", "stations", "palletizing")
 MQTT_PROTOCOL = {"3.1.1": 4, "5": 5}  # paho's numbers
@@ -89,18 +90,31 @@ def _bytes(path: Path) -> bytes:
 def _plant(document: Document) -> PlantModel | None:
     shape = document.read(PlantShape)
     cells = [_cell(document, name) for name in document.keys(("cells",))]
-    timing = document.read(TimingShape, ("timing",)) if document.has(("timing",)) else TimingShape()
+    timing = _timing(document)
     check_names(document)
     _check_sections(document)
     whole = tuple(cell for cell in cells if cell)
+    regions = zones(document, whole)
+    zoned = tuple(with_zones(document, cell, regions) for cell in whole)
     if shape is None or timing is None or len(whole) < len(cells):
         return None
     return PlantModel(
         name=shape.name,
-        cells=whole,
+        cells=zoned,
         timing=Timing(**timing.model_dump()),
         mqtt_version=MQTT_PROTOCOL[shape.mqtt_version],
+        zones=tuple(region.name for region in regions),
     )
+
+
+def _timing(document: Document) -> TimingShape | None:
+    if not document.has(("timing",)):
+        return TimingShape()
+    shape = document.read(TimingShape, ("timing",))
+    if shape and shape.piece_debounce_s >= shape.piece_wait_s:
+        rule = f"must be less than piece_wait_s, which is {shape.piece_wait_s:g}"
+        document.problem(("timing", "piece_debounce_s"), f"{rule}; is {shape.piece_debounce_s:g}")
+    return shape
 
 
 def _cell(document: Document, name: str) -> Cell | None:
@@ -111,7 +125,8 @@ def _cell(document: Document, name: str) -> Cell | None:
     the_mobile = mobile(document, (*place, "mobile"))
     routes = paths(document, _section(document, place, "paths"))
     poses = _poses(document, place, kind)
-    if not (shape and the_arm and the_mobile and routes and poses):
+    retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
+    if not (shape and retry and the_arm and the_mobile and routes and poses):
         return None
     return Cell(
         name=name,
@@ -120,6 +135,9 @@ def _cell(document: Document, name: str) -> Cell | None:
         paths=routes,
         queue_limit=shape.queue_limit,
         drive_to_start=shape.drive_to_start,
+        retry=Retry(**retry.model_dump()),
+        piece_check=shape.piece_check,
+        zone_wait_s=shape.zone_wait_s,
         **poses,
     )
 

@@ -1,4 +1,4 @@
-"""Which names of a plant must differ: one name, one thing, on ROS 2, on MQTT and in task texts."""
+"""Which names of a plant must differ: one name, one thing, on ROS 2, on MQTT and in what operators say."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def check_names(document: Document) -> None:
             document.problem(place, f"a cell's name must be {NAME_RULE}", at=at)
         if name in RESERVED:
             document.problem(place, f"the name {shown(name)} is taken by topics of the plant itself", at=at)
-    _differ(document, names, "name")
+    _differ(document, names + [(name, ("zones", name)) for name in document.keys(("zones",))], "name")
     _differ(document, _names(document, robots, "mqtt"), "MQTT name")
     _differ(document, _names(document, arms, "twin"), "twin name")
     _check_twins(document, arms, names)

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from arboleda.core.model import Arm, Grid, Joint, Mobile, Placement
+from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile, Placement
 
 from .document import Document, Place, choice, nearest, shown
 from .poses import PoseReader, in_file_unit, span
@@ -37,6 +37,7 @@ def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
     """The arm of a cell; None, with its problems kept, where something is wrong with it."""
     shape = document.read(ArmShape, place)
     base = _section(document, (*place, "base"), BaseShape)
+    _check_homing(document, place, shape)
     tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
     if shape is None or base is None or model is None:
         return None
@@ -48,6 +49,8 @@ def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
         joints=model.joints,
         timeout_s=shape.timeout_s,
         tolerance=tolerance,
+        piece_on_change=shape.piece_on_change,
+        queue_triggers=shape.trigger_when_busy == "queue",
     )
 
 
@@ -55,6 +58,7 @@ def mobile(document: Document, place: Place) -> Mobile | None:
     """The mobile robot of a cell; None, with its problems kept, where something is wrong with it."""
     shape = document.read(MobileShape, place)
     grid = _section(document, (*place, "grid"), GridShape)
+    _check_homing(document, place, shape)
     model = _model(document, (*place, "model"), mobile_models(), default="mobile")
     if shape is None or grid is None or model is None:
         return None
@@ -70,6 +74,16 @@ def mobile(document: Document, place: Place) -> Mobile | None:
     )
 
 
+def _check_homing(document: Document, place: Place, shape: RobotShape | None) -> None:
+    if shape is None or not shape.home_at_start:
+        return
+    if shape.assume_homed:
+        document.problem((*place, "home_at_start"), "contradicts assume_homed: true; keep one of them")
+    elif shape.evidence is not Evidence.IDS:
+        needs = f"needs evidence: ids; {shape.evidence.value} cannot prove that the homing routine has ended"
+        document.problem((*place, "home_at_start"), needs)
+
+
 def _common(shape: RobotShape) -> dict[str, Any]:
     return {
         "name": shape.name,
@@ -77,6 +91,7 @@ def _common(shape: RobotShape) -> dict[str, Any]:
         "link": shape.link,
         "evidence": shape.evidence,
         "assume_homed": shape.assume_homed,
+        "home_at_start": shape.home_at_start,
         "has_stop": shape.stop == "supported",
     }
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic_core import PydanticCustomError
 
-from arboleda.core.model import Evidence, Link, Timing
+from arboleda.core.model import Cell, Evidence, Link, Retry, Timing
 
 from .robot_models import Number, Pair, Positive, Shape
 
@@ -58,6 +58,7 @@ class PlantShape(Shape):
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
+    zones: Any = None
 
 
 class TimingShape(Shape):
@@ -70,6 +71,8 @@ class TimingShape(Shape):
     stop_timeout_s: Duration = Timing.stop_timeout_s
     deadline_factor: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = Timing.deadline_factor
     deadline_floor_s: Duration = Timing.deadline_floor_s
+    piece_wait_s: Duration = Timing.piece_wait_s
+    piece_debounce_s: Wait = Timing.piece_debounce_s
 
 
 class CellShape(Shape):
@@ -84,6 +87,16 @@ class CellShape(Shape):
     palletizing: Any = None
     queue_limit: Annotated[int, Field(ge=1, le=10_000)] = 100
     drive_to_start: bool = True
+    retry: Any = None
+    piece_check: bool = False
+    zone_wait_s: Duration = Cell.zone_wait_s
+
+
+class RetryShape(Shape):
+    """`retry:`; the defaults are those of core.model.Retry."""
+
+    times: Annotated[int, Field(ge=0, le=10)] = Retry.times
+    backoff_s: Wait = Retry.backoff_s
 
 
 class RobotShape(Shape):
@@ -94,6 +107,7 @@ class RobotShape(Shape):
     link: Annotated[Link, Field(strict=False)]
     evidence: Annotated[Evidence, Field(strict=False)]
     assume_homed: bool = False
+    home_at_start: bool = False
     stop: Literal["supported", "none"] = "supported"
 
 
@@ -107,6 +121,8 @@ class ArmShape(RobotShape):
     limits: Any = None
     speeds: Any = None
     tolerance: Any = None
+    piece_on_change: bool = False
+    trigger_when_busy: Literal["queue", "refuse"] = "queue"
 
 
 class MobileShape(RobotShape):
@@ -158,6 +174,13 @@ class PalletizingShape(Shape):
 
     pick: str
     place: str
+
+
+class ZoneShape(Shape):
+    """One zone under `zones:`; a pose is written `<cell> <pose>`, a move as its two ends."""
+
+    poses: list[str] = Field(default_factory=list)
+    moves: list[Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(default_factory=list)
 
 
 STRICT = ConfigDict(strict=True)

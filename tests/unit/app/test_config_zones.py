@@ -1,0 +1,170 @@
+"""Shared zones, retry, piece check and triggers in a plant file."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import config
+from arboleda.core.errors import ConfigError
+from arboleda.core.model import Cell, Crossing, PlantModel, Pose, Retry, Timing
+
+DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
+PLANT = files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
+ZONES = """\
+zones:
+  centre:
+    poses: [sis_a pickup, sis_b station 4]
+    moves: [[sis_a home, sis_a station 2]]
+  rack:
+    poses: [sis_b station 4]
+    moves:
+      - [SIS_A  station 2, sis_a home]
+      - [sis_b pickup, sis_b home]
+"""
+MISTAKES = {  # id: (text in ZONES, put in its place, the sentence starts with, and has in it)
+    "unknown cell": ("sis_a pickup", "sis_aa pickup", "3:13: zones.centre.poses[0]", 'did you mean "sis_a"?'),
+    "no cell": ("sis_a pickup", "''", "3:13: ", 'must be a cell and one of its poses, as "sis_a pickup"'),
+    "unknown pose": ("sis_a pickup", "sis_a pick-up", "3:13: ", 'did you mean "pickup"?'),
+    "no pose": ("sis_a pickup", "sis_a", "3:13: ", '"home", "pickup" and "station 0" to "station 8"'),
+    "unknown station": ("sis_b station 4]", "sis_b station 9]", "3:27: ", 'is "sis_b station 9"'),
+    "pose in a move": ("[sis_a home", "[sis_a hom", "4:14: zones.centre.moves[0][0]", 'mean "home"?'),
+    "pose twice": ("sis_b station 4]\n    moves: ", "SIS_A pickup]\n    moves: ", "3:27: ", "is there twice"),
+    "move twice": ("sis_b pickup, sis_b home", "sis_a home, sis_a station 2", "9:9: ", "no difference"),
+    "two cells": ("sis_b pickup, sis_b", "sis_b pickup, sis_a", "9:9: ", "these are of sis_b and sis_a"),
+    "no way": ("sis_b pickup, sis_b home", "sis_b home, sis_b home", "9:9: ", "these are the same pose"),
+    "inside": ("sis_b pickup, sis_b", "sis_b station 4, sis_b", "9:10: ", "lies in the zone itself"),
+    "one end": ("[sis_b pickup, sis_b home]", "[sis_b pickup]", "9:9: ", "at least 2 values, has 1"),
+    "empty zone": ("  rack:\n", "  hall: {}\n  rack:\n", "5:9: zones.hall", "this one is empty"),
+    "zone of nothing": ("  rack:\n", "  hall:\n  rack:\n", "5:8: zones.hall", "must be a mapping"),
+    "unknown key": ("    poses: [sis_b", "    pose: [sis_b", "6:5: ", 'did you mean "poses"?'),
+    "zone name": ("  rack:", "  Rack 1:", "5:3: zones.Rack 1", "a zone's name must be"),
+    "name of a robot": ("  rack:", "  ra1:", "zones.ra1", "is already that of cells.sis_a.arm.name"),
+    "home inside": ("sis_a pickup", "sis_c home", "3:13: ", "cell sis_c: home lies in zone centre"),
+    "place inside": ("[sis_b station 4]", "[sis_b station 8]", "6:13: ", "station 8 lies in zone rack"),
+}  # fmt: skip
+KEYS = {  # id: (text in the shipped file, put in its place, the sentence has in it)
+    "too many retries": ("    pickup:", "    retry: {times: 11}\n    pickup:", "must be at most 10, is 11"),
+    "half a retry": ("    pickup:", "    retry: {times: 1.5}\n    pickup:", "must be a whole number"),
+    "retry before": ("    pickup:", "    retry: {backoff_s: -1}\n    pickup:", "at least 0, is -1"),
+    "retry key": ("    pickup:", "    retry: {time: 1}\n    pickup:", 'did you mean "times"?'),
+    "retry as number": ("    pickup:", "    retry: 3\n    pickup:", "must be a mapping"),
+    "piece check": ("    pickup:", "    piece_check: yes\n    pickup:", 'true or false, is "yes"'),
+    "no wait": ("    pickup:", "    zone_wait_s: 0\n    pickup:", "must be more than 0, is 0"),
+    "long debounce": ("paths:", "timing: {piece_debounce_s: 2}\npaths:", "piece_wait_s, which is 2"),
+    "trigger": ("      twin:", "      trigger_when_busy: refused\n      twin:", 'did you mean "refuse"?'),
+    "homed and to be homed": (
+        "      twin:",
+        "      assume_homed: true\n      home_at_start: true\n      twin:",
+        "contradicts assume_homed: true",
+    ),
+    "homing unproven": (
+        "evidence: ids\n      base",
+        "evidence: joints\n      home_at_start: true\n      base",
+        "needs evidence: ids; joints cannot prove",
+    ),
+}
+
+
+def load(tmp_path: Path, text: str) -> PlantModel:
+    file = tmp_path / "plant.yaml"
+    file.write_text(text, "utf-8")
+    return config.load(file)
+
+
+def problems(tmp_path: Path, text: str) -> list[str]:
+    """The problems without the name of the file."""
+    with pytest.raises(ConfigError) as refusal:
+        load(tmp_path, text)
+    return [problem.removeprefix(f"{tmp_path / 'plant.yaml'}:") for problem in refusal.value.problems]
+
+
+def poses(cell: Cell) -> list[Pose]:
+    return [cell.home, cell.pickup, *cell.stations, cell.palletizing.pick, cell.palletizing.place]
+
+
+def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
+    plant = config.load()
+    assert (plant.zones, plant.timing.piece_wait_s, plant.timing.piece_debounce_s) == ((), 2.0, 0.1)
+    for cell in plant.cells:
+        assert not any(pose.zones for pose in poses(cell))
+        assert (cell.crossings, cell.zone_wait_s, cell.retry, cell.piece_check) == ((), 30.0, Retry(), False)
+        assert (cell.arm.piece_on_change, cell.arm.queue_triggers) == (False, True)
+        assert (cell.arm.home_at_start, cell.mobile.home_at_start) == (False, False)
+
+
+def test_poses_lie_in_their_zones(tmp_path: Path) -> None:
+    plant = load(tmp_path, ZONES + PLANT)
+    assert plant.zones == ("centre", "rack")
+    inside = {
+        (cell.name, pose.name): pose.zones for cell in plant.cells for pose in poses(cell) if pose.zones
+    }
+    assert inside == {("sis_a", "pick-up"): {"centre"}, ("sis_b", "station 4"): {"centre", "rack"}}
+
+
+def test_palletizing_knows_the_zones_of_its_poses(tmp_path: Path) -> None:
+    cell = load(tmp_path, ZONES + PLANT).cell("sis_a")
+    assert cell.palletizing.pick == cell.pickup
+
+
+def test_a_crossing_names_every_zone_between_its_ends(tmp_path: Path) -> None:
+    plant = load(tmp_path, ZONES + PLANT)
+    both, rack = frozenset({"centre", "rack"}), frozenset({"rack"})
+    assert plant.cell("sis_a").crossings == (Crossing(a="home", b="station 2", zones=both),)
+    assert plant.cell("sis_b").crossings == (Crossing(a="home", b="pick-up", zones=rack),)
+    assert plant.cell("sis_c").crossings == ()
+
+
+def test_the_zones_of_the_page_are_some(tmp_path: Path) -> None:
+    example = next(part for part in DOCS.read_text("utf-8").split("```") if part.startswith("yaml\nzones:"))
+    assert load(tmp_path, example.removeprefix("yaml\n") + PLANT).zones == ("centre",)
+
+
+@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_in_a_zone_is_named_with_its_line(
+    tmp_path: Path, mistake: tuple[str, str, str, str]
+) -> None:
+    old, new, start, words = mistake
+    assert old in ZONES
+    found = problems(tmp_path, ZONES.replace(old, new, 1) + PLANT)
+    assert [start in problem and words in problem for problem in found] == [True], found
+
+
+@pytest.mark.parametrize("section", ["zones:\n", "zones: {}\n", "zones: [centre]\n"])
+def test_a_section_without_zones_is_refused(tmp_path: Path, section: str) -> None:
+    assert len(problems(tmp_path, section + PLANT)) == 1
+
+
+def test_a_cell_that_cannot_be_read_says_so_once(tmp_path: Path) -> None:
+    found = problems(tmp_path, ZONES + PLANT.replace("deg: [45, 10]", "deg: [45]"))
+    assert len(found) == 1 and "turning joints" in found[0]
+
+
+def test_mistakes_in_zones_and_in_cells_are_reported_together(tmp_path: Path) -> None:
+    text = ZONES.replace("sis_a pickup", "sis_c home") + PLANT.replace("deg: [35, 10]", "deg: [35]")
+    assert ["lies in zone" in problem for problem in problems(tmp_path, text)] == [True, False]
+
+
+def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) -> None:
+    of_cell = ("retry: {times: 2, backoff_s: 0.5}", "piece_check: true", "zone_wait_s: 5", "pickup:")
+    of_arm = ("piece_on_change: true", "trigger_when_busy: refuse", "home_at_start: true", "twin:")
+    text = PLANT.replace("    pickup:", "".join(f"    {key}\n" for key in of_cell).rstrip(), 1)
+    text = text.replace("      twin:", "".join(f"      {key}\n" for key in of_arm).rstrip(), 1)
+    cell = load(tmp_path, text).cell("sis_a")
+    assert (cell.retry, cell.piece_check, cell.zone_wait_s) == (Retry(times=2, backoff_s=0.5), True, 5)
+    assert (cell.arm.piece_on_change, cell.arm.queue_triggers, cell.arm.home_at_start) == (True, False, True)
+
+
+def test_the_times_of_a_piece_check_can_be_chosen(tmp_path: Path) -> None:
+    plant = load(tmp_path, "timing: {piece_wait_s: 3, piece_debounce_s: 0}\n" + PLANT)
+    assert plant.timing == Timing(piece_wait_s=3, piece_debounce_s=0)
+
+
+@pytest.mark.parametrize("mistake", KEYS.values(), ids=KEYS)
+def test_a_mistake_in_a_key_of_a_cell_is_named(tmp_path: Path, mistake: tuple[str, str, str]) -> None:
+    old, new, words = mistake
+    assert old in PLANT
+    found = problems(tmp_path, PLANT.replace(old, new, 1))
+    assert [words in problem for problem in found] == [True], found
