@@ -1,4 +1,4 @@
-"""The HTTP API over real sockets, and the client of `submit` and `status`."""
+"""The HTTP API over real sockets, and the client of the commands."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ import httpx
 import pytest
 
 from arboleda.adapters.web import Api
-from arboleda.app.client import PlantClient
+from arboleda.app.client import PlantClient, Refused
 from arboleda.app.state import StateDir
 from arboleda.core.errors import ArboledaError, QueueFull, StartError, TextError
+from arboleda.core.messages import OperatorAnswer, Verb
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 VIEW = {"plant": "demo", "tasks": [QUEUED]}
@@ -27,6 +28,9 @@ class Plant:
         self.texts: list[str] = []
         self.answer: dict | Exception | None = QUEUED
         self.view: dict | Exception = VIEW
+        self.acts: list[tuple[Verb, str, bool]] = []
+        self.refusal: str | None = None
+        self.unanswered: list[Future] | None = None
 
     def look(self) -> dict:
         if isinstance(self.view, Exception):
@@ -45,6 +49,15 @@ class Plant:
             future.set_result(self.answer)
         return future
 
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> Future:
+        self.acts.append((verb, scope, by_hand))
+        future: Future = Future()
+        if self.unanswered is not None:
+            self.unanswered.append(future)
+        else:
+            future.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal))
+        return future
+
 
 @pytest.fixture
 def plant():
@@ -53,7 +66,7 @@ def plant():
 
 @pytest.fixture
 def port(plant):
-    api = Api(plant.look, plant.find, plant.submit)
+    api = Api(plant.look, plant.find, plant.submit, plant.operate)
     yield api.start()
     api.stop()
     assert "http api" not in {thread.name for thread in threading.enumerate()}
@@ -130,8 +143,67 @@ def test_one_task_by_its_id(web):
     assert "'t-9'" in unknown.json()["sentence"]
 
 
+@pytest.mark.parametrize("verb", Verb)
 @pytest.mark.parametrize(
-    ("method", "path", "status"), [("GET", "/", 404), ("GET", "/docs", 404), ("PUT", "/api/plant", 405)]
+    ("path", "scope"), [("plant", ""), ("cells/sis_a", "sis_a"), ("cells/lot.4-2", "lot.4-2")]
+)
+def test_a_verb_reaches_the_plant_with_its_scope(web, plant, verb, path, scope):
+    answer = web.post(f"/api/{path}/{verb.value}")
+    assert (answer.status_code, answer.json()) == (200, {"verb": verb.value, "scope": scope})
+    assert plant.acts == [(verb, scope, False)]
+
+
+@pytest.mark.parametrize(
+    ("body", "by_hand"), [(b"{}", False), (b'{"by_hand": false}', False), (b'{"by_hand": true}', True)]
+)
+def test_homed_by_hand_is_declared_in_the_body(web, plant, body, by_hand):
+    assert web.post("/api/cells/ra1/home", content=body).status_code == 200
+    assert plant.acts == [(Verb.HOME, "ra1", by_hand)]
+
+
+def test_a_refused_verb_says_why(web, plant):
+    plant.refusal = "ra1 still moves."
+    answer = web.post("/api/plant/clear")
+    assert (answer.status_code, answer.json()) == (409, {"sentence": "ra1 still moves."})
+
+
+@pytest.mark.parametrize("path", ["plant/halt", "cells/sis_a/STOP", "cells/stop/sis_a"])
+def test_an_unknown_verb_names_the_verbs(web, plant, path):
+    answer = web.post(f"/api/{path}")
+    assert answer.status_code == 422
+    assert "there are stop, clear, reset, hold" in answer.json()["sentence"]
+    assert plant.acts == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [b"true", b'{"by_hand": 1}', b'{"by_hand": null}', b'{"more": 1}', b"by_hand", b"\xff", b"[" * 4000],
+)
+def test_a_body_that_means_nothing_stops_nothing(web, plant, body):
+    answer = web.post("/api/plant/stop", content=body)
+    assert answer.status_code == 422
+    assert answer.json()["sentence"].startswith("The body may be empty")
+    assert plant.acts == []
+
+
+def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
+    monkeypatch.setattr("arboleda.adapters.web.ANSWER_S", 0.05)
+    plant.unanswered = []
+    answer = web.post("/api/plant/stop")
+    assert answer.status_code == 503
+    assert "did not answer in time" in answer.json()["sentence"]
+    plant.unanswered[0].set_result(OperatorAnswer(verb=Verb.STOP, scope=""))
+
+
+@pytest.mark.parametrize("headers", [{"host": "evil.example"}, {"origin": "http://evil.example"}])
+def test_a_page_of_another_site_operates_nothing(web, plant, headers):
+    assert web.post("/api/plant/release", headers=headers).status_code == 403
+    assert plant.acts == []
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [("GET", "/", 404), ("GET", "/docs", 404), ("PUT", "/api/plant", 405), ("GET", "/api/plant/stop", 405)],
 )
 def test_there_is_nothing_else(web, method, path, status):
     answer = web.request(method, path)
@@ -189,11 +261,11 @@ def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd
 
 def test_a_taken_port_is_one_sentence(port, plant):
     with pytest.raises(StartError, match=f"cannot listen on 127.0.0.1:{port}: "):
-        Api(plant.look, plant.find, plant.submit, port=port).start()
+        Api(plant.look, plant.find, plant.submit, plant.operate, port=port).start()
 
 
 def test_it_stops_with_a_connection_open(plant):
-    api = Api(plant.look, plant.find, plant.submit)
+    api = Api(plant.look, plant.find, plant.submit, plant.operate)
     kept = http.client.HTTPConnection("127.0.0.1", api.start(), timeout=5)
     kept.request("GET", "/api/plant")
     assert json.load(kept.getresponse()) == VIEW
@@ -225,6 +297,16 @@ def test_the_client_says_what_the_plant_said(state, plant, error):
     plant.answer = error
     with pytest.raises(type(error), match=str(error)):
         PlantClient(state.path).submit("x")
+
+
+def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
+    client = PlantClient(state.path)
+    assert client.operate(Verb.STOP) == {"verb": "stop", "scope": ""}
+    assert client.operate(Verb.HOME, "ra1", by_hand=True) == {"verb": "home", "scope": "ra1"}
+    assert plant.acts == [(Verb.STOP, "", False), (Verb.HOME, "ra1", True)]
+    plant.refusal = "ra1 still moves."
+    with pytest.raises(Refused, match=r"^ra1 still moves\.$"):
+        client.operate(Verb.CLEAR, "sis_a")
 
 
 def test_without_a_plant_the_client_says_so(tmp_path):

@@ -19,13 +19,17 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
+from std_srvs.srv import Trigger
 
 from arboleda.core.errors import StartError
 from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
     Home,
+    Journal,
     MoveJoints,
+    OperatorAnswer,
+    OperatorRequest,
     Report,
     SetEffector,
     Stop,
@@ -34,6 +38,7 @@ from arboleda.core.messages import (
     TaskChanged,
     TaskRequest,
     TaskState,
+    Verb,
 )
 from arboleda.core.model import Evidence, Link, MotionState, PlantModel
 from arboleda.testing import shipped
@@ -281,7 +286,75 @@ def test_task_texts_and_triggers_become_requests(links):
         user.say("/ra1/start", UInt8(data=value))
     eventually(lambda: len(side.events) == 2)
     assert all(isinstance(event, TaskRequest) and event.request is None for event in side.events)
-    assert [event.text for event in side.events] == ["sis_a 0B 7", "ra1 palletizing"]
+    asked = [(event.text, event.trigger) for event in side.events]
+    assert asked == [("sis_a 0B 7", False), ("ra1 palletizing", True)]
+
+
+class Operator(Stranger):
+    """Calls services; each call is a future of the answer."""
+
+    def call(self, service: str) -> object:
+        client = self.node.create_client(Trigger, service)
+        assert client.wait_for_service(WAIT_S), f"no service {service}"
+        return client.call_async(Trigger.Request())
+
+
+def answered(side: Side, refusal: str | None = None) -> OperatorRequest:
+    """What the plant was asked for, once; it was answered as its own thread answers."""
+    asked = eventually(lambda: side.events.pop() if side.events else None)
+    side.port.send(OperatorAnswer(verb=asked.verb, scope="", request=asked.request, refusal=refusal))
+    return asked
+
+
+def test_every_verb_is_a_service_for_the_whole_plant(links):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    for verb in Verb:
+        call = operator.call(f"/plant/{verb.value}")
+        asked = answered(side)
+        assert (asked.verb, asked.scope, asked.by_hand) == (verb, "", False)
+        assert asked.at == pytest.approx(time.monotonic(), abs=1.0)
+        eventually(call.done)
+        assert (call.result().success, call.result().message) == (True, "")
+
+
+def test_a_refused_verb_says_why(links):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    call = operator.call("/plant/clear")
+    answered(side, refusal="ra1 still moves")
+    eventually(call.done)
+    assert (call.result().success, call.result().message) == (False, "ra1 still moves")
+
+
+def test_answers_to_others_are_passed_over(links):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    call = operator.call("/plant/stop")
+    eventually(lambda: side.events)
+    for request in (None, "of the web server"):
+        side.port.send(OperatorAnswer(verb=Verb.STOP, scope="", request=request, refusal="no"))
+    answered(side)
+    eventually(call.done)
+    assert call.result().success
+
+
+def test_a_plant_that_does_not_answer_is_said_to_and_keeps_the_topics(links, monkeypatch):
+    monkeypatch.setattr("arboleda_ros.verbs.ANSWER_S", 0.1)
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    call = operator.call("/plant/stop")
+    eventually(call.done)
+    assert not call.result().success and "did not answer in time" in call.result().message
+    late = side.events.pop()
+    side.port.send(OperatorAnswer(verb=Verb.STOP, scope="", request=late.request))
+    operator.say("/task_request", String(data="sis_a 0B 7"))
+    eventually(lambda: side.events)
+
+
+def test_a_verb_that_fails_inside_is_answered_too(links, caplog):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    side.port._verbs._ask = lambda request: 1 / 0
+    call = operator.call("/plant/hold")
+    eventually(call.done)
+    assert (call.result().success, call.result().message) == (False, "internal error")
+    assert "the service plant/hold failed" in caplog.text
 
 
 def test_a_late_listener_still_sees_the_task_status_and_the_view(links):
@@ -306,6 +379,7 @@ def test_notices_reach_other_nodes(links):
     for publisher in (side.port._start, side.port._heartbeat, side.port._diagnostics):
         eventually(publisher.get_subscription_count)
     silent = ("arboleda: ra1", "ra_1", STALE, "silent", {"node": "4"})
+    side.port.send(Journal(verb=Verb.STOP, scope="", sentence="kept in the plant's own process"))
     side.port.send(SystemStart(cell="sis_a"))
     side.port.send(Heartbeat(epoch=7))
     side.port.publish_diagnostics([silent])

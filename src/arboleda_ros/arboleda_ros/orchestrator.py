@@ -1,4 +1,4 @@
-"""The plant's side of ROS 2: commands and notices out, reports and task requests in."""
+"""The plant's side of ROS 2: commands and notices out, reports, tasks and operators' requests in."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from arboleda.core.messages import (
     Event,
     Heartbeat,
     Notice,
+    OperatorAnswer,
     Report,
     SystemStart,
     TaskChanged,
@@ -27,6 +28,7 @@ from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
 
 from . import convert, qos, statuses
 from .port import Port
+from .verbs import VerbServices
 
 Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
 
@@ -57,6 +59,7 @@ class OrchestratorPort(Port):
         self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
         self._view = self._speak(String, "plant/view", qos.VIEW)
         self._listen(String, "task_request", self._on_request, qos.COMMAND)
+        self._verbs = VerbServices(node, on_event, clock)
         for robot in model.robots.values():
             self._hear(robot)
 
@@ -68,7 +71,9 @@ class OrchestratorPort(Port):
             self._start.publish(UInt8(data=1))
         elif isinstance(message, TaskChanged):
             self._task_status.publish(String(data=_task_line(message)))
-        else:
+        elif isinstance(message, OperatorAnswer):
+            self._verbs.answered(message)
+        elif isinstance(message, Command):
             self._command(message)
 
     def publish_view(self, view: Mapping[str, Any]) -> None:
@@ -113,7 +118,7 @@ class OrchestratorPort(Port):
         if message.data > 1:
             raise PayloadError(f"the value {message.data} means nothing; allowed: 1 to start, 0")
         if message.data:
-            self._on_event(TaskRequest(at=self._clock(), text=f"{arm.name} palletizing"))
+            self._on_event(TaskRequest(at=self._clock(), text=f"{arm.name} palletizing", trigger=True))
 
 
 def _piece_report(at: float, robot: Robot, message: Bool) -> Report:

@@ -52,6 +52,9 @@ def test_it_does_not_wait_for_tasks_that_a_held_cell_cannot_start(started) -> No
     errand, _, ends = started
     errand.changed(change("sis_b 1", TaskState.DONE))
     errand.changed(change("sis_a 1", TaskState.FAILED, Reason.LINK_LOST))
+    assert not ends
+    for _ in range(2):
+        errand.seen({"cells": [{"name": "sis_a", "paused": True, "task": None}]})
     assert ends == ["over"] and not errand.ok
     assert errand.results["t-sis_a 2"].state is TaskState.QUEUED
 

@@ -42,9 +42,30 @@ def test_joints_are_shown_in_degrees_then_millimetres() -> None:
 
 def test_a_held_cell_says_why_and_what_to_do(rig: Rig) -> None:
     rig.lost = lambda publication: publication.topic == "ra_1/sensores"
-    rig.wait(2.0)
+    rig.wait(9.0)
     text = " ".join(drawn(rig.snapshot(), 80).split())
-    assert "sis_a is held (ra1: no telemetry for 1.5 s while moving to pick-up)" in text
+    assert "sis_a is held (ra1 is offline); retry sis_a recovers" in text
+
+
+def test_latched_robots_are_told_in_one_line(rig: Rig) -> None:
+    snapshot = rig.snapshot()
+    robots = {robot["name"]: robot for robot in snapshot["robots"]}
+    for name in ("ra1", "rm_sis_a"):
+        robots[name].update(latched=True, obstacle=f"{name} is stopped")
+    snapshot["cells"][0].update(task=None, step=None, state="aborted", held_by=None)
+    text = drawn(snapshot, 80)
+    assert "stop (software) latched: ra1, rm_sis_a; clear, then reset" in text
+    assert "aborted" in text and "is stopped" not in text
+
+
+def test_zones_show_who_is_in_them_and_who_waits(rig: Rig) -> None:
+    zones = [
+        {"zone": "middle", "state": "quarantined", "robot": "ra1", "waiting": ["ra2", "ra3"]},
+        {"zone": "door", "state": "free", "robot": None, "waiting": []},
+    ]
+    rows = [line.split() for line in drawn({**rig.snapshot(), "zones": zones}, 80).splitlines()]
+    assert ["middle", "quarantined", "ra1", "ra2,", "ra3"] in rows
+    assert ["door", "free"] in rows
 
 
 def test_how_each_robot_was_left_is_told(rig: Rig) -> None:

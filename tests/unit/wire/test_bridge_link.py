@@ -192,7 +192,16 @@ def test_a_board_without_ids_reports_what_it_has(make_linked, reports) -> None:
     (report,) = reports(bench.tell(state=MOVING, q=(9.0, 0.0, 0.0)))
     assert report.state is MOVING
     assert report.q == pytest.approx((0.15708, 0.0, 0.0), abs=1e-5)
-    assert (report.accepted, report.done, report.rejected, report.boot_id) == (None,) * 4
+    assert (report.accepted, report.done, report.rejected) == (None,) * 3
+
+
+def test_a_board_without_ids_that_comes_back_counts_as_booted_anew(make_linked, reports) -> None:
+    bench = make_linked(evidence=Evidence.JOINTS)
+    (before,) = reports(bench.tell(state=STOPPED))
+    bench.presence(False)
+    bench.presence(True)
+    (after,) = reports(bench.tell(state=STOPPED))
+    assert after.boot_id == before.boot_id + 1
 
 
 def test_a_plant_is_told_at_its_first_heartbeat_that_it_is_heard(linked, reports) -> None:

@@ -9,29 +9,36 @@ import socket
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import uvicorn
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from arboleda.core.errors import ArboledaError, PayloadError, StartError, TextError
+from arboleda.core.messages import OperatorAnswer, Verb
+
+from .web_guard import Guard
 
 log = logging.getLogger(__name__)
 
 View = Callable[[], dict[str, Any]]
 Find = Callable[[str], "dict[str, Any] | None"]
 Submit = Callable[[str], "Future[dict[str, Any]]"]
+Answer = TypeVar("Answer")
 
-BODY_LIMIT = 4096
 ANSWER_S = 5.0
-LOCAL_HOSTS = {"127.0.0.1", "localhost", "[::1]"}
+
+
+class Operate(Protocol):
+    """Ask for an operator's act; `scope` is "" for the whole plant."""
+
+    def __call__(self, verb: Verb, scope: str, *, by_hand: bool) -> Future[OperatorAnswer]: ...
 
 
 class Api:
-    """`GET /api/plant`, `POST /api/tasks`, `GET /api/tasks/<id>`; whatever is refused says so in `sentence`.
+    """The snapshot, tasks and the operators' verbs; whatever is refused says so in `sentence`.
 
     `view()` is the snapshot and `find(id)` one task or None, both plain data. `submit(text)` gives a future
     of a task; a state `refused` or a TextError in it is the caller's mistake, any other ArboledaError means
@@ -39,12 +46,19 @@ class Api:
     """
 
     def __init__(
-        self, view: View, find: Find, submit: Submit, *, host: str = "127.0.0.1", port: int = 0
+        self,
+        view: View,
+        find: Find,
+        submit: Submit,
+        operate: Operate,
+        *,
+        host: str = "127.0.0.1",
+        port: int = 0,
     ) -> None:
         self._host = host
         self._port = port
         config = uvicorn.Config(
-            Guard(make_app(view, find, submit)),
+            Guard(make_app(view, find, submit, operate)),
             log_config=None,
             log_level=logging.CRITICAL,
             access_log=False,
@@ -80,7 +94,7 @@ class Api:
             self._thread = None
 
 
-def make_app(view: View, find: Find, submit: Submit) -> FastAPI:
+def make_app(view: View, find: Find, submit: Submit, operate: Operate) -> FastAPI:
     """The routes."""
     app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
     app.add_exception_handler(ArboledaError, refuse)
@@ -93,13 +107,7 @@ def make_app(view: View, find: Find, submit: Submit) -> FastAPI:
 
     @app.post("/api/tasks")
     async def add_task(request: Request) -> JSONResponse:
-        answer = submit(task_text(await request.body()))
-        try:
-            task = await asyncio.wait_for(asyncio.wrap_future(answer), ANSWER_S)
-        except asyncio.TimeoutError:
-            raise ArboledaError(
-                "The plant did not answer in time; see its tasks before sending this again."
-            ) from None
+        task = await in_time(submit(task_text(await request.body())))
         return JSONResponse(task, status_code=422 if task["state"] == "refused" else 202)
 
     @app.get("/api/tasks/{task_id}")
@@ -109,7 +117,57 @@ def make_app(view: View, find: Find, submit: Submit) -> FastAPI:
             raise HTTPException(404, f"The plant knows no task {task_id!a}.")
         return JSONResponse(known)
 
+    @app.post("/api/plant/{verb}")
+    async def operate_plant(verb: str, request: Request) -> JSONResponse:
+        return await operated(verb, "", request)
+
+    @app.post("/api/cells/{scope}/{verb}")
+    async def operate_one(scope: str, verb: str, request: Request) -> JSONResponse:
+        return await operated(verb, scope, request)
+
+    async def operated(word: str, scope: str, request: Request) -> JSONResponse:
+        verb, by_hand = verb_of(word), said_by_hand(await request.body())
+        answer = await in_time(operate(verb, scope, by_hand=by_hand))
+        if answer.refusal is not None:
+            return JSONResponse({"sentence": answer.refusal}, status_code=409)
+        return JSONResponse({"verb": verb.value, "scope": scope})
+
     return app
+
+
+async def in_time(answer: Future[Answer]) -> Answer:
+    """What the plant answers; ArboledaError where it takes longer than ANSWER_S."""
+    try:
+        # the plant still sets its future after that, which a cancelled one does not allow
+        return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(answer)), ANSWER_S)
+    except asyncio.TimeoutError:
+        raise ArboledaError(
+            "The plant did not answer in time; see its state before sending this again."
+        ) from None
+
+
+def verb_of(word: str) -> Verb:
+    """The operator's verb of that name; PayloadError where there is none."""
+    try:
+        return Verb(word)
+    except ValueError:
+        names = ", ".join(verb.value for verb in Verb)
+        raise PayloadError(f"{word!a} is not an operator's verb; there are {names}.") from None
+
+
+def said_by_hand(body: bytes) -> bool:
+    """The value in `{"by_hand": true}`, False where there is no body; PayloadError for anything else."""
+    try:
+        said = json.loads(body or b"{}")
+    except (ValueError, RecursionError):
+        said = None
+    if (
+        not isinstance(said, dict)
+        or said.keys() - {"by_hand"}
+        or type(said.get("by_hand", False)) is not bool
+    ):
+        raise PayloadError('The body may be empty or JSON like {"by_hand": true}, and nothing else.')
+    return said.get("by_hand", False)
 
 
 def task_text(body: bytes) -> str:
@@ -137,59 +195,3 @@ async def own_up(request: Request, error: Exception) -> JSONResponse:
     """An error of ours: the log names it, the caller gets a sentence."""
     log.error("%s %s failed: %r", request.method, request.url.path, error)
     return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
-
-
-class Guard:
-    """Lets in what this machine's own tools and pages send, in small bodies; all else gets a sentence.
-
-    A page of another site may make the browser send requests here, under its own name (Origin) or,
-    with a name that suddenly resolves to this machine, under ours (Host).
-    """
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        host, origin = headers.get("host", ""), headers.get("origin")
-        if host_name(host) not in LOCAL_HOSTS or origin not in (None, f"http://{host}"):
-            return await self._answer(
-                403, "Only tools and pages of this machine may use this API.", scope, receive, send
-            )
-        body = await read_body(receive)
-        if body is None:
-            return await self._answer(413, f"The body may have {BODY_LIMIT} bytes.", scope, receive, send)
-        return await self._app(scope, replayed(body, receive), send)
-
-    @staticmethod
-    async def _answer(status: int, sentence: str, scope: Scope, receive: Receive, send: Send) -> None:
-        answer = JSONResponse({"sentence": sentence}, status_code=status, headers={"connection": "close"})
-        await answer(scope, receive, send)
-
-
-def host_name(host: str) -> str:
-    """A Host header without its port."""
-    name, _, port = host.rpartition(":")
-    return name.lower() if name and port.isdigit() else host.lower()
-
-
-async def read_body(receive: Receive) -> bytes | None:
-    """The whole body; None as soon as it is too long."""
-    body, more = b"", True
-    while more:
-        message = await receive()
-        body += message.get("body", b"")
-        more = message.get("more_body", False)
-        if len(body) > BODY_LIMIT:
-            return None
-    return body
-
-
-def replayed(body: bytes, receive: Receive) -> Receive:
-    """A `receive` that hands out the body first."""
-    waiting: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
-
-    async def next_message() -> Message:
-        return waiting.pop() if waiting else await receive()
-
-    return next_message

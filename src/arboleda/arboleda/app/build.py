@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.adapters.mqtt import Credentials
+from arboleda.adapters.store import Store
 from arboleda.core.errors import ArboledaError, StartError
-from arboleda.core.messages import TaskChanged
+from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import Link, PlantModel
 
 from .parts.bridge import BridgePart
@@ -26,6 +27,7 @@ from .rate import at_rate
 from .state import StateDir, default_state
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
+STORE = "plant.sqlite"
 MQTT_311 = 4  # paho's number of the protocol
 LOG = logging.getLogger(__name__)
 
@@ -50,9 +52,12 @@ class App:
         self.model = at_rate(model, options.rate)
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
+        self._store = Store(self._state.path / STORE)
         self._broker = _broker(model, options, own="broker" in parts)
         self._web = (
-            WebPart(self.snapshot, self._find, self.submit, self._state.announce) if "web" in parts else None
+            WebPart(self.snapshot, self._find, self.submit, self.operate, self._state.announce)
+            if "web" in parts
+            else None
         )
         self._link = options.link
         self._over = threading.Event()
@@ -60,12 +65,13 @@ class App:
         self._trouble: ArboledaError | None = None
         self._started: list[Part] = []
         self._parts: list[Part] = [self._broker]
-        if "orchestrator" in parts:
-            self._state.open()
         try:
+            if "orchestrator" in parts:
+                self._state.open()
+                self._store.open()
             self._build(set(parts))
         except BaseException:
-            self._state.close()
+            self._let_go()
             raise
 
     @property
@@ -112,7 +118,7 @@ class App:
         """Halt the robots, then end the parts in reverse order; idempotent."""
         while self._started:
             self._started.pop().stop()
-        self._state.close()
+        self._let_go()
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
         """Have every change of a task told, in the plant's thread; before `start`."""
@@ -124,6 +130,9 @@ class App:
 
     def submit(self, text: str) -> Future[TaskChanged]:
         return self._plant.submit(text)
+
+    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
+        return self._plant.operate(verb, scope, by_hand)
 
     def snapshot(self) -> dict[str, Any]:
         return self._plant.snapshot()
@@ -139,18 +148,28 @@ class App:
 
     def _build(self, parts: set[str]) -> None:
         now, bridge = int(time.time()), None
-        if "devices" in parts:
-            scout = "broker" not in parts
-            self._parts.append(DevicesPart(self.model, now, self._broker, self._crash, scout=scout))
+        virtual, scout = "devices" in parts, "broker" not in parts
         if "bridge" in parts:
-            bridge = BridgePart(self.model, now, self._broker, self._crash)
+            waits = virtual and scout
+            bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
             self._parts.append(bridge)
+        if virtual:
+            joined = bridge.join if bridge is not None and scout else _nothing
+            self._parts.append(
+                DevicesPart(self.model, now, self._broker, self._crash, scout=scout, joined=joined)
+            )
         if "orchestrator" in parts:
-            self.orchestrator = Orchestrator(self.model, self._state.next_epoch(now), self._crash)
+            epoch = self._state.next_epoch(now)
+            self.orchestrator = Orchestrator(self.model, epoch, self._crash, self._store)
             self._parts.append(self.orchestrator)
         if self._web is not None:
             self._parts.append(self._web)
         self._join(bridge, self._link)
+
+    def _let_go(self) -> None:
+        """Give back what only one process may have; idempotent."""
+        self._store.close()
+        self._state.close()
 
     def _join(self, bridge: BridgePart | None, link: Any | None) -> None:
         """Join plant and bridge: over ROS 2 where there is a link, else directly."""
@@ -198,6 +217,9 @@ def _refuse_ros_robots(model: PlantModel) -> None:
     names = [robot.name for robot in model.robots.values() if robot.link is Link.ROS]
     if names:
         raise StartError(f"{', '.join(names)}: link ros needs ROS 2; start without --no-ros")
+
+
+def _nothing() -> None: ...
 
 
 def _broker(model: PlantModel, options: Options, *, own: bool) -> OwnBroker | OtherBroker:

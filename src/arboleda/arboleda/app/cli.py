@@ -23,13 +23,13 @@ from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.task import Order, Recipe
 
-from . import config, session
+from . import config, session, verbs
 from .build import PARTS, Options, build
-from .client import PlantClient
+from .client import Refused
 from .parts.broker import address
 from .rate import check_rate
 from .screen import table
-from .state import default_state
+from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
 USER, PASSWORD = (
@@ -69,17 +69,6 @@ def _or_bad_parameter(check: Any, value: Any) -> Any:
         raise typer.BadParameter(str(error)) from error
 
 
-PlantFile = Annotated[
-    Path | None, typer.Option("--plant", metavar="FILE", help="Plant file. [default: the shipped plant]")
-]
-StateFolder = Annotated[
-    Path | None,
-    typer.Option(
-        "--state",
-        metavar="DIR",
-        help="Where the plant keeps its state. [default: $XDG_STATE_HOME/arboleda/<plant name>]",
-    ),
-]
 NoRos = Annotated[bool, typer.Option("--no-ros", help="Leave ROS 2 out; the plant speaks MQTT directly.")]
 RosLan = Annotated[
     bool, typer.Option("--ros-lan", help="Let other machines on the network take part in ROS 2.")
@@ -166,7 +155,7 @@ def submit(
     state: StateFolder = None,
 ) -> None:
     """Send a task to the plant that runs on this machine. Exit status: 0 accepted, 2 refused."""
-    answer = _client(plant, state).submit(task)
+    answer = client(plant, state).submit(task)
     sentence = f"  {answer['sentence']}" if answer["sentence"] else ""
     print(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}")
 
@@ -178,11 +167,14 @@ def status(
     as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
 ) -> None:
     """Show what the plant that runs on this machine is doing."""
-    snapshot = _client(plant, state).status()
+    snapshot = client(plant, state).status()
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
         return
     Console(highlight=False).print(table(snapshot))
+
+
+verbs.add_to(cli)
 
 
 @cli.command()
@@ -212,7 +204,7 @@ def tree(
     order = Order(
         text=recipe.value, cell=name, recipe=recipe, path=where.paths[0], station=where.stations[-1]
     )
-    print(unicode_tree(recipes.build(order, Plant(model, epoch=0, now=0.0).cells[name])), end="")
+    print(unicode_tree(recipes.build(order, Plant(model, epoch=0, now=0.0).cells[name].context)), end="")
 
 
 def _version(wanted: bool) -> None:
@@ -285,15 +277,11 @@ def _run(
     raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
 
 
-def _client(plant: Path | None, state: Path | None) -> PlantClient:
-    return PlantClient(state or default_state(config.load(plant).name))
-
-
 def main() -> None:
     """The entry point: whatever goes wrong is one sentence on standard error."""
     try:
         cli()
-    except (ConfigError, TextError) as error:
+    except (ConfigError, TextError, Refused) as error:
         _complain(error)
         sys.exit(BAD_INPUT)
     except ArboledaError as error:

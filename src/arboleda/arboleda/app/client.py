@@ -1,18 +1,26 @@
-"""Talks to the plant that runs on a state directory, for `arboleda submit` and `arboleda status`."""
+"""Talks to the plant that runs on a state directory, for the commands that need one."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import httpx
 
 from arboleda.core.errors import ArboledaError, QueueFull, TextError
+from arboleda.core.messages import Verb
 
 from .state import find_running
 
 TIMEOUT_S = 10.0
-ERRORS = {422: TextError, 503: QueueFull}
+
+
+class Refused(ArboledaError):
+    """The plant does not do now what an operator asks for; the sentence says why."""
+
+
+ERRORS = {409: Refused, 422: TextError, 503: QueueFull}
 
 
 class PlantClient:
@@ -33,7 +41,12 @@ class PlantClient:
         """One task by its id."""
         return self._ask("GET", f"/api/tasks/{task}")
 
-    def _ask(self, method: str, path: str, body: dict[str, str] | None = None) -> dict[str, Any]:
+    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> dict[str, Any]:
+        """Have the plant (no scope) or one cell, robot, zone or task do it; Refused where it does not."""
+        where = f"cells/{quote(scope, safe='')}" if scope else "plant"
+        return self._ask("POST", f"/api/{where}/{verb.value}", {"by_hand": True} if by_hand else None)
+
+    def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
         running = find_running(self._state)
         if running is None:
             raise ArboledaError(f"No plant is running on {self._state}; start one with `arboleda up`.")

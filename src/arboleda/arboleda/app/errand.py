@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from typing import Any
 
 from arboleda.core.messages import TaskChanged, TaskState
 
@@ -21,7 +22,8 @@ class Errand:
         self.seconds: dict[str, float] = {}
         self._finished = finished
         self._asked = 0
-        self._held: set[str | None] = set()
+        self._blocked: set[str | None] = set()
+        self._told = False
         self._started: dict[str, float] = {}
         self._lock = threading.Lock()
 
@@ -38,21 +40,29 @@ class Errand:
     def changed(self, change: TaskChanged) -> None:
         """Listen to every change of the plant; those of other tasks do not matter."""
         with self._lock:
-            if change.state is TaskState.FAILED:
-                self._held.add(change.cell)
             if change.task not in self.results:
                 return
             self._note(change)
-            over = self._over()
-        if over:
-            self._finished()
+        self._finish_if_over()
+
+    def seen(self, snapshot: dict[str, Any]) -> None:
+        """Look at every snapshot of the plant: which cells start no task before an operator acts."""
+        blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
+        with self._lock:
+            self._blocked = set(blocked)
+        self._finish_if_over()
 
     def _answered(self, change: TaskChanged) -> None:
         with self._lock:
             self._asked += 1
             key = change.task or f"refused {self._asked}"
             self.results[key] = change
-            over = self._over()
+        self._finish_if_over()
+
+    def _finish_if_over(self) -> None:
+        with self._lock:
+            over = self._over() and not self._told
+            self._told = self._told or over
         if over:
             self._finished()
 
@@ -67,4 +77,4 @@ class Errand:
         if self._asked < len(self.texts):
             return False
         waiting = [change for change in self.results.values() if change.state not in ENDED]
-        return all(change.state is TaskState.QUEUED and change.cell in self._held for change in waiting)
+        return all(change.state is TaskState.QUEUED and change.cell in self._blocked for change in waiting)

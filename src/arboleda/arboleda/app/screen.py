@@ -67,7 +67,7 @@ class Screen:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """Cell, task, step, arm joints, mobile node and time, a row per cell; below it what is in the way."""
+    """A row per cell: task, step, arm joints, mobile node, time; then the zones and what is in the way."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     drawn = Table(
         title=f"plant {snapshot['plant']}", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0)
@@ -76,7 +76,20 @@ def table(snapshot: dict[str, Any]) -> Group:
         drawn.add_column(heading, no_wrap=True)
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
-    return Group(drawn, *(Text(line, style="yellow") for line in _in_the_way(snapshot)))
+    zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
+    return Group(drawn, *zones, *(Text(line, style="yellow") for line in _in_the_way(snapshot)))
+
+
+def _zones(zones: list[dict[str, Any]]) -> Table:
+    """Who is in each shared zone, and who waits for it."""
+    drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for heading in ("zone", "state", "robot", "waiting"):
+        drawn.add_column(heading)
+    for each in zones:
+        style = {"free": "dim", "quarantined": "red"}.get(each["state"], "")
+        words = (each["zone"], each["state"], each["robot"] or "", ", ".join(each["waiting"]))
+        drawn.add_row(*(Text(word, style=style) for word in words))
+    return drawn
 
 
 def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> list[Text]:
@@ -99,10 +112,16 @@ def _of(robot: dict[str, Any], said: str) -> Text:
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
     held = [cell["held_by"] for cell in snapshot["cells"] if cell["held_by"]]
+    latched = [each["name"] for each in snapshot["robots"] if each.get("latched")]
+    stopped = [f"stop (software) latched: {', '.join(latched)}; clear, then reset"] if latched else []
+    return held + stopped + _obstacles(snapshot)
+
+
+def _obstacles(snapshot: dict[str, Any]) -> list[str]:
+    """What keeps a robot without a task from working; a latch alone is told of all robots in one line."""
     idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
-    return held + [
-        each["obstacle"] for each in snapshot["robots"] if each["obstacle"] and each["name"] in idle
-    ]
+    robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
+    return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 
 def joints(arm: dict[str, Any]) -> str:

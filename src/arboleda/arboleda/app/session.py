@@ -23,6 +23,7 @@ from arboleda.core.errors import StartError
 
 from .build import App
 from .errand import Errand
+from .parts.orchestrator import TASKS
 from .screen import Screen, parting, summary
 
 NO_ROS = (
@@ -61,6 +62,7 @@ class Session:
         """Run the plant, without `stay` until the tasks ended; 0, or 1 where one was not done."""
         self._app.listen(lambda change: self._later(self._screen.changed, change), self._errand.changed)
         self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot))
+        self._app.watch(self._errand.seen)
         self._app.when_over(lambda: self._news.put(None))
         with _interruptible(), _logging(self._say, self._app.log_file):
             self._start()
@@ -140,6 +142,8 @@ class _Teller(logging.Handler):
         self._say = say
 
     def emit(self, record: logging.LogRecord) -> None:
+        if record.name == TASKS.name:  # the screen says these itself
+            return
         style = "dim" if record.levelno < logging.WARNING else "yellow"
         self._say(record.getMessage(), "red" if record.levelno >= logging.ERROR else style)
 

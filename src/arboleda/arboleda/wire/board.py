@@ -187,11 +187,16 @@ class Board:
             robot=self.robot.name,
             epoch=self.labels.epoch,
             plant=self._plant,
-            boot_id=self.link.boot_id,
+            boot_id=self._boot_id,
             rejected=rejected,
             refusal=word,
             **said,  # type: ignore[arg-type]
         )
+
+    @property
+    def _boot_id(self) -> int | None:
+        counted = self.robot.evidence is Evidence.JOINTS
+        return self.link.returns if counted else self.link.boot_id
 
     def _publication(self, channel: Channel, payload: Payload, qos: int = 1) -> Publication:
         return Publication(topic=topic(self.robot.mqtt, channel), payload=encode(payload), qos=qos)

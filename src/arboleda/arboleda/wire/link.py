@@ -26,6 +26,9 @@ class BoardLink:
         self.boot_id: int | None = None
         self._stale_after_s = stale_after_s
         self._connected = False
+        self.returns = (
+            0  # how often a board that was absent came back: for one without ids, as good as a boot
+        )
         self._absent = False
         self._heard_at = 0.0
         self._seq: int | None = None
@@ -43,6 +46,7 @@ class BoardLink:
 
     def presence(self, online: bool) -> None:
         """A board that never says so counts as present."""
+        self.returns += self._absent and online
         self._absent = not online
 
     def hear(self, at: float, said: Telemetry) -> Heard:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
 from uuid import uuid4
 
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.core.messages import Command, Notice, Report, SystemStart, TaskChanged
+from arboleda.core.messages import Command, Heartbeat, Notice, Report
 from arboleda.core.model import PlantModel
 from arboleda.wire.bridge import Bridge, FromPlant
 from arboleda.wire.transport import Publication
@@ -18,13 +19,21 @@ from .part import BrokerAddress, Crash, not_sent
 
 
 class BridgePart:
-    """The bridge in its loop, with its MQTT client; `connect` its plant side before `start`."""
+    """The bridge in its loop, with its MQTT client; `connect` its plant side before `start`.
 
-    def __init__(self, model: PlantModel, epoch: int, broker: BrokerAddress, crash: Crash) -> None:
+    With `waits` it goes to the broker at `join`, not at `start`.
+    """
+
+    def __init__(
+        self, model: PlantModel, epoch: int, broker: BrokerAddress, crash: Crash, *, waits: bool = False
+    ) -> None:
         self._broker = broker
+        self._waits = waits
         self._bridge = Bridge(model, epoch=epoch, now=time.monotonic())
         self._version = model.mqtt_version
         self._client: MqttClient | None = None
+        self._lock = threading.Lock()
+        self._ended = False
         self._report: Callable[[Report], None] = lambda report: None
         self.loop: Loop[Any, Any] = Loop(
             "bridge", self._bridge, self._send, on_crash=crash, on_send_error=not_sent
@@ -35,23 +44,33 @@ class BridgePart:
 
     def send(self, message: Command | Notice) -> None:
         """The plant's port where plant and bridge share a process."""
-        if not isinstance(message, SystemStart | TaskChanged):
+        if isinstance(message, Command | Heartbeat):
             self.loop.post(FromPlant(at=time.monotonic(), message=message))
 
     def start(self) -> None:
         self.loop.start()
-        self._client = MqttClient(
-            f"arboleda_bridge_{uuid4().hex[:8]}",
-            self._broker.address,
-            subscriptions=self._bridge.subscriptions,
-            on_event=self.loop.post,
-            credentials=self._broker.credentials,
-            version=self._version,
-        )
-        self._client.start()
+        if not self._waits:
+            self.join()
+
+    def join(self) -> None:
+        """Go to the broker; from any thread, after the end it does nothing."""
+        with self._lock:
+            if self._ended:
+                return
+            self._client = MqttClient(
+                f"arboleda_bridge_{uuid4().hex[:8]}",
+                self._broker.address,
+                subscriptions=self._bridge.subscriptions,
+                on_event=self.loop.post,
+                credentials=self._broker.credentials,
+                version=self._version,
+            )
+            self._client.start()
 
     def stop(self) -> None:
         self.loop.stop()
+        with self._lock:
+            self._ended = True
         if self._client is not None:
             self._client.close()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from itertools import count
@@ -22,11 +23,22 @@ from .part import BrokerAddress, Crash, not_sent
 
 
 class DevicesPart:
-    """The virtual boards in one loop, each with an MQTT client and a last will of its own."""
+    """The virtual boards in one loop, each with an MQTT client and a last will of its own.
+
+    `joined` is called when they go to the broker: before, nobody knows whose boards a command would reach.
+    """
 
     def __init__(
-        self, model: PlantModel, first_boot: int, broker: BrokerAddress, crash: Crash, *, scout: bool
+        self,
+        model: PlantModel,
+        first_boot: int,
+        broker: BrokerAddress,
+        crash: Crash,
+        *,
+        scout: bool,
+        joined: Callable[[], None],
     ) -> None:
+        self._joined = joined
         self._broker = broker
         self._crash = crash
         self._scout = scout
@@ -63,6 +75,7 @@ class DevicesPart:
                 self._clients[board] = self._client(board, announce=number == 0)
             for client in self._clients.values():
                 client.start()
+        self._joined()
 
     def _client(self, board: str, *, announce: bool) -> MqttClient:
         gone = Publication(topic=topic(board, Channel.PRESENCE), payload=encode(Presence(online=False)))

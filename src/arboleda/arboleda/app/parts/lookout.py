@@ -32,7 +32,6 @@ class Lookout:
             subscriptions=[topic(board, Channel.TELEMETRY) for board in boards],
             on_event=self._heard,
             credentials=broker.credentials,
-            announce=False,
         )
 
     def start(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -9,16 +10,24 @@ from concurrent.futures import Future
 from typing import Any, Protocol
 from uuid import uuid4
 
+from arboleda.adapters.store import Store
 from arboleda.core import view
 from arboleda.core.messages import (
     Command,
-    Heartbeat,
+    Fact,
+    Journal,
     Notice,
+    OperatorAnswer,
+    OperatorRequest,
+    Remember,
     Shutdown,
-    SystemStart,
+    Stop,
+    StopMode,
     TaskChanged,
     TaskRequest,
+    TaskState,
     Undelivered,
+    Verb,
 )
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
@@ -26,6 +35,7 @@ from arboleda.core.plant import Plant
 from ..loop import Loop
 from .part import Crash
 
+TASKS = logging.getLogger("arboleda.tasks")
 VIEW_S = 1.0
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
 
@@ -45,10 +55,15 @@ class RosPort(PlantPort, Protocol):
 
 
 class Orchestrator:
-    """The plant in its loop; `connect` its port before `start`."""
+    """The plant in its loop; `connect` its port before `start`.
 
-    def __init__(self, model: PlantModel, epoch: int, crash: Crash) -> None:
-        self.plant = Plant(model, epoch=epoch, now=time.monotonic())
+    What the plant wants remembered is in the `store` before anything after it leaves. Where that fails, the
+    plant ends: from then on robots are told to stop, nothing else.
+    """
+
+    def __init__(self, model: PlantModel, epoch: int, crash: Crash, store: Store | None = None) -> None:
+        memory = {fact: store.facts(fact) for fact in Fact} if store is not None else {}
+        self.plant = Plant(model, epoch=epoch, now=time.monotonic(), memory=memory)
         self.loop: Loop[Any, Any] = Loop(
             "orchestrator",
             self.plant,
@@ -59,10 +74,13 @@ class Orchestrator:
         )
         self.listeners: list[Callable[[TaskChanged], None]] = []
         self.watchers: list[Callable[[dict[str, Any]], None]] = []
+        self._store = store
+        self._crash = crash
+        self._amnesia: Exception | None = None
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
-        self._waiting: dict[str, Future[TaskChanged]] = {}
+        self._waiting: dict[str, Future[Any]] = {}
         self._at_rest = threading.Event()
 
     def connect(self, port: PlantPort) -> None:
@@ -81,9 +99,15 @@ class Orchestrator:
 
     def submit(self, text: str) -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state."""
-        token, answer = uuid4().hex, Future[TaskChanged]()
-        self._waiting[token] = answer
+        answer, token = self._expect()
         self.loop.post(TaskRequest(at=time.monotonic(), text=text, request=token))
+        return answer
+
+    def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
+        """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
+        answer, token = self._expect()
+        now = time.monotonic()
+        self.loop.post(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
         return answer
 
     def snapshot(self) -> dict[str, Any]:
@@ -100,23 +124,52 @@ class Orchestrator:
         self.loop.stop()
 
     def _send(self, message: Command | Notice) -> None:
-        if isinstance(message, TaskChanged):
+        if isinstance(message, Remember | Journal):
+            self._keep(message)
+            return
+        if self._amnesia is not None and isinstance(message, Command) and not _ends_motion(message):
+            raise self._amnesia
+        if isinstance(message, TaskChanged | OperatorAnswer):
             self._answer(message)
+        if isinstance(message, TaskChanged):
+            _log(message)
+            for listener in self.listeners:
+                listener(message)
         if self._port is not None:
             self._port.send(message)
 
-    def _answer(self, change: TaskChanged) -> None:
-        waiting = self._waiting.pop(change.request or "", None)
-        if waiting is not None:
-            waiting.set_result(change)
-        for listener in self.listeners:
-            listener(change)
+    def _keep(self, message: Remember | Journal) -> None:
+        if self._store is None or self._amnesia is not None:
+            return
+        if isinstance(message, Remember):
+            self._store.keep(message)
+        else:
+            self._store.journal(message, time.time())
+
+    def _expect(self) -> tuple[Future[Any], str]:
+        """A future, and the token of the request whose answer it will hold."""
+        answer, token = Future[Any](), uuid4().hex
+        self._waiting[token] = answer
+        return answer, token
+
+    def _answer(self, answer: TaskChanged | OperatorAnswer) -> None:
+        waiting = self._waiting.pop(answer.request or "", None)
+        if waiting is None:
+            return
+        if self._amnesia is None:
+            waiting.set_result(answer)
+        else:
+            waiting.set_exception(self._amnesia)
 
     def _not_sent(self, message: Any, error: Exception) -> None:
-        if isinstance(message, Heartbeat | SystemStart | TaskChanged):
+        if isinstance(message, Remember | Journal):
+            self._amnesia = error
+            self._crash("orchestrator", error)
+        elif isinstance(message, Command):
+            event = Undelivered(at=time.monotonic(), id=message.id, robot=message.robot, sentence=str(error))
+            self.loop.post(event)
+        else:
             raise error
-        event = Undelivered(at=time.monotonic(), id=message.id, robot=message.robot, sentence=str(error))
-        self.loop.post(event)
 
     def _stepped(self, now: float, _events: Sequence[Any], _messages: Sequence[Any]) -> None:
         if self.plant.intake.closed and self.plant.at_rest:
@@ -128,3 +181,12 @@ class Orchestrator:
         snapshot = view.snapshot(self.plant)
         for watcher in self.watchers:
             watcher(snapshot)
+
+
+def _log(change: TaskChanged) -> None:
+    if change.state is TaskState.FAILED and change.reason is not None:
+        TASKS.info("%s failed: %s (%s)", change.text, change.sentence, change.reason.value)
+
+
+def _ends_motion(command: Command) -> bool:
+    return isinstance(command, Stop) and command.mode is not StopMode.CLEAR

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from arboleda.adapters.web import Api
+from arboleda.adapters.web import Api, Operate
 from arboleda.core import view
 from arboleda.core.messages import TaskChanged
 
@@ -19,11 +19,12 @@ class WebPart:
         snapshot: Callable[[], dict[str, Any]],
         find: Callable[[str], dict[str, Any] | None],
         submit: Callable[[str], Future[TaskChanged]],
+        operate: Operate,
         announce: Callable[[int], None],
     ) -> None:
         self.port = 0
         self._announce = announce
-        self._api = Api(snapshot, find, lambda text: _plain(submit(text)))
+        self._api = Api(snapshot, find, lambda text: _plain(submit(text)), operate)
 
     def start(self) -> None:
         self.port = self._api.start()

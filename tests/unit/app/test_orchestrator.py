@@ -1,0 +1,176 @@
+"""What the plant wants remembered is kept before anything after it leaves; answers find who asked."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.adapters.store import Store
+from arboleda.app.build import Options, build
+from arboleda.app.parts import orchestrator
+from arboleda.app.parts.bridge import BridgePart
+from arboleda.app.parts.broker import OtherBroker, address
+from arboleda.app.parts.orchestrator import Orchestrator
+from arboleda.core.errors import ArboledaError, StartError
+from arboleda.core.messages import (
+    Fact,
+    Heartbeat,
+    Home,
+    Journal,
+    OperatorAnswer,
+    OperatorRequest,
+    Remember,
+    SetEffector,
+    Stop,
+    StopMode,
+    Undelivered,
+    Verb,
+)
+from arboleda.core.plant import Plant
+from arboleda.testing.plants import shipped
+
+GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
+ON = SetEffector(id="7-1", robot="ra1", on=True)
+ACT = Journal(verb=Verb.STOP, scope="", sentence="everything stopped")
+
+
+class Script(Plant):
+    """A plant that says what it is told to, and notes what it hears."""
+
+    def __init__(self, model, *, memory, **options):
+        super().__init__(model, memory=memory, **options)
+        self.memory = memory
+
+    def step(self, now, events):
+        self.heard = list(events)
+        return self.says(events)
+
+
+class Robots:
+    """The port: every message that left, with what was remembered by then."""
+
+    def __init__(self, store: Store) -> None:
+        self.store = store
+        self.seen: list[tuple[object, dict[str, str]]] = []
+
+    @property
+    def messages(self) -> list[object]:
+        return [message for message, _ in self.seen]
+
+    def send(self, message) -> None:
+        self.seen.append((message, self.store.facts(Fact.EFFECTOR)))
+
+
+@pytest.fixture
+def crashes():
+    return []
+
+
+@pytest.fixture
+def store(tmp_path):
+    with Store(tmp_path / "plant.sqlite") as opened:
+        yield opened
+
+
+@pytest.fixture
+def plant(monkeypatch, store, crashes):
+    monkeypatch.setattr(orchestrator, "Plant", Script)
+    made = Orchestrator(shipped("sis_a"), 7, lambda name, error: crashes.append(error), store)
+    made.robots = Robots(store)
+    made.connect(made.robots)
+    return made
+
+
+def turn(plant: Orchestrator, *messages: object) -> list[object]:
+    """One step of the loop in which the plant says `messages`; the events it heard."""
+    plant.plant.says = lambda events: list(messages)
+    plant.loop.turn()
+    return plant.plant.heard
+
+
+def break_disk(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_):
+        raise ArboledaError("The disk is full.")
+
+    monkeypatch.setattr(store, "keep", fail)
+    monkeypatch.setattr(store, "journal", fail)
+
+
+def test_a_fact_is_kept_before_the_next_message_leaves(plant):
+    turn(plant, Heartbeat(epoch=7), GRIP, ON)
+    assert plant.robots.seen == [(Heartbeat(epoch=7), {}), (ON, {"ra1": "switching"})]
+
+
+def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
+    turn(plant, GRIP)
+    turn(plant, Remember(fact=Fact.LATCH, name="ra1", value="on"))
+    after = Orchestrator(shipped("sis_a"), 8, pytest.fail, store)
+    assert after.plant.memory == {
+        Fact.LATCH: {"ra1": "on"},
+        Fact.EFFECTOR: {"ra1": "switching"},
+        Fact.QUARANTINE: {},
+    }
+
+
+def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monkeypatch):
+    monkeypatch.setattr(orchestrator.time, "time", lambda: 1_700_000_000.5)
+    turn(plant, ACT)
+    [entry] = store.entries()
+    assert (entry.unix_s, entry.verb, entry.sentence) == (1_700_000_000.5, "stop", "everything stopped")
+
+
+@pytest.mark.parametrize("lost", [GRIP, ACT], ids=["fact", "journal"])
+def test_once_something_cannot_be_kept_robots_are_only_told_to_stop(plant, store, crashes, monkeypatch, lost):
+    break_disk(store, monkeypatch)
+    halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
+    latch = Stop(id="7-3", robot="ra1", mode=StopMode.LATCH)
+    clear = Stop(id="7-4", robot="ra1", mode=StopMode.CLEAR)
+    home = Home(id="7-5", robot="ra1")
+    turn(plant, lost, ON, halt, latch, GRIP, clear)
+    turn(plant, home, Heartbeat(epoch=7))
+    assert plant.robots.messages == [halt, latch, Heartbeat(epoch=7)]
+    assert [str(crash) for crash in crashes] == ["The disk is full."]
+    assert plant.plant.heard == [
+        Undelivered(at=event.at, id=command.id, robot="ra1", sentence="The disk is full.")
+        for event, command in zip(plant.plant.heard, (ON, clear), strict=True)
+    ]
+
+
+def answer(event: OperatorRequest, refusal: str | None = None) -> OperatorAnswer:
+    return OperatorAnswer(verb=event.verb, scope=event.scope, refusal=refusal, request=event.request)
+
+
+def test_an_operators_request_is_answered(plant):
+    future = plant.operate(Verb.HOME, "ra1", by_hand=True)
+    plant.plant.says = lambda events: [answer(events[0], "ra1 moves")]
+    plant.loop.turn()
+    assert plant.plant.heard[0].by_hand
+    result = future.result(timeout=0)
+    assert (result.verb, result.scope, result.refusal) == (Verb.HOME, "ra1", "ra1 moves")
+    assert plant.robots.messages == [result]
+
+
+def test_an_act_that_could_not_be_kept_is_not_said_to_be_done(plant, store, monkeypatch):
+    break_disk(store, monkeypatch)
+    future = plant.operate(Verb.OVERRIDE, "mesa")
+    plant.plant.says = lambda events: [ACT, answer(events[0])]
+    plant.loop.turn()
+    with pytest.raises(ArboledaError, match="The disk is full"):
+        future.result(timeout=0)
+
+
+def test_a_memory_that_cannot_be_read_keeps_the_plant_from_starting(tmp_path):
+    file = tmp_path / "plant.sqlite"
+    file.write_text("not a database " * 100)
+    for _ in range(2):  # the second finds the state directory free
+        with pytest.raises(StartError, match="cannot be used"):
+            build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path))
+    file.unlink()
+    build(shipped("sis_a"), {"orchestrator"}, Options(state_dir=tmp_path)).stop()
+    assert file.read_bytes().startswith(b"SQLite format 3")
+
+
+@pytest.mark.parametrize("notice", [GRIP, ACT, OperatorAnswer(verb=Verb.STOP, scope="")])
+def test_the_bridge_gets_only_what_is_for_robots(notice):
+    part = BridgePart(shipped("sis_a"), 7, OtherBroker(address("127.0.0.1:1883"), None), pytest.fail)
+    part.loop.post = pytest.fail
+    part.send(notice)

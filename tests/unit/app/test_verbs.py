@@ -1,0 +1,106 @@
+"""The operator's verbs as commands, with a client that only takes notes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from arboleda.app import verbs
+from arboleda.app.cli import cli
+from arboleda.core.messages import Verb
+
+NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE]
+PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
+
+
+class Notes(list):
+    """Stands for the plant: (verb, scope, by_hand) of every act."""
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> dict[str, str]:
+        self.append((verb, scope, by_hand))
+        return {"verb": verb.value, "scope": scope}
+
+
+@pytest.fixture
+def acts(monkeypatch: pytest.MonkeyPatch) -> Notes:
+    acts = Notes()
+    monkeypatch.setattr(verbs, "client", lambda plant, state: acts)
+    return acts
+
+
+def arboleda(*words: str, answer: str = "") -> tuple[int, str]:
+    """Exit status and output."""
+    result = CliRunner().invoke(cli, words, input=answer)
+    return result.exit_code, result.output
+
+
+def test_every_verb_has_words() -> None:
+    assert list(verbs.WORDS) == list(Verb)
+
+
+@pytest.mark.parametrize("verb", Verb)
+def test_every_verb_is_a_command_that_says_what_it_does(verb: Verb) -> None:
+    status, said = arboleda(verb.value, "--help")
+    assert status == 0
+    words = " ".join(said.split())
+    assert verbs.WORDS[verb].help in words and verbs.STATUS in words
+    assert ("[default: the whole plant]" in words) is (verb not in NEED_A_SCOPE)
+
+
+@pytest.mark.parametrize("verb", PLANT_WIDE)
+def test_without_a_scope_it_is_the_whole_plant(acts: Notes, verb: Verb) -> None:
+    status, said = arboleda(verb.value)
+    assert (status, acts) == (0, [(verb, "", False)])
+    assert said.endswith(", the whole plant\n")
+
+
+@pytest.mark.parametrize("verb", NEED_A_SCOPE, ids=str)
+def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) -> None:
+    assert arboleda(verb.value)[0] == 2
+    assert acts == []
+
+
+@pytest.mark.parametrize("verb", [verb for verb in Verb if verb is not Verb.OVERRIDE])
+def test_a_scope_is_passed_on(acts: Notes, verb: Verb) -> None:
+    assert arboleda(verb.value, "sis_a")[0] == 0
+    assert acts == [(verb, "sis_a", False)]
+
+
+@pytest.mark.parametrize("scope", ["", " "])
+def test_an_empty_name_is_not_the_whole_plant(acts: Notes, scope: str) -> None:
+    status, said = arboleda("clear", scope)
+    assert status == 2 and "the name is empty" in said
+    assert acts == []
+
+
+def test_stop_is_called_what_it_is(acts: Notes) -> None:
+    assert arboleda("stop", "ra1") == (0, "done: stop (software), ra1\n")
+
+
+def test_a_robot_is_declared_homed_by_hand(acts: Notes) -> None:
+    assert arboleda("home", "ra1", "--by-hand")[0] == 0
+    assert acts == [(Verb.HOME, "ra1", True)]
+
+
+@pytest.mark.parametrize("answer", ["n\n", "\n", ""])
+def test_override_asks_first(acts: Notes, answer: str) -> None:
+    status, said = arboleda("override", "middle", answer=answer)
+    assert status == 1 and "A robot may still stand in middle" in said
+    assert acts == []
+
+
+@pytest.mark.parametrize(("options", "answer"), [((), "y\n"), (("--yes",), "")])
+def test_override_frees_the_zone_once_a_person_said_so(
+    acts: Notes, options: tuple[str, ...], answer: str
+) -> None:
+    assert arboleda("override", "middle", *options, answer=answer)[0] == 0
+    assert acts == [(Verb.OVERRIDE, "middle", False)]
+
+
+def test_the_plant_is_found_as_submit_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setattr(verbs, "client", lambda plant, state: asked.append((plant, state)) or Notes())
+    arboleda("hold", "--plant", "my.yaml", "--state", "here")
+    assert asked == [(Path("my.yaml"), Path("here"))]
