@@ -20,6 +20,7 @@ class ArmBody:
     """One stepper per joint; `start` and `pickups` are joint positions in rad and m.
 
     The piece sensor sees the piece that lies ready at each pick-up, and the one the effector holds.
+    `supplied` False: no piece lies there; `grips` False: the effector closes beside the piece.
     """
 
     channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
@@ -29,6 +30,7 @@ class ArmBody:
         self._joints = arm.joints
         self._step_deg = tuple(units.to_wire(joint, joint.step) for joint in arm.joints)
         self._pickups = {self._steps(pickup) for pickup in pickups}
+        self.supplied = self.grips = True
         self.reset()
         for stepper, position in zip(self._steppers, self._steps(start), strict=True):
             stepper.set_current_position(position)
@@ -38,8 +40,8 @@ class ArmBody:
         self._steppers = tuple(_axis(joint) for joint in self._joints)
         self._still_us: int | None = None
         self._now_us = 0
-        self._effector = False
-        self._holding = False
+        self.effector = False
+        self.holding = False
 
     @property
     def moving(self) -> bool:
@@ -53,6 +55,11 @@ class ArmBody:
     def position(self) -> tuple[int, ...]:
         """Motor steps per joint."""
         return tuple(stepper.position for stepper in self._steppers)
+
+    @property
+    def targets(self) -> tuple[int, ...]:
+        """Where it heads for, in motor steps per joint."""
+        return tuple(stepper.target for stepper in self._steppers)
 
     def admits(self, goal: JointsGoal) -> bool:
         return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
@@ -80,14 +87,18 @@ class ArmBody:
             self._grip()
 
     def switch_effector(self, on: bool) -> None:
-        self._effector = on
-        self._holding = self._holding and on
+        self.effector = on
+        self.holding = self.holding and on
         self._grip()
+
+    def lose_piece(self) -> None:
+        """The piece falls; the effector does not notice."""
+        self.holding = False
 
     def tell(self) -> Telemetry:
         q = tuple(steps * step for steps, step in zip(self.position, self._step_deg, strict=True))
-        piece = self._holding or self._at_pickup()
-        return Telemetry(state=MotionState.STOPPED, q=q, node=None, effector=self._effector, piece=piece)
+        piece = self.holding or self._piece_lies_here()
+        return Telemetry(state=MotionState.STOPPED, q=q, node=None, effector=self.effector, piece=piece)
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))
@@ -102,11 +113,11 @@ class ArmBody:
         self._now_us = now_us
         self._still_us = max(now_us + 1, *(stepper.still_at_us(now_us) for stepper in self._steppers))
 
-    def _at_pickup(self) -> bool:
-        return not self.moving and self.position in self._pickups
+    def _piece_lies_here(self) -> bool:
+        return self.supplied and not self.moving and self.position in self._pickups
 
     def _grip(self) -> None:
-        self._holding = self._holding or (self._effector and self._at_pickup())
+        self.holding = self.holding or (self.effector and self.grips and self._piece_lies_here())
 
 
 def _axis(joint: Joint) -> Stepper:

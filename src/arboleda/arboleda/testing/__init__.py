@@ -1,6 +1,8 @@
 """For tests of plants: the shipped plant, and the whole chain in one process with time moved by hand."""
 
-from .plants import shipped
+from . import faults
+from .plants import shipped, slowed
 from .rig import Rig
+from .witness import Witness
 
-__all__ = ["Rig", "shipped"]
+__all__ = ["Rig", "Witness", "faults", "shipped", "slowed"]

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from arboleda.app.config import load
-from arboleda.core.model import Cell, PlantModel
+from arboleda.core.model import Arm, Cell, PlantModel
 
 
 def shipped(*cells: str, **declared: Any) -> PlantModel:
@@ -15,6 +15,15 @@ def shipped(*cells: str, **declared: Any) -> PlantModel:
     plant = _loaded()
     by_name = {cell.name: cell for cell in plant.cells}
     return replace(plant, cells=tuple(_declaring(by_name[name], declared) for name in cells or by_name))
+
+
+def slowed(plant: PlantModel, times: float) -> PlantModel:
+    """The plant with arms so many times slower, for what must happen in the middle of a move."""
+    return replace(plant, cells=tuple(replace(cell, arm=_slower(cell.arm, times)) for cell in plant.cells))
+
+
+def _slower(arm: Arm, times: float) -> Arm:
+    return replace(arm, joints=tuple(replace(joint, speed=joint.speed / times) for joint in arm.joints))
 
 
 @cache

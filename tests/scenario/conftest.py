@@ -1,0 +1,30 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.core.model import Evidence
+from arboleda.testing import Rig, Witness, faults, shipped, slowed
+
+Stage = Callable[..., tuple[Rig, Witness]]
+
+
+@pytest.fixture
+def stage() -> Stage:
+    """A rig of one cell whose robots prove `evidence`, and its witness; `cell`: what else the cell is.
+
+    Its arm moves for 1 s and its effector takes a moment to switch, so that much can happen meanwhile; its
+    piece sensor speaks at every level.
+    """
+
+    def make(evidence: Evidence = Evidence.IDS, **cell: Any) -> tuple[Rig, Witness]:
+        model = slowed(shipped("sis_a", evidence=evidence), 2)
+        rig = Rig(replace(model, cells=tuple(replace(each, **cell) for each in model.cells)))
+        rig.carry = faults.hand(rig, "ra_1", tells_all=evidence is Evidence.IDS)
+        rig.wait(0.5)
+        return rig, Witness(rig)
+
+    return make
