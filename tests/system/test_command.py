@@ -107,7 +107,7 @@ def test_the_broker_may_come_late_and_go_and_come_back(
     broker.kill()
     up.wait_for("failed    sis_a 0B 7")
     mosquitto(free_port)
-    up.wait_for("is there.", times=2)
+    up.wait_for("is there.", times=3)
     submit = arboleda("submit", "sis_b 1C 3")
     assert submit.wait() == 0
     up.wait_for("done      sis_b 1C 3")
