@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test install lint clean help
+.PHONY: run test install lint diagrams clean help
 
 export PYTHON
 BIN := .venv/bin
@@ -21,6 +21,10 @@ lint:  ## check style, format and the import rules
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports
+
+diagrams:  ## write docs/reference/states.md anew from the state tables of the core
+	@scripts/install
+	@page=$$($(BIN)/python scripts/state-diagrams) && printf '%s\n' "$$page" >docs/reference/states.md
 
 clean:  ## remove .venv and whatever builds and tests left behind
 	rm -rf .venv .colcon build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
