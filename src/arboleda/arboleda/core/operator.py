@@ -19,7 +19,7 @@ class Refused(ArboledaError):
 
 
 class Operator:
-    """Carries out verbs on the cells and robots of a scope; all of the scope or nothing."""
+    """Carries out verbs wherever in their scope they can be done; refuses those that can be done nowhere."""
 
     def __init__(
         self,
@@ -52,19 +52,16 @@ class Operator:
         if request.verb is Verb.HOME:
             self._home(robots, by_hand=request.by_hand)
             return
-        cells = {
-            name: cell
-            for name, cell in self._cells.items()
-            if any(r.name in robots for r in cell.cell.robots)
-        }
         check, act = ACTS[request.verb]
-        obstacles = [why for cell in cells.values() if (why := check(self, cell, robots))]
-        concerned = [cell for cell in cells.values() if cell.state in MUST_ALL.get(request.verb, ())]
-        firm = [why for cell in concerned if (why := check(self, cell, robots))]
-        if firm or len(obstacles) == len(cells):
-            raise Refused((firm or obstacles)[0])
-        for cell in cells.values():
-            if not check(self, cell, robots):
+        names = {self._dispatcher.model.cell_of[robot].name for robot in robots}
+        cells = [cell for name, cell in self._cells.items() if name in names]
+        refusals = {cell.cell.name: why for cell in cells if (why := check(self, cell, robots))}
+        must = MUST_ALL.get(request.verb, ())
+        firm = [cell.cell.name for cell in cells if cell.state in must and cell.cell.name in refusals]
+        if firm or len(refusals) == len(cells):
+            raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
+        for cell in cells:
+            if cell.cell.name not in refusals:
                 act(self, cell, robots)
 
     def _robots(self, scope: str) -> set[str]:
