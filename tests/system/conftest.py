@@ -137,7 +137,7 @@ def mosquitto(
 
     def go(port: int) -> Process:
         settings = tmp_path / "mosquitto.conf"
-        settings.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+        settings.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\nset_tcp_nodelay true\n")
         broker = start(require("mosquitto"), "-v", "-c", str(settings))
         broker.wait_for("running")
         return broker

@@ -63,6 +63,19 @@ def test_a_task_request_from_another_process_shows_on_the_topics(
     assert up.interrupt() == 0, up.output
 
 
+def test_two_start_signals_run_two_arms_at_the_same_time(arboleda: Callable[..., Any], observer: Any) -> None:
+    from std_msgs.msg import String, UInt8
+
+    up = arboleda("up", "--rate", "3")
+    observer.listen(String, "/task_status", qos=latched())
+    starts = [observer.publisher(UInt8, f"/{arm}/start") for arm in ("ra1", "ra2")]
+    for start in starts:
+        start.publish(UInt8(data=1))
+    observer.wait(lambda: states(observer).count("done") == 2, "the cycles were not done")
+    assert states(observer).index("done") > 3, "the second cycle waited for the first"
+    assert up.interrupt() == 0, up.output
+
+
 def test_a_person_drives_the_whole_cycle_by_hand(arboleda: Callable[..., Any], observer: Any) -> None:
     from std_msgs.msg import Float32MultiArray, String, UInt8
 
