@@ -213,12 +213,13 @@ def chain(
     return go
 
 
-def plant_at(evidence: Evidence, folder: Path) -> Path:
-    """The shipped plant with slow arms, every robot at this level of evidence."""
+def plant_at(evidence: Evidence, folder: Path, *cells: str) -> Path:
+    """The shipped plant, or some of its cells, every robot at this level of evidence."""
     plant = yaml.safe_load(SHIPPED.read_text())
+    plant["cells"] = {name: cell for name, cell in plant["cells"].items() if not cells or name in cells}
     for cell in plant["cells"].values():
         cell["arm"]["evidence"] = cell["mobile"]["evidence"] = evidence.value
-    file = folder / "plant.yaml"
+    file = folder / f"{'-'.join(['plant', *cells])}.yaml"
     file.write_text(yaml.safe_dump(plant))
     return file
 
@@ -254,7 +255,7 @@ class Chain:
         self.requests = observer.publisher(String, "/task_request")
 
     def start(self, name: str, **parameters: str) -> Any:
-        return self._node(name, **self._common, **parameters)
+        return self._node(name, **{**self._common, **parameters})
 
     def submit(self, text: str) -> None:
         from std_msgs.msg import String
@@ -280,10 +281,12 @@ class Chain:
         return next(cell for cell in view["cells"] if cell["name"] == name)
 
     def wait_for_cell(self, name: str, ready: Callable[[dict[str, Any]], bool]) -> None:
-        self.observer.wait(lambda: ready(self.cell(name)), f"{name} is not as expected")
+        views = self.observer.heard["/plant/view"]
+        self.observer.wait(lambda: views and ready(self.cell(name)), f"{name} is not as expected")
 
     def wait_for_robot(self, name: str, ready: Callable[[dict[str, Any]], bool]) -> None:
-        self.observer.wait(lambda: ready(self.robot(name)), f"{name} is not as expected")
+        views = self.observer.heard["/plant/view"]
+        self.observer.wait(lambda: views and ready(self.robot(name)), f"{name} is not as expected")
 
     def outcome(self, text: str) -> dict[str, Any]:
         """The change that ended the task."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from arboleda.app.parts.broker import address
 from arboleda.core.model import Evidence
 from arboleda.wire.transport import Connection, Delivery
 
-from .conftest import Chain
+from .conftest import Chain, plant_at
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy", "mosquitto")]
 PICK_UP = 0.7854  # rad, of ra1's first joint
@@ -54,9 +55,28 @@ def test_a_plant_killed_with_a_part_in_the_gripper_starts_held(moving: Chain) ->
     moving.plant.kill()
     del moving.observer.heard["/plant/view"][:]
     moving.start("orchestrator", state_dir=moving.state)
-    moving.observer.wait(lambda: moving.observer.heard["/plant/view"], "no view of the new plant")
     moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
     assert "ra1 may hold a part" in moving.cell("sis_a")["held_by"]
+
+
+def test_the_boards_of_one_cell_killed_in_a_move_fail_its_task_and_no_other(
+    chain: Callable[[Evidence], Chain], tmp_path: Path
+) -> None:
+    parts = chain(Evidence.IDS)
+    parts.devices.kill()
+    parts.wait_for_robot("ra1", lambda robot: not robot["online"])
+    cells = (("sis_a",), ("sis_b", "sis_c"))
+    plants = [str(plant_at(Evidence.IDS, tmp_path, *names)) for names in cells]
+    boards = [parts.start("virtual_devices", plant=plant, rate="0.3") for plant in plants]
+    for text in ("sis_a 0A 4", "sis_b 0A 4"):
+        parts.submit(text)
+    parts.wait_for_step("sis_a", "move to pick-up")
+    boards[0].kill()
+    change = parts.outcome("sis_a 0A 4")
+    assert (change["state"], change["reason"]) == ("failed", "link_lost")
+    assert change["sentence"].startswith("ra1: ")
+    assert parts.outcome("sis_b 0A 4")["state"] == "done"
+    assert parts.cell("sis_a")["state"] == "held"
 
 
 def test_a_broker_that_goes_in_a_move_fails_the_task_and_the_cell_recovers_when_it_is_back(
