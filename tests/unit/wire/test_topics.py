@@ -7,23 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.core.errors import PayloadError
-from arboleda.wire.topics import COMMANDS, Channel, parse, topic
+from arboleda.wire.topics import Channel, parse, topic
 
 
 @pytest.mark.parametrize("channel", Channel)
 def test_a_topic_reads_back(channel: Channel) -> None:
     assert parse(topic("ra_1", channel)) == ("ra_1", channel)
-
-
-def test_a_board_subscribes_to_everything_it_does_not_say() -> None:
-    assert {channel.value for channel in COMMANDS} == {
-        "juntas",
-        "camino",
-        "efector",
-        "paro",
-        "referencia",
-        "latido",
-    }
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ class Store:
             db = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
             try:
                 self._prepare(db)
-            except BaseException:
+            except BaseException:  # whatever it is, Ctrl-C too, the file is not left open
                 db.close()
                 raise
         self._opened = db

@@ -70,7 +70,7 @@ class App:
                 self._state.open()
                 self._store.open()
             self._build(set(parts))
-        except BaseException:
+        except BaseException:  # whatever it is, the next start finds the state directory free
             self._let_go()
             raise
 
@@ -94,7 +94,7 @@ class App:
             for part in self._parts:
                 self._started.append(part)
                 part.start()
-        except BaseException:
+        except BaseException:  # Ctrl-C while it starts ends it as cleanly as later
             self.stop()
             raise
 

@@ -6,7 +6,7 @@ from .messages import Failure, Reason, Report
 from .model import Arm, Evidence, Link, MotionState, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
-MERGED = ("epoch", "boot_id", "accepted", "done", "state", "q", "node", "homed", "effector", "piece")
+MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
 
 
 class Belief:
@@ -21,8 +21,6 @@ class Belief:
         self.epoch: int | None = None
         self.plant: int | None = None
         self.boot_id: int | None = None
-        self.accepted: str | None = None
-        self.done: str | None = None
         self.state: MotionState | None = None
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None

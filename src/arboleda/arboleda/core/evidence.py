@@ -37,7 +37,6 @@ class Before:
     epoch: int | None
     boot_id: int | None
     q: tuple[float, ...] | None
-    node: int | None
     position_at: float
 
     @classmethod
@@ -46,7 +45,6 @@ class Before:
             epoch=belief.epoch,
             boot_id=belief.boot_id,
             q=belief.q,
-            node=belief.node,
             position_at=belief.position_at,
         )
 

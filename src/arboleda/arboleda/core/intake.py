@@ -20,7 +20,7 @@ class Intake:
         self.tasks: dict[str, Task] = {}
         self._count = 0
 
-    def task(self, words: str, now: float) -> Task:
+    def task(self, words: str) -> Task:
         """The new or already known task of a text; TextError says why there is none."""
         if self.closed:
             raise TextError("the plant is ending; no new task is taken")
@@ -28,7 +28,7 @@ class Intake:
         known = self.tasks.get(order.id) if order.id else None
         if known is None:
             self._count += 1
-            return Task(order.id or f"t-{self.epoch}-{self._count}", order, now)
+            return Task(order.id or f"t-{self.epoch}-{self._count}", order)
         if known.order.text != order.text:
             raise TextError(f"#{known.id} is already the id of '{known.order.text}'; use another id")
         return known

@@ -172,7 +172,7 @@ class Plant:
 
     def _on_task_request(self, request: TaskRequest) -> None:
         try:
-            task = self.intake.task(request.text, self.now)
+            task = self.intake.task(request.text)
             if not self.intake.knows(task):
                 self._refuse_trigger(request, task)
                 self.cells[task.order.cell].enqueue(task)

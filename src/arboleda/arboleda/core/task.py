@@ -41,12 +41,11 @@ LEGAL: dict[TaskState, frozenset[TaskState]] = {
 class Task:
     """An accepted order on its way through the plant; times in s of the plant's clock."""
 
-    def __init__(self, id: str, order: Order, now: float) -> None:
+    def __init__(self, id: str, order: Order) -> None:
         self.id = id
         self.order = order
         self.state = TaskState.QUEUED
         self.failure: Failure | None = None
-        self.queued_at = now
         self.started_at: float | None = None
         self.ended_at: float | None = None
 

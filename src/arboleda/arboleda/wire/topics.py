@@ -23,10 +23,6 @@ class Channel(str, Enum):
     PRESENCE = "conexion"
 
 
-COMMANDS = frozenset(Channel) - {Channel.TELEMETRY, Channel.PRESENCE}
-"""What boards subscribe to: JOINTS (arm) or PATH (mobile), EFFECTOR (arm), STOP, HOME, BEAT."""
-
-
 def topic(mqtt_name: str, channel: Channel) -> str:
     """`ra_1/juntas`."""
     return f"{mqtt_name}/{channel.value}"
