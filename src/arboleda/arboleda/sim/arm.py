@@ -20,7 +20,8 @@ class ArmBody:
     """One stepper per joint; `start` and `pickups` are joint positions in rad and m.
 
     The piece sensor sees the piece that lies ready at each pick-up, and the one the effector holds.
-    `supplied` False: no piece lies there; `grips` False: the effector closes beside the piece.
+    `supplied` False: no piece lies there; `grips` False: the effector closes beside the piece; `stuck`:
+    the effector does not follow its switch. `true_position` is where the axes are, whatever was counted.
     """
 
     channels = frozenset({Channel.JOINTS, Channel.EFFECTOR, Channel.STOP, Channel.HOME, Channel.BEAT})
@@ -31,12 +32,17 @@ class ArmBody:
         self._step_deg = tuple(units.to_wire(joint, joint.step) for joint in arm.joints)
         self._pickups = {self._steps(pickup) for pickup in pickups}
         self.supplied = self.grips = True
+        self.stuck = False
+        self._drift = (0,) * len(arm.joints)  # true position minus counted position, per joint
+        self._steppers = tuple(_axis(joint) for joint in arm.joints)
         self.reset()
         for stepper, position in zip(self._steppers, self._steps(start), strict=True):
             stepper.set_current_position(position)
+        self._drift = (0,) * len(arm.joints)
 
     def reset(self) -> None:
-        """Position counters 0, effector off, as a board comes up."""
+        """Position counters 0, effector off, as a board comes up; the axes stay where they are."""
+        self._drift = self.true_position
         self._steppers = tuple(_axis(joint) for joint in self._joints)
         self._still_us: int | None = None
         self._now_us = 0
@@ -57,6 +63,11 @@ class ArmBody:
         return tuple(stepper.position for stepper in self._steppers)
 
     @property
+    def true_position(self) -> tuple[int, ...]:
+        """Where the axes are, in motor steps per joint."""
+        return tuple(counted + drift for counted, drift in zip(self.position, self._drift, strict=True))
+
+    @property
     def targets(self) -> tuple[int, ...]:
         """Where it heads for, in motor steps per joint."""
         return tuple(stepper.target for stepper in self._steppers)
@@ -69,6 +80,10 @@ class ArmBody:
         self._head_for(now_us, self._steps(tuple(values)))
 
     def home(self, now_us: int) -> None:
+        """Drive to the switches: each axis gets to its true 0, whatever was counted before."""
+        for stepper, drift in zip(self._steppers, self._drift, strict=True):
+            stepper.shift(drift)
+        self._drift = (0,) * len(self._joints)
         self._head_for(now_us, (0,) * len(self._joints))
 
     def stop(self, now_us: int) -> None:
@@ -87,6 +102,8 @@ class ArmBody:
             self._grip()
 
     def switch_effector(self, on: bool) -> None:
+        if self.stuck:
+            return
         self.effector = on
         self.holding = self.holding and on
         self._grip()
@@ -94,6 +111,16 @@ class ArmBody:
     def lose_piece(self) -> None:
         """The piece falls; the effector does not notice."""
         self.holding = False
+
+    def lose_steps(self, joint: int, steps: int) -> None:
+        """An axis slips by so many motor steps; the counter does not notice."""
+        drift = list(self._drift)
+        drift[joint] += steps
+        self._drift = tuple(drift)
+
+    def put_at_reference(self) -> None:
+        """Somebody moves the still arm by hand to where its counters are right."""
+        self._drift = (0,) * len(self._joints)
 
     def tell(self) -> Telemetry:
         q = tuple(steps * step for steps, step in zip(self.position, self._step_deg, strict=True))
@@ -114,7 +141,7 @@ class ArmBody:
         self._still_us = max(now_us + 1, *(stepper.still_at_us(now_us) for stepper in self._steppers))
 
     def _piece_lies_here(self) -> bool:
-        return self.supplied and not self.moving and self.position in self._pickups
+        return self.supplied and not self.moving and self.true_position in self._pickups
 
     def _grip(self) -> None:
         self.holding = self.holding or (self.effector and self.grips and self._piece_lies_here())

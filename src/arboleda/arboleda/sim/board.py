@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from arboleda.core.errors import PayloadError
@@ -34,11 +35,13 @@ class Board:
     """One board as a pure machine: calls in, publications collected until `take`.
 
     It says what its robot's declared evidence level says, and only at `ids` it knows command numbers.
+    `watch`, where set, is told every command that the board carries out.
     """
 
     def __init__(self, robot: Robot, body: Body, *, boot_id: int, now_us: int) -> None:
         self.body = body
         self.refusals = 0  # messages rejected whole since power-up
+        self.watch: Callable[[Goal], None] | None = None
         self._numbered = robot.evidence is Evidence.IDS
         self._assume_homed = robot.assume_homed
         heard = body.channels if robot.has_stop else body.channels - {Channel.STOP}
@@ -51,6 +54,7 @@ class Board:
         self.boot_id = boot_id
         self.homed = homed
         self.latched = False
+        self.faulted = False
         self._job: Goal | None = None  # the motion that will count as done when the body comes to rest
         self._receipts = Receipts()
         self._uplink.told = 0
@@ -65,6 +69,8 @@ class Board:
     def state(self) -> MotionState:
         if self.body.moving:
             return MotionState.MOVING
+        if self.faulted:
+            return MotionState.FAULT
         if self.latched:
             return MotionState.STOP_LATCHED
         return MotionState.STOPPED if self.homed else MotionState.NOT_HOMED
@@ -89,6 +95,19 @@ class Board:
         self.body.reset()
         self._boot(boot_id, homed=self._assume_homed)
         self._announce()
+
+    def fail(self, now_us: int) -> None:
+        """A driver reports an alarm: the board ramps to a stop and moves nothing until `repair`."""
+        self.advance(now_us)
+        self.faulted = True
+        self._stop(latch=False)
+        self._tell()
+
+    def repair(self, now_us: int) -> None:
+        """The alarm is gone."""
+        self.advance(now_us)
+        self.faulted = False
+        self._tell()
 
     def advance(self, now_us: int) -> None:
         """Let time pass; a time before the last one seen counts as that."""
@@ -141,6 +160,8 @@ class Board:
         self._alive_us = self._now_us
         self._receipts.accept(goal)
         self._act(goal)
+        if self.watch is not None:
+            self.watch(goal)
         self._tell()
 
     def _refusal(self, goal: Goal) -> str | None:
@@ -151,7 +172,7 @@ class Board:
             return "paro"
         if isinstance(goal, EffectorGoal):
             return None
-        if isinstance(self._job, HomeGoal):
+        if self.faulted or isinstance(self._job, HomeGoal):
             return "ocupado"
         if isinstance(goal, HomeGoal):
             return None

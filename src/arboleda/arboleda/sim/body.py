@@ -38,8 +38,11 @@ class Body(Protocol):
 
     def switch_effector(self, on: bool) -> None: ...
 
+    def put_at_reference(self) -> None:
+        """Somebody moves the still robot by hand to where it takes itself to be."""
+
     def reset(self) -> None:
-        """Everything as a board without memory comes up."""
+        """Everything as a board without memory comes up; what is moved stays where it is."""
 
     def tell(self) -> Telemetry:
         """Where it is and what it holds; the state is the board's to say."""

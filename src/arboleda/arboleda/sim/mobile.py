@@ -10,7 +10,10 @@ from arboleda.wire.topics import Channel
 
 
 class MobileBody:
-    """At a node, or on an edge that it always drives to its end; each takes pitch / speed."""
+    """At a node, or on an edge that it always drives to its end; each takes pitch / speed.
+
+    `node` is where it takes itself to be, `true_node` where it is.
+    """
 
     channels = frozenset({Channel.PATH, Channel.STOP, Channel.HOME, Channel.BEAT})
     axes: int | None = None
@@ -18,11 +21,11 @@ class MobileBody:
     def __init__(self, mobile: Mobile, *, start_node: int) -> None:
         self._grid = mobile.grid
         self._edge_us = max(1, round(mobile.grid.pitch / mobile.speed * 1e6))
-        self._start_node = start_node
+        self._start_node = self.true_node = start_node
         self.reset()
 
     def reset(self) -> None:
-        """At its start node, as a board comes up."""
+        """At its start node, as a board comes up that knows no better; the robot stays where it is."""
         self.node = self._start_node
         self._way: tuple[int, ...] = ()  # nodes ahead; the first one ends the edge it is on
         self._arrival_us: int | None = None
@@ -46,7 +49,14 @@ class MobileBody:
         self._drive(now_us, self._ahead(goal.nodes))
 
     def home(self, now_us: int) -> None:
+        """Drive to the start node by what it sees, whatever it took itself for before."""
+        if not self._way:
+            self.node = self.true_node
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
+
+    def put_at_reference(self) -> None:
+        """Somebody moves the still robot by hand to the node where it takes itself to be."""
+        self.true_node = self.node
 
     def stop(self, now_us: int) -> None:
         self._way = self._way[:1]
@@ -54,7 +64,8 @@ class MobileBody:
     def advance(self, now_us: int) -> None:
         while self._arrival_us is not None and self._arrival_us <= now_us:
             if self._way:
-                self.node, *ahead = self._way
+                self._pass(self._way[0])
+                _, *ahead = self._way
                 self._way = tuple(ahead)
             self._arrival_us = self._arrival_us + self._edge_us if self._way else None
 
@@ -68,6 +79,22 @@ class MobileBody:
     def _next_node(self) -> int:
         """Where the next edge can begin."""
         return self._way[0] if self._way else self.node
+
+    def _pass(self, node: int) -> None:
+        """Reach the next node; a robot beside its way drives the same edge there, up to the border."""
+        columns = self._grid.columns
+        row, column = (
+            here + to - since
+            for here, to, since in zip(
+                divmod(self.true_node, columns),
+                divmod(node, columns),
+                divmod(self.node, columns),
+                strict=True,
+            )
+        )
+        if 0 <= row < self._grid.rows and 0 <= column < columns:
+            self.true_node = row * columns + column
+        self.node = node
 
     def _ahead(self, nodes: tuple[int, ...]) -> tuple[int, ...]:
         return nodes[1:] if nodes[0] == self._next_node else nodes

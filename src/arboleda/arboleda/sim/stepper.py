@@ -86,6 +86,11 @@ class Stepper:
         self._ramp = self.interval = 0
         self.speed = 0.0
 
+    def shift(self, steps: int) -> None:
+        """Call the place where it is, and the one it heads for, by other numbers; the move goes on."""
+        self.position += steps
+        self.target += steps
+
     def run(self, now_us: int) -> bool:
         """Poll once: take one step if one is due; whether it did."""
         if not self.interval or (now_us - self._last_step_us) & CLOCK_MASK < self.interval:
