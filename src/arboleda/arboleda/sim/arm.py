@@ -9,7 +9,7 @@ from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal, Telemetry
 from arboleda.wire.topics import Channel
 
-from .stepper import Stepper
+from .axis import Axis
 
 FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
 STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
@@ -33,19 +33,16 @@ class ArmBody:
         self._pickups = {self._steps(pickup) for pickup in pickups}
         self.supplied = self.grips = True
         self.stuck = False
-        self._drift = (0,) * len(arm.joints)  # true position minus counted position, per joint
-        self._steppers = tuple(_axis(joint) for joint in arm.joints)
+        self._axes = tuple(_axis(joint) for joint in arm.joints)
+        self._drift = self._steps(start)  # true position minus counted position, per joint
         self.reset()
-        for stepper, position in zip(self._steppers, self._steps(start), strict=True):
-            stepper.set_current_position(position)
-        self._drift = (0,) * len(arm.joints)
+        self._count_anew()
 
     def reset(self) -> None:
         """Position counters 0, effector off, as a board comes up; the axes stay where they are."""
         self._drift = self.true_position
-        self._steppers = tuple(_axis(joint) for joint in self._joints)
+        self._axes = tuple(_axis(joint) for joint in self._joints)
         self._still_us: int | None = None
-        self._now_us = 0
         self.effector = False
         self.holding = False
 
@@ -60,7 +57,7 @@ class ArmBody:
     @property
     def position(self) -> tuple[int, ...]:
         """Motor steps per joint."""
-        return tuple(stepper.position for stepper in self._steppers)
+        return tuple(axis.position for axis in self._axes)
 
     @property
     def true_position(self) -> tuple[int, ...]:
@@ -70,7 +67,7 @@ class ArmBody:
     @property
     def targets(self) -> tuple[int, ...]:
         """Where it heads for, in motor steps per joint."""
-        return tuple(stepper.target for stepper in self._steppers)
+        return tuple(axis.target for axis in self._axes)
 
     def admits(self, goal: JointsGoal) -> bool:
         return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
@@ -81,22 +78,19 @@ class ArmBody:
 
     def home(self, now_us: int) -> None:
         """Drive to the switches: each axis gets to its true 0, whatever was counted before."""
-        for stepper, drift in zip(self._steppers, self._drift, strict=True):
-            stepper.shift(drift)
-        self._drift = (0,) * len(self._joints)
+        self._count_anew()
         self._head_for(now_us, (0,) * len(self._joints))
 
     def stop(self, now_us: int) -> None:
-        for stepper in self._steppers:
-            stepper.stop()
+        for axis in self._axes:
+            axis.stop(now_us)
         self._plan(now_us)
 
     def advance(self, now_us: int) -> None:
         if self._still_us is None:
             return
-        for stepper in self._steppers:
-            stepper.advance(self._now_us, now_us)
-        self._now_us = now_us
+        for axis in self._axes:
+            axis.advance(now_us)
         if now_us >= self._still_us:
             self._still_us = None
             self._grip()
@@ -131,14 +125,19 @@ class ArmBody:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))
 
     def _head_for(self, now_us: int, targets: tuple[int, ...]) -> None:
-        for stepper, target in zip(self._steppers, targets, strict=True):
-            stepper.move_to(target)
+        for axis, target in zip(self._axes, targets, strict=True):
+            axis.move_to(now_us, target)
         self._plan(now_us)
 
     def _plan(self, now_us: int) -> None:
         """Work out when the slowest axis comes to rest; even no way at all takes a moment."""
-        self._now_us = now_us
-        self._still_us = max(now_us + 1, *(stepper.still_at_us(now_us) for stepper in self._steppers))
+        self._still_us = max(now_us + 1, *(axis.still_at_us for axis in self._axes))
+
+    def _count_anew(self) -> None:
+        """Have the counters say where the axes are."""
+        for axis, drift in zip(self._axes, self._drift, strict=True):
+            axis.shift(drift)
+        self._drift = (0,) * len(self._joints)
 
     def _piece_lies_here(self) -> bool:
         return self.supplied and not self.moving and self.true_position in self._pickups
@@ -147,11 +146,11 @@ class ArmBody:
         self.holding = self.holding or (self.effector and self.grips and self._piece_lies_here())
 
 
-def _axis(joint: Joint) -> Stepper:
-    stepper = Stepper()
-    stepper.set_max_speed(min(joint.speed / joint.step, FASTEST))
-    stepper.set_acceleration(min(joint.acceleration / joint.step, STEEPEST))
-    return stepper
+def _axis(joint: Joint) -> Axis:
+    return Axis(
+        max_speed=min(joint.speed / joint.step, FASTEST),
+        acceleration=min(joint.acceleration / joint.step, STEEPEST),
+    )
 
 
 def _within(joint: Joint, angle: float) -> bool:

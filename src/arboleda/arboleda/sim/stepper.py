@@ -86,6 +86,11 @@ class Stepper:
         self._ramp = self.interval = 0
         self.speed = 0.0
 
+    def arrive(self, at_us: int) -> None:
+        """Come to rest at the target, the last step of the move taken then."""
+        self.set_current_position(self.target)
+        self._last_step_us = at_us
+
     def shift(self, steps: int) -> None:
         """Call the place where it is, and the one it heads for, by other numbers; the move goes on."""
         self.position += steps
