@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import StopMode
@@ -75,6 +76,7 @@ def _stamp(fields: strict.Fields) -> dict[str, int | None]:
     return {"seq": fields.optional("seq"), "epoch": fields.optional("epoca")}
 
 
+@cache
 def _joint_keys(axes: int | None, suffix: str = "") -> tuple[str, ...]:
     if axes is None:
         raise PayloadError("a mobile robot has no joints")
@@ -141,8 +143,7 @@ _READERS: dict[Channel, Callable[[strict.Fields, int | None], Payload]] = {
 
 
 def _angles(q: tuple[float, ...], suffix: str = "") -> dict[str, object]:
-    keys = _joint_keys(len(q), suffix)
-    return {key: _angle(key, value) for key, value in zip(keys, q, strict=True)}
+    return {key: _angle(key, value) for key, value in zip(_joint_keys(len(q), suffix), q, strict=True)}
 
 
 def _angle(key: str, value: float) -> float:

@@ -18,7 +18,9 @@ def read(raw: bytes) -> Fields:
         raise PayloadError(f"the message has {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
     try:
         text = raw.decode("utf-8")
-        value = json.loads(text, object_pairs_hook=_unique, parse_constant=_no_constant)
+        if text.startswith("\ufeff"):
+            raise json.JSONDecodeError("Unexpected UTF-8 BOM (decode using utf-8-sig)", text, 0)
+        value = _from_json(text)
     except UnicodeDecodeError:
         raise PayloadError("the message is not UTF-8") from None
     except RecursionError:
@@ -32,7 +34,7 @@ def read(raw: bytes) -> Fields:
 
 def write(values: dict[str, object]) -> bytes:
     """Compact JSON; PayloadError when it would exceed the limit that `read` allows."""
-    raw = json.dumps(values, separators=(",", ":"), allow_nan=False).encode()
+    raw = _to_json(values).encode()
     if len(raw) > LIMIT_BYTES:
         raise PayloadError(f"the message would have {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
     return raw
@@ -87,7 +89,7 @@ class Fields:
 
     def optional(self, key: str, top: int = UINT32) -> int | None:
         """An integer that may be absent; `null` is not absent."""
-        return self.integer(key, top) if key in self else None
+        return integer(key, self._values[key], top) if key in self._values else None
 
     def flag(self, key: str) -> bool | None:
         """0 or 1 that may be absent."""
@@ -96,14 +98,15 @@ class Fields:
 
     def together(self, first: str, second: str) -> None:
         """Two keys that only make sense as a pair."""
-        for here, there in ((first, second), (second, first)):
-            if here in self and there not in self:
-                raise PayloadError(f"{there} is missing: it goes with {here}")
+        if (first in self._values) != (second in self._values):
+            here, there = (first, second) if first in self._values else (second, first)
+            raise PayloadError(f"{there} is missing: it goes with {here}")
 
     def _get(self, key: str) -> object:
-        if key not in self._values:
-            raise PayloadError(f"{key} is missing")
-        return self._values[key]
+        try:
+            return self._values[key]
+        except KeyError:
+            raise PayloadError(f"{key} is missing") from None
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -123,3 +126,7 @@ def _shown(value: object) -> str:
     """A short pure-ASCII picture of a foreign value, safe in any log."""
     text = ascii(value) if not isinstance(value, float) or math.isfinite(value) else "too large"
     return text if len(text) <= 40 else text[:37] + "..."
+
+
+_from_json = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_constant).decode
+_to_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
