@@ -55,9 +55,8 @@ class Board:
 
     def lose(self, at: float) -> list[Message]:
         """The link is gone, and with it whatever was open; nothing is sent again."""
-        was_up, self.link.up = self.link.up, False
         self._motion = None
-        return [self.no_link(at)] if was_up else []
+        return [self.no_link(at)] if self.link.lose() else []
 
     def no_link(self, at: float) -> Report:
         return self._report(at, state=MotionState.NO_LINK)

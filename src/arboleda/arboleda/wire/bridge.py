@@ -35,7 +35,10 @@ Event = FromPlant | Delivery | Connection
 
 
 class Bridge:
-    """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own."""
+    """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own.
+
+    `subscriptions` are the topics to subscribe to, of every robot that speaks MQTT.
+    """
 
     def __init__(self, model: PlantModel, *, epoch: int, now: float) -> None:
         stale_after_s = model.timing.stale_after_s
@@ -43,19 +46,19 @@ class Bridge:
         self._boards = {
             robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
         }
-        self._named = {board.robot.mqtt: board for board in self._boards.values()}
+        self._routes = {
+            topics.topic(board.robot.mqtt, channel): (board, channel)
+            for board in self._boards.values()
+            for channel in Channel
+        }
+        heard = (Channel.TELEMETRY, Channel.PRESENCE)
+        self.subscriptions = tuple(topic for topic, (_, channel) in self._routes.items() if channel in heard)
         self._epoch = epoch
         self._started_at: float | None = now
         self._plant_epoch = 0
         self._plant_beats = False
         self._beat_at: float | None = None
         self._strays = Counters()
-
-    @property
-    def subscriptions(self) -> tuple[str, ...]:
-        """The topics to subscribe to, of every robot that speaks MQTT."""
-        heard = (Channel.TELEMETRY, Channel.PRESENCE)
-        return tuple(topics.topic(name, channel) for name in self._named for channel in heard)
 
     @property
     def counters(self) -> dict[str, Counters]:
@@ -65,8 +68,8 @@ class Bridge:
     @property
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
-        times = [self._started_at, self._beat_at, *(board.link.stale_at for board in self._boards.values())]
-        return min((time for time in times if time is not None), default=None)
+        times = [self._started_at, self._beat_at, *[board.link.stale_at for board in self._boards.values()]]
+        return min([time for time in times if time is not None], default=None)
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Publications for MQTT and reports for the plant, in the order they must leave."""
@@ -74,7 +77,8 @@ class Bridge:
         for event in events:
             out += self._take(event)
         for board in self._boards.values():
-            if board.link.stale_at is not None and now >= board.link.stale_at:
+            stale_at = board.link.stale_at
+            if stale_at is not None and now >= stale_at:
                 out += board.lose(now)
         return out + self._own_beats(now)
 
@@ -95,12 +99,11 @@ class Bridge:
         return self._command(event.at, event.message)
 
     def _deliver(self, delivery: Delivery) -> list[Message]:
-        try:
-            name, channel = topics.parse(delivery.topic)
-        except PayloadError as error:
-            return self._stray(str(error))
-        board = self._named.get(name)
-        return board.deliver(delivery, channel) if board else self._stray(f"{name} is no robot of this plant")
+        route = self._routes.get(delivery.topic)
+        if route is None:
+            return self._stray(_strange(delivery.topic))
+        board, channel = route
+        return board.deliver(delivery, channel)
 
     def _stray(self, sentence: str) -> list[Message]:
         self._strays = Counters(refused=self._strays.refused + 1, last=sentence)
@@ -153,11 +156,19 @@ class Bridge:
 
     def _own_beats(self, now: float) -> list[Message]:
         """For an orchestrator that knows no heartbeat: the bridge answers for it while it is there itself."""
-        open_motion = any(board.in_motion for board in self._boards.values())
-        if self._plant_beats or not open_motion:
+        if self._plant_beats or not any(board.in_motion for board in self._boards.values()):
             self._beat_at = None
             return []
         if self._beat_at is not None and now < self._beat_at:
             return []
         due, self._beat_at = self._beat_at is not None, now + BEAT_S
         return self._beat_all() if due else []
+
+
+def _strange(topic: str) -> str:
+    """Why a topic is not one of a board of this plant."""
+    try:
+        name, _ = topics.parse(topic)
+    except PayloadError as error:
+        return str(error)
+    return f"{name} is no robot of this plant"

@@ -19,10 +19,14 @@ class Heard(Enum):
 
 
 class BoardLink:
-    """Up = broker reached, presence not "0", telemetry heard within `stale_after_s` (None: any time ago)."""
+    """Up = broker reached, presence not "0", telemetry heard within `stale_after_s` (None: any time ago).
+
+    `stale_at` is when silence will have lasted too long; None while down, and where silence means nothing.
+    """
 
     def __init__(self, stale_after_s: float | None) -> None:
         self.up = False
+        self.stale_at: float | None = None
         self.boot_id: int | None = None
         self._stale_after_s = stale_after_s
         self._connected = False
@@ -30,15 +34,7 @@ class BoardLink:
             0  # how often a board that was absent came back: for one without ids, as good as a boot
         )
         self._absent = False
-        self._heard_at = 0.0
         self._seq: int | None = None
-
-    @property
-    def stale_at(self) -> float | None:
-        """When silence will have lasted too long; None while down, and where silence means nothing."""
-        if not self.up or self._stale_after_s is None:
-            return None
-        return self._heard_at + self._stale_after_s
 
     def connection(self, up: bool) -> None:
         self._connected = up
@@ -49,6 +45,11 @@ class BoardLink:
         self.returns += self._absent and online
         self._absent = not online
 
+    def lose(self) -> bool:
+        """There is no way to the board; whether that is new."""
+        was_up, self.up, self.stale_at = self.up, False, None
+        return was_up
+
     def hear(self, at: float, said: Telemetry) -> Heard:
         """Take over one telemetry message."""
         if not self._connected:
@@ -57,9 +58,10 @@ class BoardLink:
             return Heard.ABSENT
         if self._overtaken(said):
             return Heard.OLD
-        rebooted = None not in (said.boot_id, self.boot_id) and said.boot_id != self.boot_id
+        rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
-        self._heard_at, self._seq = at, said.seq
+        self.stale_at = None if self._stale_after_s is None else at + self._stale_after_s
+        self._seq = said.seq
         self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
         if rebooted:
             return Heard.REBOOT
