@@ -77,7 +77,8 @@ class Board:
 
     @property
     def next_deadline_us(self) -> int | None:
-        return _earliest(self.body.next_change_us, self._silence_us, self._uplink.due_us)
+        times = (self._next_motion_us(), self._uplink.due_us)
+        return min([time for time in times if time is not None], default=None)
 
     def take(self) -> list[Publication]:
         """What the board published since the last call, in order."""
@@ -206,7 +207,8 @@ class Board:
         return self._alive_us + SILENCE_US if watched else None
 
     def _next_motion_us(self) -> int | None:
-        return _earliest(self.body.next_change_us, self._silence_us)
+        change_us, silence_us = self.body.next_change_us, self._silence_us
+        return change_us if change_us is None or silence_us is None else min(change_us, silence_us)
 
     def _move_on(self) -> None:
         """An arrival or the end of patience, at the time the board has reached."""
@@ -237,24 +239,21 @@ class Board:
         self._uplink.tell(self._telemetry())
 
     def _telemetry(self) -> Telemetry:
-        told = replace(self.body.tell(), state=self.state)
+        told, receipts = self.body.tell(), self._receipts
         if not self._numbered:
-            return replace(told, effector=None, piece=None)
+            return replace(told, state=self.state, effector=None, piece=None)
         return replace(
             told,
+            state=self.state,
             seq=self._uplink.told + 1,
-            ack_epoch=self._receipts.epoch,
-            ack=self._receipts.accepted,
-            done=self._receipts.finished,
-            refusal=self._receipts.refusal,
-            refused_seq=self._receipts.refused,
+            ack_epoch=receipts.epoch,
+            ack=receipts.accepted,
+            done=receipts.finished,
+            refusal=receipts.refusal,
+            refused_seq=receipts.refused,
             boot_id=self.boot_id,
             homed=self.homed,
         )
-
-
-def _earliest(*times: int | None) -> int | None:
-    return min((time for time in times if time is not None), default=None)
 
 
 def _numbers_in(raw: bytes) -> tuple[int | None, int | None]:

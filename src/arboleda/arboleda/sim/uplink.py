@@ -15,7 +15,7 @@ class Uplink:
     def __init__(self, name: str) -> None:
         self.connected = False
         self.told = 0
-        self._name = name
+        self._topics = {channel: topic(name, channel) for channel in (Channel.PRESENCE, Channel.TELEMETRY)}
         self._due_us = 0
         self._outbox: list[Publication] = []
 
@@ -49,5 +49,5 @@ class Uplink:
 
     def _publish(self, channel: Channel, payload: Payload, *, qos: int = 0, retain: bool = False) -> None:
         if self.connected:
-            address = topic(self._name, channel)
+            address = self._topics[channel]
             self._outbox.append(Publication(topic=address, payload=encode(payload), qos=qos, retain=retain))
