@@ -10,14 +10,20 @@ MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece"
 
 
 class Belief:
-    """The last word of a robot on everything it reports; None means it never said."""
+    """The last word of a robot on everything it reports; None means it never said.
+
+    `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
+    `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
+    """
 
     def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
         self.robot = robot
         self.stale_after_s = stale_after_s
         self.plant_epoch = plant_epoch
+        self.supervised = robot.evidence is not Evidence.STATE
         self.heard_at: float | None = None
         self.stale = False
+        self.stale_at: float | None = None
         self.epoch: int | None = None
         self.plant: int | None = None
         self.boot_id: int | None = None
@@ -50,6 +56,12 @@ class Belief:
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False
+            self.stale_at = report.at + self.stale_after_s if self.supervised else None
+
+    def fall_silent(self) -> None:
+        """Silence has lasted too long."""
+        self.stale = True
+        self.stale_at = None
 
     def _count(self, report: Report) -> None:
         """Number the reports, so that "since" never hangs on two clocks agreeing."""
@@ -75,18 +87,6 @@ class Belief:
         if self.state not in STILL or self.state_no <= count:
             return False
         return not self.supervised or count < self._rested_from < self.position_no
-
-    @property
-    def supervised(self) -> bool:
-        """Whether silence means anything: a robot at `state` speaks only when it moves."""
-        return self.robot.evidence is not Evidence.STATE
-
-    @property
-    def stale_at(self) -> float | None:
-        """When silence will have lasted too long; None where that cannot happen (again)."""
-        if not self.supervised or self.stale or self.heard_at is None:
-            return None
-        return self.heard_at + self.stale_after_s
 
     @property
     def online(self) -> bool:
@@ -119,20 +119,29 @@ class Belief:
 
     def obstacle(self) -> Failure | None:
         """Why no command may go to this robot; None where it is ready."""
-        if not self.online:
-            said = "is offline" if self.heard_at is not None else "was not heard yet"
-            return self._failure(Reason.LINK_LOST, said)
-        if not self.answered:
-            return self._failure(Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
-        if self.unhomed:
-            return self._failure(Reason.NOT_HOMED, "is not homed")
-        return self._failure(*OBSTACLES[self.state]) if self.state in OBSTACLES else None
-
-    def _failure(self, reason: Reason, said: str) -> Failure:
+        if self.trouble is None:
+            return None
+        reason, said = self.trouble
         return Failure(reason=reason, sentence=f"{self.robot.name} {said}")
 
+    @property
+    def trouble(self) -> Trouble | None:
+        """What an obstacle is made of, without the robot's name."""
+        if not self.online:
+            return OFFLINE if self.heard_at is not None else UNHEARD
+        if not self.answered:
+            return UNANSWERED
+        if self.unhomed:
+            return UNHOMED
+        return TROUBLES.get(self.state)
 
-OBSTACLES: dict[MotionState | None, tuple[Reason, str]] = {
+
+Trouble = tuple[Reason, str]
+OFFLINE = (Reason.LINK_LOST, "is offline")
+UNHEARD = (Reason.LINK_LOST, "was not heard yet")
+UNANSWERED = (Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
+UNHOMED = (Reason.NOT_HOMED, "is not homed")
+TROUBLES: dict[MotionState | None, Trouble] = {
     MotionState.MOVING: (Reason.REJECTED, "is still moving"),
     MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
     MotionState.STOP_LATCHED: (Reason.STOPPED, "is stopped (latched)"),

@@ -181,6 +181,8 @@ class CellRun:
 
     def _transit(self) -> bool:
         """Leave a state that only waits for something to come true."""
+        if self.state is CellState.EXECUTE:
+            return False
         holding = self.state is CellState.HOLDING
         if holding and not any(entry.is_motion for entry in self.context.open_commands()):
             self.become(Cause.HALTED)

@@ -73,9 +73,11 @@ class Context:
 
     def woken(self) -> bool:
         """Whether a time that the tree waits for has come; each is told once."""
-        due = [at for at in self.wakes if at <= self.now]
-        self.wakes = [at for at in self.wakes if at > self.now]
-        return bool(due)
+        if not self.wakes:
+            return False
+        now, waiting = self.now, len(self.wakes)
+        self.wakes = [at for at in self.wakes if at > now]
+        return len(self.wakes) < waiting
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""

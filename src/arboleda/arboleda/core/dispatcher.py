@@ -59,7 +59,7 @@ class Dispatcher:
     @property
     def next_deadline(self) -> float | None:
         stale = [belief.stale_at for belief in self.beliefs.values()]
-        return min((at for at in (self.ledger.next_deadline, *stale) if at is not None), default=None)
+        return min([at for at in (self.ledger.next_deadline, *stale) if at is not None], default=None)
 
     def send(self, make: Make, cell: str, doing: str, now: float) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one."""
@@ -195,7 +195,7 @@ class Dispatcher:
 
     def _told(self, belief: Belief) -> tuple[object, ...]:
         """What of a belief trees and screens react to: everything but positions."""
-        return (belief.obstacle(), belief.piece, belief.effector)
+        return (belief.trouble, belief.piece, belief.effector)
 
     def _obstacle_to(self, command: Command) -> Failure | None:
         robot = command.robot
@@ -219,8 +219,10 @@ class Dispatcher:
 
     def _settle_grip(self, belief: Belief) -> None:
         """An effector that nobody is switching is what its board reports."""
-        switching = any(isinstance(e.command, SetEffector) for e in self.ledger.of_robot(belief.robot.name))
-        if belief.effector is not None and not switching:
+        if belief.effector is None:
+            return
+        open_commands = self.ledger.of_robot(belief.robot.name)
+        if not any(isinstance(entry.command, SetEffector) for entry in open_commands):
             self._grip(belief.robot.name, Grip.ON if belief.effector else Grip.OFF)
 
     def _allowed_s(self, command: Command) -> float:
@@ -266,7 +268,7 @@ class Dispatcher:
             self.beliefs[command.robot].displaced = False
 
     def _went_stale(self, belief: Belief, now: float) -> None:
-        belief.stale = True
+        belief.fall_silent()
         self.version += 1
         self.ledger.changed.add(self.model.cell_of[belief.robot.name].name)
         for entry in self.ledger.of_robot(belief.robot.name):

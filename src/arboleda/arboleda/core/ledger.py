@@ -144,4 +144,4 @@ class Ledger:
 
     @property
     def next_deadline(self) -> float | None:
-        return min((entry.next_deadline for entry in self.entries.values()), default=None)
+        return min([entry.next_deadline for entry in self.entries.values()], default=None)

@@ -56,7 +56,7 @@ class Plant:
         self._homed_once: set[str] = set()
         self._changes = 0
         self._next_beat = now
-        self._earliest = now
+        self.next_deadline = now  # when `step` is due again without any event, s
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
@@ -68,16 +68,9 @@ class Plant:
         self._watch_zones()
         self._advance()
         self._beat()
-        self._earliest = self.next_deadline
+        self.next_deadline = self._earliest()
         out, self.dispatcher.outbox = self.dispatcher.outbox, []
         return out
-
-    @property
-    def next_deadline(self) -> float:
-        """When `step` is due again without any event, s."""
-        cells = [cell.context.next_deadline for cell in self.cells.values()]
-        due = [self._next_beat, self.dispatcher.next_deadline, *cells]
-        return min(at for at in due if at is not None)
 
     @property
     def version(self) -> int:
@@ -120,8 +113,13 @@ class Plant:
         self.dispatcher.outbox.append(change)
 
     def _expire(self, limit: float) -> None:
-        if limit >= self._earliest:
+        if limit >= self.next_deadline:
             self.dispatcher.expire(limit, self.now)
+
+    def _earliest(self) -> float:
+        cells = [cell.context.next_deadline for cell in self.cells.values()]
+        due = [self._next_beat, self.dispatcher.next_deadline, *cells]
+        return min([at for at in due if at is not None])
 
     def _advance(self) -> None:
         """Let every cell do what it can, again while one of them gave another something to do."""
