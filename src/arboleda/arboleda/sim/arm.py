@@ -57,12 +57,12 @@ class ArmBody:
     @property
     def position(self) -> tuple[int, ...]:
         """Motor steps per joint."""
-        return tuple(axis.position for axis in self._axes)
+        return tuple([axis.position for axis in self._axes])
 
     @property
     def true_position(self) -> tuple[int, ...]:
         """Where the axes are, in motor steps per joint."""
-        return tuple(counted + drift for counted, drift in zip(self.position, self._drift, strict=True))
+        return tuple([axis.position + drift for axis, drift in zip(self._axes, self._drift, strict=True)])
 
     @property
     def targets(self) -> tuple[int, ...]:
@@ -117,7 +117,7 @@ class ArmBody:
         self._drift = (0,) * len(self._joints)
 
     def tell(self) -> Telemetry:
-        q = tuple(steps * step for steps, step in zip(self.position, self._step_deg, strict=True))
+        q = tuple([axis.position * step for axis, step in zip(self._axes, self._step_deg, strict=True)])
         piece = self.holding or self._piece_lies_here()
         return Telemetry(state=MotionState.STOPPED, q=q, node=None, effector=self.effector, piece=piece)
 

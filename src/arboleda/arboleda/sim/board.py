@@ -242,9 +242,12 @@ class Board:
         told, receipts = self.body.tell(), self._receipts
         if not self._numbered:
             return replace(told, state=self.state, effector=None, piece=None)
-        return replace(
-            told,
+        return Telemetry(
             state=self.state,
+            q=told.q,
+            node=told.node,
+            effector=told.effector,
+            piece=told.piece,
             seq=self._uplink.told + 1,
             ack_epoch=receipts.epoch,
             ack=receipts.accepted,

@@ -15,7 +15,8 @@ class Uplink:
     def __init__(self, name: str) -> None:
         self.connected = False
         self.told = 0
-        self._topics = {channel: topic(name, channel) for channel in (Channel.PRESENCE, Channel.TELEMETRY)}
+        self._presence = topic(name, Channel.PRESENCE)
+        self._telemetry = topic(name, Channel.TELEMETRY)
         self._due_us = 0
         self._outbox: list[Publication] = []
 
@@ -32,12 +33,12 @@ class Uplink:
     def announce(self, now_us: int) -> None:
         """Presence; the telemetry that follows it starts the rhythm."""
         self._due_us = now_us + PERIOD_US
-        self._publish(Channel.PRESENCE, Presence(online=True), qos=1, retain=True)
+        self._publish(self._presence, Presence(online=True), qos=1, retain=True)
 
     def tell(self, telemetry: Telemetry) -> None:
         if self.connected:
             self.told += 1
-            self._publish(Channel.TELEMETRY, telemetry)
+            self._publish(self._telemetry, telemetry)
 
     def period_over(self, now_us: int) -> bool:
         """Whether periodic telemetry is due; missed periods are not made up for, as on a blocked board."""
@@ -47,7 +48,6 @@ class Uplink:
         self._due_us += PERIOD_US * (late_us // PERIOD_US + 1)
         return True
 
-    def _publish(self, channel: Channel, payload: Payload, *, qos: int = 0, retain: bool = False) -> None:
+    def _publish(self, topic: str, payload: Payload, *, qos: int = 0, retain: bool = False) -> None:
         if self.connected:
-            address = self._topics[channel]
-            self._outbox.append(Publication(topic=address, payload=encode(payload), qos=qos, retain=retain))
+            self._outbox.append(Publication(topic=topic, payload=encode(payload), qos=qos, retain=retain))

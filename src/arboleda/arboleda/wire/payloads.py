@@ -45,6 +45,7 @@ REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro
 
 MAX_ANGLE_DEG = 1e6  # far beyond any robot, and exact enough for a board's binary32
 _DECIMALS = 4
+_LAST_STATE = MotionState.STOP_LATCHED.value
 
 
 def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
@@ -115,9 +116,9 @@ def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
     fields.together("rechazo", "rechazo_seq")
     keys = () if axes is None else _joint_keys(axes, "_mov")
     return Telemetry(
-        q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if keys else None,
+        q=tuple([fields.number(key, MAX_ANGLE_DEG) for key in keys]) if keys else None,
         node=fields.integer("nodo") if axes is None else None,
-        state=MotionState(fields.integer("estado", MotionState.STOP_LATCHED.value)),
+        state=MotionState(fields.integer("estado", _LAST_STATE)),
         seq=fields.optional("seq"),
         ack_epoch=fields.optional("epoca_ack"),
         ack=fields.optional("ack"),
@@ -163,7 +164,7 @@ def _telemetry_body(said: Telemetry) -> dict[str, object]:
     return {
         **_angles(said.q or (), "_mov"),
         "nodo": said.node,
-        "estado": strict.integer("estado", said.state.value, MotionState.STOP_LATCHED.value),
+        "estado": strict.integer("estado", said.state.value, _LAST_STATE),
         "seq": said.seq,
         "epoca_ack": said.ack_epoch,
         "ack": said.ack,

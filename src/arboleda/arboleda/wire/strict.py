@@ -93,8 +93,7 @@ class Fields:
 
     def flag(self, key: str) -> bool | None:
         """0 or 1 that may be absent."""
-        value = self.optional(key, 1)
-        return None if value is None else value == 1
+        return integer(key, self._values[key], 1) == 1 if key in self._values else None
 
     def together(self, first: str, second: str) -> None:
         """Two keys that only make sense as a pair."""
