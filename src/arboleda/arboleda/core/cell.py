@@ -80,8 +80,10 @@ class CellRun:
 
     def advance(self, *, woken: bool) -> bool:
         """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
-        did = self._transit()
         self.dirty = self.context.woken() or woken or self.dirty
+        if self.state is CellState.EXECUTE and not self.dirty:
+            return False
+        did = self._transit()
         if self.dirty and self.run.tree is not None and self.state is CellState.EXECUTE:
             self._look(self.run.tick())
             did = True
@@ -181,8 +183,6 @@ class CellRun:
 
     def _transit(self) -> bool:
         """Leave a state that only waits for something to come true."""
-        if self.state is CellState.EXECUTE:
-            return False
         holding = self.state is CellState.HOLDING
         if holding and not any(entry.is_motion for entry in self.context.open_commands()):
             self.become(Cause.HALTED)

@@ -73,11 +73,10 @@ class Context:
 
     def woken(self) -> bool:
         """Whether a time that the tree waits for has come; each is told once."""
-        if not self.wakes:
+        if not self.wakes or min(self.wakes) > self.now:
             return False
-        now, waiting = self.now, len(self.wakes)
-        self.wakes = [at for at in self.wakes if at > now]
-        return len(self.wakes) < waiting
+        self.wakes = [at for at in self.wakes if at > self.now]
+        return True
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""

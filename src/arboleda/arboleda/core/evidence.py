@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from .belief import Belief
 from .ledger import Entry, Feed, State
@@ -30,8 +31,7 @@ class Verdict:
     failure: Failure | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Before:
+class Before(NamedTuple):
     """What was believed just before the report under judgement."""
 
     epoch: int | None

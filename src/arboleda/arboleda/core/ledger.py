@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from enum import Enum
 
 from .errors import IllegalTransition
@@ -103,15 +103,16 @@ class Ledger:
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
+        self._of_robot: defaultdict[str, dict[str, Entry]] = defaultdict(dict)
         self.changed: set[str] = set()
         self.ignored: Counter[str] = Counter()
 
     def open(self, entry: Entry) -> None:
-        self.entries[entry.command.id] = entry
+        self.entries[entry.command.id] = self._of_robot[entry.command.robot][entry.command.id] = entry
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
-        return [entry for entry in self.entries.values() if entry.command.robot == robot]
+        return list(self._of_robot.get(robot, {}).values())
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""
@@ -127,7 +128,7 @@ class Ledger:
         if entry.state is State.FAILED:
             entry.failure = failure
         if not entry.open:
-            del self.entries[id]
+            del self.entries[id], self._of_robot[entry.command.robot][id]
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
         after = TABLE.get((entry.state, feed))
