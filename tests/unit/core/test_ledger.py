@@ -27,6 +27,7 @@ def test_every_order_of_four_feeds_follows_the_table_at_every_cut() -> None:
             ledger.feed("1-1", feed, 1.0, LOST)
             assert entry.state is (TABLE[(before, feed)] if before in OPEN else before), feeds
             assert ("1-1" in ledger.entries) is entry.open, feeds
+            assert ledger.of_robot("ra1") == ledger.of_cell("sis_a") == [entry] * entry.open, feeds
 
 
 def test_the_table_lists_every_open_state_and_feed() -> None:

@@ -41,6 +41,7 @@ class Board:
         self._plant: int | None = None
         self._last: Report | None = None
         self._axes = len(robot.joints) if isinstance(robot, Arm) else None
+        self._nodes = robot.grid.size if isinstance(robot, Mobile) else 0
         self._motion: Motion | None = None
         self._latched = False
 
@@ -105,9 +106,8 @@ class Board:
             raise PayloadError("a command is not for the bridge")
         if delivery.retain and isinstance(said, Telemetry):
             raise PayloadError("telemetry is retained: nobody knows how old it is")
-        size = self.robot.grid.size if isinstance(self.robot, Mobile) else 0
-        if isinstance(said, Telemetry) and said.node is not None and said.node >= size:
-            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {size - 1}")
+        if isinstance(said, Telemetry) and said.node is not None and said.node >= self._nodes:
+            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {self._nodes - 1}")
 
     def _presence(self, at: float, online: bool) -> list[Message]:
         self.link.presence(online)
