@@ -119,9 +119,10 @@ class Belief:
 
     def obstacle(self) -> Failure | None:
         """Why no command may go to this robot; None where it is ready."""
-        if self.trouble is None:
+        trouble = self.trouble
+        if trouble is None:
             return None
-        reason, said = self.trouble
+        reason, said = trouble
         return Failure(reason=reason, sentence=f"{self.robot.name} {said}")
 
     @property

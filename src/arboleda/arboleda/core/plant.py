@@ -41,6 +41,7 @@ class Plant:
     """All cells of a plant; `epoch` names this start and must be higher than any before.
 
     `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied.
+    `next_deadline` is when `step` is due again without any event, s.
     """
 
     def __init__(self, model: PlantModel, *, epoch: int, now: float, memory: Memory | None = None) -> None:
@@ -56,7 +57,7 @@ class Plant:
         self._homed_once: set[str] = set()
         self._changes = 0
         self._next_beat = now
-        self.next_deadline = now  # when `step` is due again without any event, s
+        self.next_deadline = now
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
