@@ -58,3 +58,11 @@ def test_a_refusal_left_from_before_is_nobodys(bench, reports) -> None:
     bench.tell(ack_epoch=EPOCH - 1, ack=3, refusal="viejo", refused_seq=1)
     bench.order(grip(1))
     assert [report.rejected for report in reports(bench.tell())] == [None]
+
+
+def test_viejo_for_a_number_that_the_board_has_not_reached_is_a_strangers(linked, reports) -> None:
+    linked.order(grip(1))
+    linked.tell(ack_epoch=EPOCH, ack=1)
+    linked.order(grip(2))
+    (report,) = reports(linked.tell(ack_epoch=EPOCH, ack=1, refusal="viejo", refused_seq=2))
+    assert report.rejected is None

@@ -132,9 +132,8 @@ class Belief:
             return OFFLINE if self.heard_at is not None else UNHEARD
         if not self.answered:
             return UNANSWERED
-        if self.unhomed:
-            return UNHOMED
-        return TROUBLES.get(self.state)
+        trouble = TROUBLES.get(self.state)
+        return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
 
 
 Trouble = tuple[Reason, str]
@@ -142,8 +141,9 @@ OFFLINE = (Reason.LINK_LOST, "is offline")
 UNHEARD = (Reason.LINK_LOST, "was not heard yet")
 UNANSWERED = (Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
 UNHOMED = (Reason.NOT_HOMED, "is not homed")
+MOVING = (Reason.REJECTED, "is still moving")
 TROUBLES: dict[MotionState | None, Trouble] = {
-    MotionState.MOVING: (Reason.REJECTED, "is still moving"),
+    MotionState.MOVING: MOVING,
     MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
     MotionState.STOP_LATCHED: (Reason.STOPPED, "is stopped (latched)"),
 }

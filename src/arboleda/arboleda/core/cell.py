@@ -15,14 +15,20 @@ from .errors import QueueFull
 from .ledger import State
 from .messages import Failure, Reason, TaskState
 from .model import Cell
-from .task import Task
+from .task import Order, Task
 from .tree_run import TreeRun
 
 
 class CellRun:
     """The moving part of a cell; `changed(task)` is told of every change of one of its tasks."""
 
-    def __init__(self, cell: Cell, context: Context, changed: Callable[[Task], None]) -> None:
+    def __init__(
+        self,
+        cell: Cell,
+        context: Context,
+        changed: Callable[[Task], None],
+        build: Callable[[Order, Context], Behaviour] = recipes.build,
+    ) -> None:
         self.cell = cell
         self.context = context
         self.state = CellState.IDLE
@@ -31,9 +37,11 @@ class CellRun:
         self.task: Task | None = None
         self.run = TreeRun(context)
         self.trouble: Failure | None = None  # why it is held
+        self.uprooted = False  # it was homed while a task was held: no step of it can go on from there
         self.dirty = False
         self.closed = False
         self._changed = changed
+        self._build = build
         self._cancelling = False
         self._stopped_after: dict[str, int] = {}
         self._stop_by = 0.0
@@ -71,7 +79,9 @@ class CellRun:
             return None
         name, arm = self.cell.name, self.cell.arm.name
         why = self.trouble.sentence if self.trouble else "by the operator"
-        if self.task is not None:
+        if self.uprooted:
+            ways = f"{arm} was homed meanwhile: abandon {name}"
+        elif self.task is not None:
             ways = f"retry {name} or abandon {name}" if self.trouble else f"resume {name} or abandon {name}"
         else:
             release = f"release {arm} opens the effector; " if self.context.holding() else ""
@@ -137,8 +147,7 @@ class CellRun:
     def abandon(self) -> None:
         """Give the task up and recover; without a task, leave the cell as it is."""
         if self.task is None:
-            self.become(Cause.ENDED)
-            self.trouble = None
+            self._leave_as_it_is()
             return
         self.become(Cause.ABANDON)
         given_up = Failure(reason=Reason.CANCELLED, sentence="abandoned by the operator")
@@ -157,9 +166,10 @@ class CellRun:
         self._cancelling = True
         if self.task is not None:
             self.task.fail(Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator"))
-        if self.state is CellState.HELD:
+        held = self.state is CellState.HELD
+        if held:
             self.become(Cause.ABANDON)
-        if not self.run.recovering:
+        if held or not self.run.recovering:
             self._recover()
 
     def close(self) -> None:
@@ -193,18 +203,23 @@ class CellRun:
         if self.state is CellState.CLEARING and not self.context.reports_a_latch():
             self.become(Cause.CLEARED)
             return True
-        if self.state is CellState.IDLE and self.context.holding() and not self.context.open_commands():
-            arm = self.cell.arm.name
-            sentence = f"{arm} may hold a part, its effector is {self.context.grip.value}"
-            self._stuck(Failure(reason=Reason.INTERRUPTED, sentence=sentence))
+        unsettled = self._grip_unsettled() if self.state is CellState.IDLE else None
+        if unsettled is not None and not self.context.open_commands():
+            self._stuck(unsettled)
             return True
         if self.state is CellState.HELD and self.task is None and self._grip_settled():
-            self.become(Cause.ENDED)
-            self.trouble = None
+            self._leave_as_it_is()
             return True
         if self.state is CellState.HELD and self.task is not None and self.trouble is None:
             self.trouble = self._fault()
         return False
+
+    def _leave_as_it_is(self) -> None:
+        """From held to idle without a move; a recovery that was held is given up."""
+        self.run.drop()
+        self.context.go_on()
+        self.become(Cause.ENDED)
+        self.trouble = None
 
     def _aborted(self) -> bool:
         """Leave `aborting` once every online robot is seen still, or the time for it is over."""
@@ -223,8 +238,14 @@ class CellRun:
 
     def _unready(self) -> str | None:
         found = [self.context.obstacle(robot.name) for robot in self.cell.robots]
-        found.append(self.context.astray())
+        found += [self.context.astray(), self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)
+
+    def _grip_unsettled(self) -> Failure | None:
+        if not self.context.holding():
+            return None
+        sentence = f"{self.cell.arm.name} may hold a part, its effector is {self.context.grip.value}"
+        return Failure(reason=Reason.INTERRUPTED, sentence=sentence)
 
     def _fault(self) -> Failure | None:
         """What went wrong while the cell was held: an interrupted step that failed, a robot that cannot."""
@@ -247,10 +268,15 @@ class CellRun:
         task.become(TaskState.RUNNING, self.context.plant_now)
         self._changed(task)
         self.context.start_afresh()
-        self._look(self.run.begin(lambda: recipes.build(task.order, self.context)))
+        self._look(self.run.begin(lambda: self._build(task.order, self.context)))
+
+    def uproot(self) -> None:
+        """The arm is homed: a task that is held can only be abandoned."""
+        self.uprooted = self.task is not None
 
     def _recover(self) -> None:
         """Drop what runs, halting it, and run the recovery alone."""
+        self.uprooted = False
         self.run.drop()
         self.context.go_on()
         self.trouble = None
@@ -285,7 +311,7 @@ class CellRun:
         self.become(Cause.STUCK)
 
     def _finish(self, task: Task, state: TaskState) -> None:
-        self.task = None
+        self.task, self.uprooted = None, False
         task.become(state, self.context.plant_now)
         self._changed(task)
 

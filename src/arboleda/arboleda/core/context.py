@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from . import zone_plan
 from .dispatcher import Dispatcher, Make
 from .grips import Grip
 from .ledger import Entry
@@ -72,8 +73,8 @@ class Context:
             self._paused_at = None
 
     def woken(self) -> bool:
-        """Whether a time that the tree waits for has come; each is told once."""
-        if not self.wakes or min(self.wakes) > self.now:
+        """Whether a time that the tree waits for has come; each is told once, and none while held."""
+        if self._paused_at is not None or not self.wakes or min(self.wakes) > self.now:
             return False
         self.wakes = [at for at in self.wakes if at > self.now]
         return True
@@ -123,12 +124,13 @@ class Context:
         """Whether a part may hang in the arm's effector."""
         return self._dispatcher.grips.holding(self.cell.arm.name)
 
+    def recovery_zones(self) -> frozenset[str]:
+        """What the way of a recovery needs, from where the arm stands now."""
+        return zone_plan.recovery_zones(self.cell, self._dispatcher.place(self.cell))
+
     def standing(self) -> Pose:
         """The zone-free pose at which the arm's next way begins: where it is seen, else home."""
-        place, belief = self.cell.palletizing.place, self._dispatcher.beliefs[self.cell.arm.name]
-        q = belief.known_q
-        seen = q is not None and self.cell.arm.reached(q, self.cell.arm.quantised(place.q))
-        return place if seen and not place.zones else self.cell.home
+        return self._dispatcher.place(self.cell) or self.cell.home
 
     def reports(self) -> dict[str, int]:
         """How many reports each robot of the cell has given, for `still_since`."""
@@ -156,22 +158,21 @@ class Context:
     def piece(self, since: float) -> bool | None:
         """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""
         belief, arm = self._dispatcher.beliefs[self.cell.arm.name], self.cell.arm
-        fresh = arm.piece_on_change or belief.piece_at >= since + self._paused_s
+        fresh = arm.piece_on_change or belief.piece_at - self._paused_s >= since
         self.awaits_piece = True
         if belief.piece is None or not belief.online or not fresh:
             return None
-        settled_at = belief.piece_since + self.timing.piece_debounce_s
-        if self._clock() < settled_at:
-            self.wake_at(settled_at - self._paused_s)
+        settled_at = belief.piece_since + self.timing.piece_debounce_s - self._paused_s
+        if self.now < settled_at:
+            self.wake_at(settled_at)
             return None
         return belief.piece
 
     def astray(self) -> Failure | None:
         """Why no way may begin where the arm stands: in a cell with zones it must be seen outside them."""
         cell, arm = self.cell, self.cell.arm.name
-        shared = cell.crossings or any(pose.zones for pose in cell.poses)
         unknown = not self._dispatcher.beliefs[arm].supervised and arm not in self._dispatcher.reached
-        if not shared or unknown or self._dispatcher.seen_outside(cell):
+        if not self.cell.zones or unknown or self._dispatcher.place(cell) is not None:
             return None
         by_hand = "" if cell.arm.evidence is Evidence.IDS else " --by-hand, once it stands at its reference,"
         sentence = f"{arm} is not seen at a pose outside the shared zones; home {arm}{by_hand} mends that"
@@ -186,18 +187,27 @@ class Context:
         held = self._zones.held_by(arm)
         if not (inside or zones <= held if held else self._zones.request(arm, zones)):
             return False
-        for zone in self._zones.held_by(arm):
-            self._dispatcher.remember(Fact.QUARANTINE, zone, arm)
+        self._keep_zones()
         return True
+
+    def claim_zones(self) -> None:
+        """Take every zone the arm may get into, for a way that begins where nobody knows; it must be free."""
+        self._zones.claim(self.cell.arm.name, self.cell.zones)
+        self._keep_zones()
+
+    def _keep_zones(self) -> None:
+        arm = self.cell.arm.name
+        for zone in sorted(self._zones.held_by(arm)):
+            self._dispatcher.remember(Fact.QUARANTINE, zone, arm)
 
     def leave_zones(self) -> bool:
         """Stop waiting for zones, and give them back if the arm is seen outside; whether it holds none."""
         arm = self.cell.arm.name
         granted = self._zones.withdraw(arm)
         held = self._zones.held_by(arm)
-        if held and self._dispatcher.seen_outside(self.cell):
+        if held and self._dispatcher.place(self.cell) is not None:
             granted += self._zones.restore(arm) + self._zones.release(arm)
-            for zone in held:
+            for zone in sorted(held):
                 self._dispatcher.remember(Fact.QUARANTINE, zone, None)
         self._dispatcher.wake(granted)
         return not self._zones.held_by(arm)

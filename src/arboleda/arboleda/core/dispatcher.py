@@ -26,7 +26,8 @@ from .messages import (
     Stop,
     StopMode,
 )
-from .model import Arm, Cell, Evidence, Mobile, MotionState, PlantModel
+from .model import Arm, Cell, Evidence, Mobile, MotionState, PlantModel, Pose
+from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Memory = Mapping[Fact, Mapping[str, str]]
@@ -54,6 +55,8 @@ class Dispatcher:
         self._kept: dict[tuple[Fact, str], str | None] = {
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
         }
+        self.under_way = UnderWay(model)
+        self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self._count = 0
 
     @property
@@ -76,11 +79,13 @@ class Dispatcher:
             self._grip(command.robot, Grip.SWITCHING)
         elif not isinstance(command, Stop):
             self.reached.pop(command.robot, None)
-        self.outbox.append(command)
+        self._leave(command)
         return entry
 
     def cancel(self, entry: Entry, now: float) -> None:
-        """Ask an open command to end; a motion is halted."""
+        """Ask an open command to end, once; a motion is halted."""
+        if entry.state is State.CANCELLING:
+            return
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
         entry.cancelled_after = self.beliefs[entry.command.robot].reports
         entry.deadline = now + self.model.timing.stop_timeout_s
@@ -88,10 +93,9 @@ class Dispatcher:
             self._stop(entry.command.robot, StopMode.HALT)
 
     def cancel_all(self, cell: str, now: float) -> None:
-        """Ask every command of a cell that is not yet ending to end."""
+        """Ask every command of a cell to end."""
         for entry in self.ledger.of_cell(cell):
-            if entry.state is not State.CANCELLING:
-                self.cancel(entry, now)
+            self.cancel(entry, now)
 
     def obstacle(self, robot: str) -> Failure | None:
         """Why a robot takes no command now."""
@@ -99,15 +103,22 @@ class Dispatcher:
             return Failure(reason=Reason.STOPPED, sentence=f"{robot} is stopped (latched)")
         return self.beliefs[robot].obstacle()
 
+    def obstacle_to_opening(self, arm: str) -> Failure | None:
+        """Why an arm's effector cannot be opened now."""
+        return self._obstacle_to(SetEffector(id="", robot=arm, on=False))
+
     def latch(self, robot: str) -> None:
         """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
         self.latched.add(robot)
+        self.unheard_clears.discard(robot)
         self.remember(Fact.LATCH, robot, LATCHED)
         self._stop(robot, StopMode.LATCH)
 
     def unlatch(self, robot: str) -> None:
         """Clear a robot's stop; it moves nothing, and the cell still needs its reset."""
         self.latched.discard(robot)
+        if not self.beliefs[robot].online:
+            self.unheard_clears.add(robot)
         self.remember(Fact.LATCH, robot, CLEARED)
         self._stop(robot, StopMode.CLEAR)
 
@@ -139,16 +150,24 @@ class Dispatcher:
         """Have the trees of these robots' cells look again."""
         self.ledger.changed |= {self.model.cell_of[robot].name for robot in robots}
 
-    def seen_outside(self, cell: Cell) -> bool:
-        """Whether the cell's arm stands, as far as its evidence goes, at one of its zone-free poses."""
-        arm, belief = cell.arm, self.beliefs[cell.arm.name]
-        poses = [pose for pose in cell.poses if not pose.zones]
-        free = [q for pose in poses for q in (pose.q, pose.above) if q is not None]
-        if not belief.online or belief.unhomed or belief.state is MotionState.MOVING:
-            return False
-        if not belief.supervised:
-            return self.reached.get(arm.name) in free
-        return belief.q is not None and any(arm.reached(belief.q, arm.quantised(q)) for q in free)
+    def place(self, cell: Cell) -> Pose | None:
+        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes.
+
+        Its reference counts as home: homing leads there, and both lie outside all zones.
+        """
+        belief = self.beliefs[cell.arm.name]
+        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way
+        if not belief.online or belief.unhomed or restless:
+            return None
+        here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
+        if here is None:
+            return None
+        free = [pose for pose in cell.poses if not pose.zones]
+        spots = [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
+        if all(pose.q != cell.arm.reference for pose in cell.poses):
+            spots.append((cell.arm.reference, cell.home))
+        found = (pose for q, pose in spots if cell.arm.reached(here, cell.arm.quantised(q)))
+        return next(found, None)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves; reports of unknown robots are ignored."""
@@ -158,12 +177,17 @@ class Dispatcher:
         before, told = Before.of(belief), self._told(belief)
         returned = _returned(belief, report)
         belief.merge(report)
-        if evidence.displaced(before, belief, report):
+        goal = self.reached.get(report.robot)
+        astray = goal is not None and evidence.strayed(before, belief, report, goal)
+        if astray or evidence.displaced(before, belief, report):
             belief.displaced = True
         for entry in self.ledger.of_robot(report.robot):
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
+        self.under_way.hear(report)
+        if belief.online:
+            self._say_again(belief)
         self._settle_grip(belief)
         if returned and report.robot in self.latched:
             self._stop(report.robot, StopMode.LATCH)
@@ -191,7 +215,21 @@ class Dispatcher:
         return f"{self.epoch}-{self._count}"
 
     def _stop(self, robot: str, mode: StopMode) -> None:
-        self.outbox.append(Stop(id=self._new_id(), robot=robot, mode=mode))
+        self._leave(Stop(id=self._new_id(), robot=robot, mode=mode))
+
+    def _leave(self, command: Command) -> None:
+        self.outbox.append(command)
+        self.under_way.left(command)
+
+    def _say_again(self, belief: Belief) -> None:
+        """A robot that is heard may have missed a clear, or the last command of all."""
+        name = belief.robot.name
+        if name in self.unheard_clears:
+            self.unheard_clears.discard(name)
+            if belief.state is MotionState.STOP_LATCHED:
+                self._stop(name, StopMode.CLEAR)
+        elif self.under_way.is_overdue(name) and not self.ledger.of_robot(name):
+            self._stop(name, StopMode.HALT)
 
     def _told(self, belief: Belief) -> tuple[object, ...]:
         """What of a belief trees and screens react to: everything but positions."""
@@ -209,7 +247,8 @@ class Dispatcher:
             return None  # its last code may be older than the end of its last move, which was proven
         opening = isinstance(command, SetEffector) and not command.on
         if opening and obstacle and obstacle.reason is Reason.STOPPED:
-            return None
+            other = self.beliefs[robot].obstacle()  # a latch hides what else is wrong
+            return other if other and other.reason is not Reason.STOPPED else None
         return obstacle
 
     def _grip(self, arm: str, grip: Grip) -> None:
@@ -219,11 +258,11 @@ class Dispatcher:
 
     def _settle_grip(self, belief: Belief) -> None:
         """An effector that nobody is switching is what its board reports."""
-        if belief.effector is None:
+        arm, grip = belief.robot.name, Grip.ON if belief.effector else Grip.OFF
+        if belief.effector is None or self.grips[arm] is grip:
             return
-        open_commands = self.ledger.of_robot(belief.robot.name)
-        if not any(isinstance(entry.command, SetEffector) for entry in open_commands):
-            self._grip(belief.robot.name, Grip.ON if belief.effector else Grip.OFF)
+        if not any(isinstance(entry.command, SetEffector) for entry in self.ledger.of_robot(arm)):
+            self._grip(arm, grip)
 
     def _allowed_s(self, command: Command) -> float:
         """How long a command may take: by its distance, never below the robot's `timeout_s`."""

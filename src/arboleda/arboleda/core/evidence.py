@@ -38,6 +38,7 @@ class Before(NamedTuple):
     boot_id: int | None
     q: tuple[float, ...] | None
     position_at: float
+    online: bool
 
     @classmethod
     def of(cls, belief: Belief) -> Before:
@@ -46,6 +47,7 @@ class Before(NamedTuple):
             boot_id=belief.boot_id,
             q=belief.q,
             position_at=belief.position_at,
+            online=belief.online,
         )
 
 
@@ -112,6 +114,14 @@ def displaced(before: Before, belief: Belief, report: Report) -> bool:
     return rebooted(before, belief, report) or _jumped(before, belief, report)
 
 
+def strayed(before: Before, belief: Belief, report: Report, goal: tuple[float, ...]) -> bool:
+    """Whether an arm that had reached `goal` is elsewhere after a silence, as after a boot unseen."""
+    arm = belief.robot
+    if before.online or report.q is None or arm.evidence is not Evidence.JOINTS or not isinstance(arm, Arm):
+        return False
+    return not arm.reached(report.q, arm.quantised(goal))
+
+
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
     """Whether the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
     if None in (before.boot_id, report.boot_id) or before.boot_id == report.boot_id:
@@ -169,11 +179,19 @@ def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None
 
 def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     seen, stopped = entry.seen, belief.state is MotionState.STOPPED
-    if stopped and seen.position and reached(entry, belief):
+    if stopped and seen.position and reached(entry, belief) and (seen.moving or not _is_round_trip(entry)):
         return Verdict(feed=Feed.DONE)
     if stopped and seen.moving and seen.position_since_state:
         return _short(entry)
     return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _is_round_trip(entry: Entry) -> bool:
+    """Whether a path ends where it begins: to stand there proves nothing before the robot was seen moving."""
+    command = entry.command
+    return (
+        isinstance(command, FollowPath) and len(command.nodes) > 1 and command.nodes[0] == command.nodes[-1]
+    )
 
 
 def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -222,18 +221,34 @@ class Carry(Behaviour):
 
 
 class TakeZones(Await):
-    """Wait until the arm has these zones, all at once; left early, it waits no longer."""
+    """Wait until the arm has all the zones that `needed()` names then; left early, it waits no longer.
 
-    def __init__(self, name: str, context: Context, zones: frozenset[str], *, inside: bool = False) -> None:
-        names = ", ".join(sorted(zones))
-        arm, wait_s = context.cell.arm.name, context.cell.zone_wait_s
-        sentence = f"{arm}: zone {names} was not free within {wait_s:g} s"
-        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
-        taken = partial(context.take_zones, zones, inside=inside)
-        super().__init__(name, context, taken, wait_s, lambda: failure)
+    `inside`: an arm that stands in a zone may go on with what it holds, to get out.
+    """
+
+    def __init__(
+        self, name: str, context: Context, needed: Callable[[], frozenset[str]], *, inside: bool = False
+    ) -> None:
+        super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.needed = needed
+        self.inside = inside
+        self.zones: frozenset[str] = frozenset()
+
+    def initialise(self) -> None:
+        super().initialise()
+        self.zones = self.needed()
+
+    def _taken(self) -> bool:
+        return self.context.take_zones(self.zones, inside=self.inside)
+
+    def _not_free(self) -> Failure:
+        arm, names = self.context.cell.arm.name, ", ".join(sorted(self.zones))
+        sentence = f"{arm}: zone {names} was not free within {self.seconds:g} s"
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:
-        if new_status is not Status.SUCCESS:
+        # py_trees also ends what has long succeeded: the zones are in use then
+        if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
             self.context.leave_zones()
 
 

@@ -144,6 +144,11 @@ class Arm(Robot):
     queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
 
     @cached_property
+    def reference(self) -> tuple[float, ...]:
+        """Where the homing routine ends, and the counters begin."""
+        return (0.0,) * len(self.joints)
+
+    @cached_property
     def tolerances(self) -> tuple[float, ...]:
         return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
 
@@ -243,6 +248,12 @@ class Cell:
     @property
     def robots(self) -> tuple[Robot, ...]:
         return (self.arm, self.mobile)
+
+    @cached_property
+    def zones(self) -> frozenset[str]:
+        """Every shared zone that the arm may get into."""
+        places = (pose.zones for pose in self.poses)
+        return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
 
     @property
     def poses(self) -> tuple[Pose, ...]:

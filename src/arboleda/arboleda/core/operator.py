@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from .cell import CellRun
 from .cell_states import Cause, CellState
@@ -77,6 +78,11 @@ class Operator:
         raise Refused(f"'{scope[:40]}' is neither a cell nor a robot of this plant; there are {known}")
 
     def _override(self, zone: str) -> None:
+        holder = self._zones.holder(zone)
+        cell = self._cells[self._dispatcher.model.cell_of[holder].name] if holder else None
+        if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
+            name = cell.cell.name  # what it does there counts on the zone
+            raise Refused(f"{holder} has not given up its work in {zone}; stop {name}, then override {zone}")
         try:
             granted = self._zones.override(zone)
         except IllegalTransition as error:
@@ -101,11 +107,40 @@ class Operator:
             obstacle = self._not_homeable(name, by_hand=by_hand)
             if obstacle:
                 raise Refused(obstacle)
-        for name in sorted(robots):
-            if by_hand:
+        if by_hand:
+            for name in sorted(robots):
                 self._dispatcher.declare_homed(name)
-            else:
-                self._dispatcher.home(name, self._clock())
+                self._uproot(name)
+            return
+        if occupied := self.not_free_for_homing(robots):
+            raise Refused(occupied)
+        for name in sorted(robots):
+            self.home(name)
+
+    def home(self, name: str) -> None:
+        """Have a robot run its homing routine; an arm keeps everybody out of its zones meanwhile."""
+        cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        if name == cell.cell.arm.name:
+            cell.context.claim_zones()
+        self._uproot(name)
+        self._dispatcher.home(name, self._clock())
+
+    def _uproot(self, name: str) -> None:
+        cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        if name == cell.cell.arm.name:
+            cell.uproot()
+
+    def not_free_for_homing(self, robots: set[str]) -> str | None:
+        """Why arms may not set out for their reference: from where they stand they may cross any zone."""
+        taken: dict[str, str] = {}
+        arms = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
+        for cell in arms:
+            arm = cell.cell.arm.name
+            for zone in sorted(cell.cell.zones):
+                holder = self._zones.holder(zone) or taken.setdefault(zone, arm)
+                if holder != arm:
+                    return f"{arm} may cross zone {zone}, which {holder} holds; home it once the zone is free"
+        return None
 
     def _not_homeable(self, name: str, *, by_hand: bool) -> str | None:
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
@@ -158,20 +193,21 @@ class Operator:
             return (
                 f"{cell.cell.name} is {cell.state.value}; only a held cell or a paused queue can be resumed"
             )
-        if cell.task is None or cell.trouble is not None:
+        if cell.task is None or cell.trouble is not None or cell.uprooted:
             return cell.held_by
         return None
 
+    def _not_releasable(self, cell: CellRun, robots: set[str]) -> str | None:
+        if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
+            return f"{cell.cell.name} is {cell.state.value}; hold or stop it first"
+        if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
+            return f"{cell.cell.mobile.name} has no effector"
+        obstacle = self._dispatcher.obstacle_to_opening(cell.cell.arm.name)
+        return f"{obstacle.sentence}: no releasing by hand" if obstacle else None
+
     def _release(self, cell: CellRun, robots: set[str]) -> None:
-        arm = cell.cell.arm.name
-        entry = self._dispatcher.send(
-            lambda id: SetEffector(id=id, robot=arm, on=False),
-            cell.cell.name,
-            "releasing by hand",
-            self._clock(),
-        )
-        if entry.failure is not None:
-            raise Refused(entry.failure.sentence)
+        make = partial(SetEffector, robot=cell.cell.arm.name, on=False)
+        self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock())
 
 
 def _always(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
@@ -190,6 +226,8 @@ def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], str | Non
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
+    if refusal is None and cell.uprooted:
+        return cell.held_by
     if refusal is None and cell.task is not None and cell.trouble is None:
         return f"{cell.cell.name} is held without a fault; resume {cell.cell.name} goes on"
     return refusal
@@ -208,14 +246,6 @@ def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> str
     return _in(CellState.EXECUTE, CellState.HELD)(operator, cell, robots)
 
 
-def _not_releasable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
-    if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
-        return f"{cell.cell.name} is {cell.state.value}; hold or stop it first"
-    if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
-        return f"{cell.cell.mobile.name} has no effector"
-    return None
-
-
 Check = Callable[[Operator, CellRun, "set[str]"], "str | None"]
 Do = Callable[[Operator, CellRun, "set[str]"], None]
 ACTS: dict[Verb, tuple[Check, Do]] = {
@@ -227,7 +257,7 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel()),
     Verb.RETRY: (_not_retryable, lambda operator, cell, robots: cell.retry()),
     Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
-    Verb.RELEASE: (_not_releasable, Operator._release),
+    Verb.RELEASE: (Operator._not_releasable, Operator._release),
 }
 # A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.
 MUST_ALL: dict[Verb, tuple[CellState, ...]] = {

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from py_trees.behaviour import Behaviour
+
 from . import text
 from .cell import CellRun
 from .cell_states import CellState
@@ -30,7 +32,8 @@ from .messages import (
 )
 from .model import Cell, PlantModel
 from .operator import Operator, Refused
-from .task import Recipe, Task
+from .recipes import RECIPES, Recipes
+from .task import Order, Recipe, Task
 from .zones import Zones
 
 HEARTBEAT_S = 0.25
@@ -40,12 +43,21 @@ ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that ne
 class Plant:
     """All cells of a plant; `epoch` names this start and must be higher than any before.
 
-    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied.
-    `next_deadline` is when `step` is due again without any event, s.
+    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `recipes`
+    stand in for the shipped ones. `next_deadline` is when `step` is due again without any event, s.
     """
 
-    def __init__(self, model: PlantModel, *, epoch: int, now: float, memory: Memory | None = None) -> None:
+    def __init__(
+        self,
+        model: PlantModel,
+        *,
+        epoch: int,
+        now: float,
+        memory: Memory | None = None,
+        recipes: Recipes | None = None,
+    ) -> None:
         memory = memory or {}
+        self._recipes = {**RECIPES, **(recipes or {})}
         self.model = model
         self.epoch = epoch
         self.now = now
@@ -92,12 +104,15 @@ class Plant:
 
     def _run(self, cell: Cell) -> CellRun:
         context = Context(cell, self.dispatcher, self.zones, lambda: self.now)
-        run = CellRun(cell, context, self._task_changed)
+        run = CellRun(cell, context, self._task_changed, self._build)
         if any(robot.name in self.dispatcher.latched for robot in cell.robots):
             run.start_in(CellState.ABORTED)
         elif any(robot.name in self.dispatcher.cleared for robot in cell.robots):
             run.start_in(CellState.STOPPED)
         return run
+
+    def _build(self, order: Order, context: Context) -> Behaviour:
+        return self._recipes[order.recipe](order, context)
 
     def _task_changed(self, task: Task, request: str | None = None) -> None:
         self._changes += 1
@@ -137,10 +152,12 @@ class Plant:
         """An arm that is not heard may still be where it was; one that is seen outside is not."""
         for cell in self.cells.values() if self.model.zones else ():
             arm = cell.cell.arm.name
+            if not self.zones.held_by(arm):
+                continue
             belief = self.dispatcher.beliefs[arm]
-            if self.zones.held_by(arm) and (not belief.online or belief.unhomed):
+            if not belief.online or belief.unhomed:
                 self.zones.quarantine(arm)
-            elif self.zones.held_by(arm) and cell.tree is None:
+            elif cell.tree is None:
                 cell.context.leave_zones()
 
     def _beat(self) -> None:
@@ -161,10 +178,13 @@ class Plant:
         belief = self.dispatcher.beliefs[robot]
         if not belief.robot.home_at_start or not belief.answered or belief.homed is None:
             return
-        if robot not in self._homed_once:
-            self._homed_once.add(robot)
-            if belief.unhomed:
-                self.dispatcher.home(robot, self.now)
+        if self.cells[self.model.cell_of[robot].name].state not in (CellState.IDLE, CellState.HELD):
+            return
+        if robot in self._homed_once or (belief.unhomed and self._operator.not_free_for_homing({robot})):
+            return
+        self._homed_once.add(robot)
+        if belief.unhomed:
+            self._operator.home(robot)
 
     def _on_undelivered(self, event: Undelivered) -> None:
         self.dispatcher.undelivered(event.id, event.robot, event.sentence, self.now)

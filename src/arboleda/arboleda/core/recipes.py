@@ -6,7 +6,7 @@ recovery runs to its end. Recovered is not delivered: the task has failed all th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from py_trees import composites
@@ -22,6 +22,7 @@ from .task import Order, Recipe
 MAIN, RECOVERY = PHASES = ("main", "recovery")
 SETTLE_S = 1.0  # after the last stop was confirmed or given up
 Visit = tuple[Pose, list[Behaviour]]  # a pose of the arm, and the work to do there
+Recipes = Mapping[Recipe, Callable[[Order, Context], Behaviour]]
 
 
 def build(order: Order, context: Context) -> Behaviour:
@@ -52,7 +53,7 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     return _recovering(Recipe.PALLETIZING, [_start(context), *_visit(context, way, visits)], context)
 
 
-RECIPES: dict[Recipe, Callable[[Order, Context], Behaviour]] = {
+RECIPES: Recipes = {
     Recipe.STORAGE: storage,
     Recipe.PALLETIZING: palletizing,
 }
@@ -62,15 +63,15 @@ def recovery(context: Context) -> Behaviour:
     """Wait until all has come to rest; carry a part that is held back to the pick-up pose; go home."""
     cell = context.cell
     back = _sequence("carry back", *_at(context, cell.pickup, _effector(context, False)))
-    zones = zone_plan.recovery_zones(cell)
+    shares = cell.zones
     return _sequence(
         RECOVERY,
         _settle(context),
         *_rise(context),
-        *([TakeZones("take zones", context, zones, inside=True)] if zones else []),
+        *([TakeZones("take zones", context, context.recovery_zones, inside=True)] if shares else []),
         _selector("part back", Unless("holds nothing", lambda: not context.holding()), back),
         _move(context, cell.home),
-        *([LeaveZones("leave zones", context)] if zones else []),
+        *([LeaveZones("leave zones", context)] if shares else []),
     )
 
 
@@ -154,12 +155,14 @@ def _visit(context: Context, way: Sequence[Pose], visits: list[Visit]) -> list[B
     legs = zone_plan.plan(context.cell, way)
     steps: list[Behaviour] = []
     for index, (pose, work) in enumerate(visits):
-        steps += [
-            TakeZones("take zones", context, leg.zones) for leg in legs if leg.start == index and leg.zones
-        ]
+        steps += [_take(context, leg.zones) for leg in legs if leg.start == index and leg.zones]
         steps += _at(context, pose, *work)
         steps += [LeaveZones("leave zones", context) for leg in legs if leg.end == index + 1 and leg.zones]
     return steps
+
+
+def _take(context: Context, zones: frozenset[str]) -> Behaviour:
+    return TakeZones("take zones", context, lambda: zones)
 
 
 def _at(context: Context, pose: Pose, *work: Behaviour) -> list[Behaviour]:

@@ -45,9 +45,12 @@ def plan(cell: Cell, way: Sequence[Pose]) -> list[Leg]:
     ]
 
 
-def recovery_zones(cell: Cell) -> frozenset[str]:
-    """What the way to the pick-up pose and home needs, where the arm holds nothing yet."""
-    return _zones(cell, (cell.pickup, cell.home), carrying=True)
+def recovery_zones(cell: Cell, start: Pose | None) -> frozenset[str]:
+    """What the way from `start` to the pick-up pose and home needs; None: from wherever the arm may be."""
+    way = (cell.pickup, cell.home)
+    starts = cell.poses if start is None else (start,)
+    crossed = (_crossed(cell, pose, goal) for pose in starts for goal in way)
+    return _zones(cell, way, carrying=True).union(*crossed)
 
 
 def plan_problems(cell: Cell) -> dict[str, str]:

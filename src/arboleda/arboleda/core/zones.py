@@ -33,7 +33,7 @@ class Zones:
 
     def held_by(self, robot: str) -> frozenset[str]:
         """The zones of which it is the holder, quarantined ones too."""
-        return frozenset(zone for zone, holder in self._holders.items() if holder == robot)
+        return frozenset([zone for zone, holder in self._holders.items() if holder == robot])
 
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
@@ -63,6 +63,16 @@ class Zones:
             asked = _named(self._waiting[robot])
             raise IllegalTransition(f"{robot} waits for {asked} and asks for {_named(zones)}: withdraw first")
         return robot in self._grant()
+
+    def claim(self, robot: str, zones: frozenset[str]) -> None:
+        """Take zones that nobody else holds for a robot that may be in any of them, its quarantined ones too.
+
+        IllegalTransition where another robot holds one.
+        """
+        for zone in sorted(zones):
+            if self.holder(zone) not in (None, robot):
+                raise IllegalTransition(f"zone {zone} is held by {self.holder(zone)}, not free for {robot}")
+        self._holders.update(dict.fromkeys(zones, robot))
 
     def withdraw(self, robot: str) -> tuple[str, ...]:
         """It gives up waiting; the robots that get their zones by this, the first one first."""

@@ -87,9 +87,10 @@ class Labels:
             return False
         if said.refusal != "viejo":
             return said.ack_epoch == self.epoch
-        # an accepted seq that is refused as old came twice (QoS 1), and the first one counts
-        repeated = said.ack_epoch == self.epoch and said.refused_seq == said.ack
-        return said.ack_epoch is not None and said.ack_epoch >= self.epoch and not repeated
+        if said.ack_epoch != self.epoch:
+            return said.ack_epoch is not None and said.ack_epoch > self.epoch
+        # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way
+        return said.ack is not None and said.refused_seq < said.ack
 
     def _raise_above(self, epoch: int) -> None:
         self.epoch = min(epoch + 1, UINT32)

@@ -1,0 +1,47 @@
+"""Commands that may still be on their way to an arm that shares zones."""
+
+from __future__ import annotations
+
+from .messages import Command, Report
+from .model import Cell, Evidence, PlantModel
+
+PATIENCE = 10  # reports, a second of them, in which an arm that hears us names our last command
+
+
+class UnderWay:
+    """The last command to each arm, until a report names it; only where the arm tells command ids.
+
+    Until then the arm may carry out something that it has not heard yet, so where it stands does not prove
+    that it stays there. Commands reach a board in order, so the last one settles all before it.
+    """
+
+    def __init__(self, model: PlantModel) -> None:
+        self._watched = frozenset(cell.arm.name for cell in model.cells if _names_commands(cell))
+        self._last: dict[str, str] = {}
+        self._heard: dict[str, int] = {}
+
+    def __contains__(self, robot: str) -> bool:
+        return robot in self._last
+
+    def left(self, command: Command) -> None:
+        """A command leaves for its robot."""
+        if command.robot in self._watched:
+            self._last[command.robot] = command.id
+            self._heard[command.robot] = 0
+
+    def hear(self, report: Report) -> None:
+        """A robot reports, and may name the last command."""
+        last = self._last.get(report.robot)
+        if last is None:
+            return
+        self._heard[report.robot] += 1
+        if last in (report.accepted, report.done, report.rejected):
+            del self._last[report.robot]
+
+    def is_overdue(self, robot: str) -> bool:
+        """Whether the last command must have been lost."""
+        return robot in self._last and self._heard[robot] >= PATIENCE
+
+
+def _names_commands(cell: Cell) -> bool:
+    return bool(cell.zones) and cell.arm.evidence is Evidence.IDS and cell.arm.has_stop
