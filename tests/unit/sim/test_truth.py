@@ -51,13 +51,13 @@ def test_lost_steps_show_in_the_true_position_alone(bench, arm):
     assert arm.body.true_position[0] == stood[0] - 7
 
 
-def test_a_hand_puts_the_robot_where_its_counters_are_right(bench, arm, cart):
+def test_a_hand_puts_the_robot_at_its_reference_and_has_it_count_from_there(bench, arm, cart):
     go(bench)
-    bench.reboot(ARM)
+    arm.body.lose_steps(0, 5)
     arm.body.put_at_reference()
-    cart.body.true_node = 4
+    cart.body.node, cart.body.true_node = 4, 3
     cart.body.put_at_reference()
-    assert arm.body.true_position == (0, 0, 0)
+    assert arm.body.position == arm.body.true_position == (0, 0, 0)
     assert cart.body.true_node == cart.body.node == 0
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.core.model import Arm, Joint, MotionState
+from arboleda.core.model import Arm, Joint
 from arboleda.wire import units
-from arboleda.wire.payloads import JointsGoal, Telemetry
+from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel
 
 from .axis import Axis
+from .body import Told
 
 FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
 STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
@@ -69,6 +70,11 @@ class ArmBody:
         """Where it heads for, in motor steps per joint."""
         return tuple(axis.target for axis in self._axes)
 
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """How fast each joint turns, in motor steps/s, without a sign."""
+        return tuple(axis.speed for axis in self._axes)
+
     def admits(self, goal: JointsGoal) -> bool:
         return all(_within(joint, angle) for joint, angle in zip(self._joints, goal.q, strict=True))
 
@@ -113,13 +119,13 @@ class ArmBody:
         self._drift = tuple(drift)
 
     def put_at_reference(self) -> None:
-        """Somebody moves the still arm by hand to where its counters are right."""
+        self._axes = tuple(_axis(joint) for joint in self._joints)
         self._drift = (0,) * len(self._joints)
 
-    def tell(self) -> Telemetry:
+    def tell(self) -> Told:
         q = tuple([axis.position * step for axis, step in zip(self._axes, self._step_deg, strict=True)])
         piece = self.holding or self._piece_lies_here()
-        return Telemetry(state=MotionState.STOPPED, q=q, node=None, effector=self.effector, piece=piece)
+        return Told(q=q, effector=self.effector, piece=piece)
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))

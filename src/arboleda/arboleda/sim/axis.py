@@ -40,6 +40,10 @@ class Course:
         index = bisect_right(self._times, elapsed_us) - 1
         return self._steps[index] + (elapsed_us - self._times[index]) // self._intervals[index]
 
+    def interval_us(self, elapsed_us: int) -> int:
+        """The time between steps at a time between the first step and the last."""
+        return self._intervals[bisect_right(self._times, elapsed_us) - 1]
+
 
 _course = lru_cache(maxsize=COURSES)(Course)
 
@@ -70,6 +74,14 @@ class Axis:
         if self._course is None:
             return self._stepper.still_at_us(self._now_us)
         return self._first_step_us + self._course.duration_us
+
+    @property
+    def speed(self) -> float:
+        """How fast it turns, steps/s, without a sign."""
+        elapsed_us = self._now_us - self._first_step_us
+        if self._course is None or elapsed_us < 0:
+            return abs(self._stepper.speed)
+        return 1e6 / self._course.interval_us(elapsed_us)
 
     def move_to(self, now_us: int, target: int) -> None:
         """Head for an absolute position."""

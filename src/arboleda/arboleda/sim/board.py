@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import StopMode
@@ -241,14 +240,14 @@ class Board:
     def _telemetry(self) -> Telemetry:
         told, receipts = self.body.tell(), self._receipts
         if not self._numbered:
-            return replace(told, state=self.state, effector=None, piece=None)
+            return Telemetry(state=self.state, q=told.q, node=told.node)
         return Telemetry(
             state=self.state,
             q=told.q,
             node=told.node,
             effector=told.effector,
             piece=told.piece,
-            seq=self._uplink.told + 1,
+            seq=0,
             ack_epoch=receipts.epoch,
             ack=receipts.accepted,
             done=receipts.finished,

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from arboleda.wire.payloads import Telemetry
 from arboleda.wire.topics import Channel
+
+
+class Told(NamedTuple):
+    """What a body can say of itself: the angles of an arm or the node of a mobile, and what it holds."""
+
+    q: tuple[float, ...] | None = None
+    node: int | None = None
+    effector: bool | None = None
+    piece: bool | None = None
 
 
 class Body(Protocol):
@@ -39,10 +47,10 @@ class Body(Protocol):
     def switch_effector(self, on: bool) -> None: ...
 
     def put_at_reference(self) -> None:
-        """Somebody moves the still robot by hand to where it takes itself to be."""
+        """Somebody moves the still robot by hand to its reference, and has it count from there."""
 
     def reset(self) -> None:
         """Everything as a board without memory comes up; what is moved stays where it is."""
 
-    def tell(self) -> Telemetry:
-        """Where it is and what it holds; the state is the board's to say."""
+    def tell(self) -> Told:
+        """Where it is and what it holds."""

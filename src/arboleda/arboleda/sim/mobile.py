@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from arboleda.core.model import Mobile, MotionState
-from arboleda.wire.payloads import PathGoal, Telemetry
+from arboleda.core.model import Mobile
+from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
+
+from .body import Told
 
 
 class MobileBody:
@@ -55,8 +57,7 @@ class MobileBody:
         self._drive(now_us, self._grid.route(self._next_node, self._start_node)[1:])
 
     def put_at_reference(self) -> None:
-        """Somebody moves the still robot by hand to the node where it takes itself to be."""
-        self.true_node = self.node
+        self.node = self.true_node = self._start_node
 
     def stop(self, now_us: int) -> None:
         self._way = self._way[:1]
@@ -72,8 +73,8 @@ class MobileBody:
     def switch_effector(self, on: bool) -> None:
         raise NotImplementedError("a mobile robot has no effector and no topic for one")
 
-    def tell(self) -> Telemetry:
-        return Telemetry(state=MotionState.STOPPED, q=None, node=self.node)
+    def tell(self) -> Told:
+        return Told(node=self.node)
 
     @property
     def _next_node(self) -> int:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from arboleda.wire.payloads import Payload, Presence, Telemetry, encode
+from arboleda.wire.payloads import Presence, Telemetry, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 PERIOD_US = 100_000
+UNNUMBERED = b'"seq":0,'
 
 
 class Uplink:
@@ -18,6 +19,8 @@ class Uplink:
         self._presence = topic(name, Channel.PRESENCE)
         self._telemetry = topic(name, Channel.TELEMETRY)
         self._due_us = 0
+        self._said: Telemetry | None = None
+        self._frame = (b"", b"", b"")  # how that reads: up to its number, the number, after it
         self._outbox: list[Publication] = []
 
     @property
@@ -33,12 +36,20 @@ class Uplink:
     def announce(self, now_us: int) -> None:
         """Presence; the telemetry that follows it starts the rhythm."""
         self._due_us = now_us + PERIOD_US
-        self._publish(self._presence, Presence(online=True), qos=1, retain=True)
-
-    def tell(self, telemetry: Telemetry) -> None:
         if self.connected:
-            self.told += 1
-            self._publish(self._telemetry, telemetry)
+            presence = encode(Presence(online=True))
+            self._outbox.append(Publication(topic=self._presence, payload=presence, retain=True))
+
+    def tell(self, said: Telemetry) -> None:
+        """Telemetry; a `seq` of 0 stands for the number that it gets."""
+        if not self.connected:
+            return
+        self.told += 1
+        if said != self._said:  # most say what the one before said
+            self._said, self._frame = said, encode(said).partition(UNNUMBERED)
+        before, number, after = self._frame
+        payload = b'%b"seq":%d,%b' % (before, self.told, after) if number else before
+        self._outbox.append(Publication(topic=self._telemetry, payload=payload, qos=0))
 
     def period_over(self, now_us: int) -> bool:
         """Whether periodic telemetry is due; missed periods are not made up for, as on a blocked board."""
@@ -47,7 +58,3 @@ class Uplink:
             return False
         self._due_us += PERIOD_US * (late_us // PERIOD_US + 1)
         return True
-
-    def _publish(self, topic: str, payload: Payload, *, qos: int = 0, retain: bool = False) -> None:
-        if self.connected:
-            self._outbox.append(Publication(topic=topic, payload=encode(payload), qos=qos, retain=retain))
