@@ -1,8 +1,35 @@
-"""For tests of plants: the shipped plant, and the whole chain in one process with time moved by hand."""
+"""For tests of plants: the `sim` of the pytest plugin, and the whole chain with time moved by hand.
 
-from . import faults
-from .plants import shipped, slowed
-from .rig import Rig
-from .witness import Witness
+What stands here is imported when it is asked for: pytest loads this package in every run of its plugin.
+"""
 
-__all__ = ["Rig", "Witness", "faults", "shipped", "slowed"]
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from . import faults, strategies
+    from .plants import shipped, slowed
+    from .rig import Rig
+    from .sim import Sim
+    from .witness import Witness
+    from .words import Misuse
+
+__all__ = ["Misuse", "Rig", "Sim", "Witness", "faults", "shipped", "slowed", "strategies"]
+
+HOMES = {
+    "Misuse": "words",
+    "Rig": "rig",
+    "Sim": "sim",
+    "Witness": "witness",
+    "shipped": "plants",
+    "slowed": "plants",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = import_module(f"{__name__}.{HOMES.get(name, name)}")
+    return getattr(module, name) if name in HOMES else module

@@ -1,0 +1,145 @@
+"""How much goes wrong: drawn from a seed, or as a file tells it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import accumulate
+from typing import Any
+
+from arboleda.core.errors import ArboledaError
+from arboleda.core.model import PlantModel
+
+from .chance import Dice
+from .faults import KINDS, Fault
+
+MINUTE_S = 60.0
+LEVELS: dict[str, tuple[float, float]] = {
+    "none": (0.0, 0.0),
+    "few": (1.0, 4.0),
+    "normal": (8.0, 40.0),
+    "many": (20.0, 90.0),
+}
+"""Faults per minute: from where to where a seed draws its own."""
+
+ABSENT = 0.25  # the share of kinds that a seed does without
+FIELDS = tuple(each.name for each in fields(Fault))
+NUMBERS = ("at", "seconds", "amount", "seed")
+
+
+class BadFaults(ArboledaError):
+    """A list of faults that cannot be; the sentence says what is allowed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Climate:
+    """The faults of one run: `rates` are how many of a kind are drawn per minute, `told` come as they are.
+
+    The same climate gives the same faults for the same minute, whichever were asked for before.
+    """
+
+    model: PlantModel
+    seed: int
+    rates: Mapping[str, float]
+    told: tuple[Fault, ...] = ()
+
+    @classmethod
+    def draw(cls, model: PlantModel, seed: int, level: str) -> Climate:
+        """What a seed has in store at a level of LEVELS: how much in all, and of which kinds how much."""
+        if level not in LEVELS:
+            raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
+        dice, (low, high) = Dice(seed, "climate"), LEVELS[level]
+        total = low * (high / low) ** dice.random() if low else 0.0
+        weights = {name: _weight(dice, kind.weight) for name, kind in KINDS.items() if kind.targets(model)}
+        return cls(model=model, seed=seed, rates=_shared(round(total, 3), weights))
+
+    @classmethod
+    def from_file(cls, model: PlantModel, seed: int, data: Any) -> Climate:
+        """What a file holds: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}` or both.
+
+        What such a fault leaves out is drawn; BadFaults says what is wrong with the first bad one.
+        """
+        known = _only(data, ("rates", "faults"), "the file")
+        rates = _only(known.get("rates", {}), tuple(KINDS), "rates")
+        for name, rate in rates.items():
+            if not _is_number(rate) or rate < 0:
+                raise BadFaults(f"rates: {name} is {rate!r}; a number of faults per minute is needed")
+        listed = known.get("faults", [])
+        if not isinstance(listed, list):
+            raise BadFaults('faults is not a list, e.g. [{"kind": "reboot", "at": 12.5}]')
+        told = [_told(model, Dice(seed, "told", number), each) for number, each in enumerate(listed)]
+        return cls(model=model, seed=seed, rates=rates, told=tuple(told))
+
+    def faults(self, minute: int) -> list[Fault]:
+        """What goes wrong in a minute of the run, in order."""
+        begin, dice = minute * MINUTE_S, Dice(self.seed, "faults", minute)
+        drawn = [self._fault(dice, begin) for _ in range(_count(dice, sum(self.rates.values())))]
+        told = [fault for fault in self.told if begin <= fault.at < begin + MINUTE_S]
+        return sorted([*told, *drawn], key=lambda fault: fault.at)
+
+    def _fault(self, dice: Dice, begin: float) -> Fault:
+        name = _one_of(dice, self.rates)
+        at = round(begin + dice.below(60_000) / 1000, 3)
+        return Fault(kind=name, at=at, seed=dice.below(2**32), **KINDS[name].draw(dice, self.model))
+
+
+def _weight(dice: Dice, weight: float) -> float:
+    share = dice.between(0.2, 1.8)
+    return 0.0 if dice.chance(ABSENT) else weight * share
+
+
+def _shared(total: float, weights: Mapping[str, float]) -> dict[str, float]:
+    whole = sum(weights.values())
+    return {name: total * weight / whole for name, weight in weights.items() if total and weight}
+
+
+def _count(dice: Dice, mean: float) -> int:
+    """A whole number of that mean."""
+    return int(mean) + dice.chance(mean % 1.0)
+
+
+def _one_of(dice: Dice, rates: Mapping[str, float]) -> str:
+    *_, whole = sums = list(accumulate(rates.values()))
+    drawn = dice.random() * whole
+    return next(name for name, below in zip(rates, sums, strict=True) if drawn < below)
+
+
+def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
+    told = _only(data, FIELDS, "a fault")
+    for name in told:
+        _check(name, told[name])
+    kind = KINDS.get(told.get("kind", ""))
+    if kind is None:
+        raise BadFaults(f"{told.get('kind')!r} is not a kind of fault; there are {', '.join(KINDS)}")
+    if "at" not in told:
+        raise BadFaults(f"{kind.name}: at is missing; it is in s since the run began")
+    targets = kind.targets(model)
+    if not targets or told.get("target", targets[0]) not in targets:
+        raise BadFaults(kind.objection(Fault(**told), model) or f"{kind.name} cannot happen in this plant")
+    drawn = {"seed": dice.below(2**32), **kind.draw(dice, model, told.get("target"))}
+    fault = Fault(**{**drawn, **told})
+    if (objection := kind.objection(fault, model)) is not None:
+        raise BadFaults(objection)
+    return fault
+
+
+def _check(name: str, value: Any) -> None:
+    if name not in NUMBERS and not isinstance(value, str):
+        raise BadFaults(f"{name} of a fault is {value!r}; a text is needed")
+    if name in NUMBERS and not _is_number(value):
+        raise BadFaults(f"{name} of a fault is {value!r}; a number is needed")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _only(data: Any, allowed: Sequence[str], where: str) -> dict[str, Any]:
+    """`data` as a mapping with no other keys."""
+    if not isinstance(data, dict):
+        raise BadFaults(f"{where} is not a mapping; its keys are {', '.join(allowed)}")
+    for key in data:
+        if key not in allowed:
+            raise BadFaults(f"{where} has no {key!r}; allowed: {', '.join(allowed)}")
+    return data

@@ -1,0 +1,41 @@
+"""What befalls an effector and the part it handles."""
+
+from __future__ import annotations
+
+from ..world import World
+from . import whom
+from .hold import hold
+from .kind import End, Fault, kind
+
+
+@kind(targets=whom.arms, seconds=(1.0, 30.0))
+def no_grip(world: World, fault: Fault) -> End:
+    """An effector closes beside the part."""
+    return _keep(world, fault, "grips", False)
+
+
+@kind(targets=whom.arms, seconds=(1.0, 30.0))
+def stuck_effector(world: World, fault: Fault) -> End:
+    """An effector does not follow its switch."""
+    return _keep(world, fault, "stuck", True)
+
+
+@kind(targets=whom.arms, seconds=(1.0, 30.0))
+def no_part(world: World, fault: Fault) -> End:
+    """Nothing lies at the pick-up."""
+    return _keep(world, fault, "supplied", False)
+
+
+@kind(targets=whom.arms)
+def lost_part(world: World, fault: Fault) -> None:
+    """The part falls out of an effector, which does not notice."""
+    whom.arm_body(world, fault.target).lose_piece()
+
+
+def _keep(world: World, fault: Fault, attribute: str, value: bool) -> End:
+    body = whom.arm_body(world, fault.target)
+    setattr(body, attribute, value)
+    return hold(world, attribute, fault.target, lambda: setattr(body, attribute, not value))
+
+
+KINDS = (no_grip, stuck_effector, no_part, lost_part)

@@ -1,0 +1,154 @@
+"""Strangers who publish on the plant's topics.
+
+A stranger with a valid command of a fresher epoch, or with telemetry that makes sense, would simply be the
+bridge or the board: MQTT has no other proof of who speaks, so that is out of scope. What they repeat and
+what they make up here is never fresher than what the board has heard since it booted; to a board that has
+heard nothing yet, everything is fresh, and they leave it alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from arboleda.core.messages import StopMode
+from arboleda.core.model import Arm, PlantModel, Robot
+from arboleda.wire.goals import goal as goal_of
+from arboleda.wire.payloads import Goal, StopGoal, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+from ..chance import Dice
+from ..world import World
+from . import whom
+from .hold import hold
+from .kind import End, Fault, kind, words
+from .orchestrators import ORDERS
+
+OF_ALL = (Channel.STOP, Channel.HOME, Channel.BEAT, Channel.TELEMETRY, Channel.PRESENCE)
+OF_ARMS, OF_MOBILES = (Channel.JOINTS, Channel.EFFECTOR), (Channel.PATH,)
+GARBAGE = (
+    b"",
+    b"\xff\xfe\x00\x01",
+    b"{",
+    b"null",
+    b"[]",
+    b"true",
+    b'"1"',
+    b"[" * 300,
+    b" " * 600,
+    b'{"seq":NaN,"epoca":1e999}',
+    b'{"seq":1,"seq":1,"epoca":1}',
+    b'{"q1":true,"q2":0,"q3":0,"seq":1,"epoca":1.5}',
+    b'{"q1":"45","q2":0,"q3":0,"seq":"1","epoca":null}',
+    b'{"paro":3,"seq":1,"epoca":-1}',
+    b'{"paro":"1","seq":1,"epoca":"9"}',
+    b'{"efector":2,"ref":0,"nodos":[],"epoca":4294967296}',
+    b'{"nodos":[0,"3"],"efector":true,"ref":true,"paro":true,"epoca":true}',
+    b'{"estado":7,"q1_mov":null,"nodo":-1,"epoca":[]}',
+)
+
+
+def _channels(model: PlantModel, target: str) -> tuple[str, ...]:
+    own = OF_ARMS if isinstance(whom.robot_of(model, target), Arm) else OF_MOBILES
+    return tuple(channel.value for channel in (*own, *OF_ALL))
+
+
+@kind(targets=whom.boards, words=_channels)
+def foreign_garbage(world: World, fault: Fault) -> None:
+    """A stranger publishes what makes no sense on a topic of a board."""
+    payload = Dice(fault.seed, "garbage").pick(GARBAGE)
+    world.publish(Publication(topic=f"{fault.target}/{fault.word}", payload=payload))
+
+
+@kind(targets=whom.boards, words=words("no board", "no channel", "too long", "too deep"), weight=0.5)
+def foreign_stray(world: World, fault: Fault) -> None:
+    """A stranger publishes on a topic that belongs to nobody, or far more than fits."""
+    world.publish(STRAYS[fault.word](fault.target))
+
+
+STRAYS: dict[str, Callable[[str], Publication]] = {
+    "no board": lambda board: Publication(topic="nobody/juntas", payload=b'{"q1":0}'),
+    "no channel": lambda board: Publication(topic=f"{board}/nada/juntas", payload=b'{"q1":0}'),
+    "too long": lambda board: Publication(
+        topic=f"{board}/paro", payload=b'{"paro":1,"x":"%s"}' % (b"x" * 9000)
+    ),
+    "too deep": lambda board: Publication(topic=f"{board}/sensores", payload=b'{"a":' * 300),
+}
+
+
+def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
+    """What can be ordered of a robot; a stop counts whoever says it and is a kind of its own."""
+    if isinstance(whom.robot_of(model, target), Arm):
+        return ("move", "effector on", "effector off", "home", "clear")
+    return ("path", "home", "clear")
+
+
+@kind(targets=whom.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)
+def foreign_retained(world: World, fault: Fault) -> End | None:
+    """A stranger has the broker keep an old command for whoever subscribes, until somebody takes it away."""
+    old = _old(world, fault)
+    if old is None:
+        return None
+    world.publish(replace(old, retain=True))
+    return hold(world, "retained", old.topic, lambda: world.broker.retained.pop(old.topic, None))
+
+
+@kind(targets=whom.boards, words=lambda model, target: ("again", *_goals(model, target)))
+def foreign_old(world: World, fault: Fault) -> None:
+    """A stranger repeats the last command, or sends one of an older number or epoch."""
+    old = _again(world, fault) if fault.word == "again" else _old(world, fault)
+    if old is not None:
+        world.publish(old)
+
+
+@kind(targets=whom.boards, weight=0.5)
+def foreign_halt(world: World, fault: Fault) -> None:
+    """A stranger of an older epoch halts a board, which obeys a stop whoever says it."""
+    numbers = _older(world, fault)
+    if numbers is not None:
+        halt = StopGoal(mode=StopMode.HALT, seq=numbers[1], epoch=numbers[0])
+        world.publish(_published(fault, Channel.STOP, halt))
+
+
+def _again(world: World, fault: Fault) -> Publication | None:
+    last = world.obeyed.get(fault.target)
+    if last is None or last.seq is None or (isinstance(last, StopGoal) and last.mode is not StopMode.CLEAR):
+        return None
+    return _published(fault, CHANNELS[type(last).__name__], last)
+
+
+def _old(world: World, fault: Fault) -> Publication | None:
+    numbers = _older(world, fault)
+    if numbers is None:
+        return None
+    robot: Robot = whom.robot_of(world.model, fault.target)
+    order = ORDERS[fault.word](world.model, robot.name, "", Dice(fault.seed, "order"))
+    channel, goal = goal_of(robot, order, epoch=numbers[0], seq=numbers[1])
+    return _published(fault, channel, goal)
+
+
+def _older(world: World, fault: Fault) -> tuple[int, int] | None:
+    """epoca and seq below those of the last command that the board carried out; None where it has none."""
+    last = world.obeyed.get(fault.target)
+    if last is None or last.epoch is None or last.seq is None or last.epoch < 1:
+        return None
+    dice = Dice(fault.seed, "numbers")
+    if last.seq > 1 and dice.chance(0.5):
+        return last.epoch, last.seq - 1 - dice.below(last.seq - 1)
+    return last.epoch - 1 - dice.below(last.epoch), last.seq + dice.below(4)
+
+
+def _published(fault: Fault, channel: Channel, goal: Goal) -> Publication:
+    return Publication(topic=topic(fault.target, channel), payload=encode(goal))
+
+
+CHANNELS = {
+    "JointsGoal": Channel.JOINTS,
+    "PathGoal": Channel.PATH,
+    "EffectorGoal": Channel.EFFECTOR,
+    "StopGoal": Channel.STOP,
+    "HomeGoal": Channel.HOME,
+}
+
+KINDS = (foreign_garbage, foreign_stray, foreign_retained, foreign_old, foreign_halt)

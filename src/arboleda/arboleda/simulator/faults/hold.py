@@ -1,0 +1,31 @@
+"""Effects that several faults may keep up at once: the last one that ends undoes them."""
+
+from __future__ import annotations
+
+from ..network import Line, Trouble
+from ..world import World
+from .kind import End
+
+
+def hold(world: World, what: str, whom: str, end: End) -> End:
+    """One more fault keeps `what` up at `whom`; `end` is called when none does any more."""
+    world.holds[what, whom] += 1
+
+    def release() -> None:
+        world.holds[what, whom] -= 1
+        if not world.holds[what, whom]:
+            end()
+
+    return release
+
+
+def stall(world: World, process: str, seconds: float) -> End:
+    """A process does nothing until all that stalls it has ended."""
+    world.stall(process, seconds)
+    return hold(world, "stall", process, lambda: world.go_on(process))
+
+
+def trouble(line: Line, makes: Trouble) -> End:
+    """A line treats its messages so until the end."""
+    line.troubles.append(makes)
+    return lambda: line.troubles.remove(makes)

@@ -1,0 +1,137 @@
+"""People at the plant: every verb at any time on any scope, tasks asked for twice, texts that are none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.core.messages import TaskState, Verb
+from arboleda.core.model import Cell, Evidence, PlantModel
+from arboleda.core.task import Task
+
+from ..chance import Dice
+from ..world import World
+from . import whom
+from .kind import Fault, Kind, kind, no_words, words
+
+WHOLE_PLANT, NOWHERE = "", "nowhere"
+BY_HAND = "by hand"
+OF_THE_CELL = {
+    "its running task": (TaskState.RUNNING,),
+    "a queued task": (TaskState.QUEUED,),
+    "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
+}
+WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
+
+
+def _scopes(model: PlantModel) -> tuple[str, ...]:
+    return (WHOLE_PLANT, *whom.cells(model), *model.robots, NOWHERE)
+
+
+def _zones(model: PlantModel) -> tuple[str, ...]:
+    return (*model.zones, NOWHERE)
+
+
+def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
+    """By hand only where a robot cannot report a homing: nobody is asked to put another at its reference."""
+    robot = model.robots.get(target)
+    return ("",) if robot is None or robot.evidence is Evidence.IDS else ("", BY_HAND)
+
+
+def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:
+    return ("", *OF_THE_CELL) if target in whom.cells(model) else ("",)
+
+
+def _operate(verb: Verb) -> Callable[[World, Fault], None]:
+    def begin(world: World, fault: Fault) -> None:
+        scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
+        if fault.word == BY_HAND:
+            world.home_by_hand(scope)
+        else:
+            world.request_verb(verb, scope)
+
+    return begin
+
+
+def _task(world: World, fault: Fault) -> str:
+    """The id of one of a cell's tasks; one that there never was where it has none of them."""
+    ids = [task.id for task in _tasks_of(world, fault.target) if task.state in OF_THE_CELL[fault.word]]
+    return Dice(fault.seed, "task").pick(ids) if ids else "t-0-0"
+
+
+def _tasks_of(world: World, cell: str) -> list[Task]:
+    return [task for task in world.plant.intake.tasks.values() if task.order.cell == cell]
+
+
+def _verb(verb: Verb) -> Kind:
+    return Kind(
+        name=f"operator_{verb.value}",
+        sentence=f"An operator says {verb.value}, whether it fits or not.",
+        begin=_operate(verb),
+        targets=_zones if verb is Verb.OVERRIDE else _scopes,
+        words={Verb.HOME: _homings, Verb.CANCEL: _cancellings}.get(verb, no_words),
+        weight=WEIGHTS.get(verb, 1.0),
+    )
+
+
+@kind(targets=whom.cells, words=words("text", "id", "other text", "known id"), weight=0.5)
+def double_submit(world: World, fault: Fault) -> None:
+    """Somebody asks twice for a task: by its text, by its id, or by an id that was given to another."""
+    for text in AGAIN[fault.word](world, fault):
+        world.request_task(text)
+
+
+def _text(world: World, fault: Fault, dice: Dice) -> str:
+    cell = world.model.cell(fault.target)
+    return f"{cell.name} {dice.pick(cell.paths).code} {dice.below(len(cell.stations))}"
+
+
+def _same_text(world: World, fault: Fault) -> list[str]:
+    return [_text(world, fault, Dice(fault.seed, "text"))] * 2
+
+
+def _same_id(world: World, fault: Fault) -> list[str]:
+    return [f"{_text(world, fault, Dice(fault.seed, 'text'))} #lot{fault.seed}"] * 2
+
+
+def _other_text(world: World, fault: Fault) -> list[str]:
+    return [
+        f"{text} #lot{fault.seed}" for text in (_same_text(world, fault)[0], f"{fault.target} palletizing")
+    ]
+
+
+def _known_id(world: World, fault: Fault) -> list[str]:
+    """One of the cell's tasks that had an id, in whatever state it is now; a new one where there is none."""
+    known = [f"{task.order.text} #{task.id}" for task in _tasks_of(world, fault.target) if task.order.id]
+    return [Dice(fault.seed, "known").pick(known)] if known else _same_id(world, fault)
+
+
+AGAIN: dict[str, Callable[[World, Fault], list[str]]] = {
+    "text": _same_text,
+    "id": _same_id,
+    "other text": _other_text,
+    "known id": _known_id,
+}
+
+BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
+    "nothing": lambda cell: "",
+    "blanks": lambda cell: " \t\n ",
+    "a cell": lambda cell: cell.name,
+    "no cell": lambda cell: "nobody palletizing",
+    "no path": lambda cell: f"{cell.name} ?? 0",
+    "no station": lambda cell: f"{cell.name} {cell.paths[0].code} 999999",
+    "a foreign digit": lambda cell: f"{cell.name} {cell.paths[0].code} \uff10",
+    "no such id": lambda cell: f"{cell.name} palletizing #t-1-1",
+    "an empty id": lambda cell: f"{cell.name} palletizing #",
+    "too many words": lambda cell: f"{cell.name} {cell.paths[0].code} 0 now",
+    "too long": lambda cell: f"{cell.name} palletizing " * 100,
+    "a control character": lambda cell: f"{cell.name}\x00 palletizing",
+}
+
+
+@kind(targets=whom.cells, words=words(*BAD_TEXTS))
+def bad_task(world: World, fault: Fault) -> None:
+    """Somebody asks for a task in words that mean none."""
+    world.request_task(BAD_TEXTS[fault.word](world.model.cell(fault.target)))
+
+
+KINDS = (*map(_verb, Verb), double_submit, bad_task)

@@ -1,0 +1,76 @@
+"""A second orchestrator, of an older epoch than the plant's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    SetEffector,
+    Stop,
+    StopMode,
+)
+from arboleda.core.model import Arm, PlantModel
+from arboleda.wire.bridge import FromPlant
+
+from ..chance import Dice
+from ..world import BRIDGE, World
+from . import whom
+from .kind import Fault, kind
+
+LATEST = 5  # how many epochs it may be behind
+OF_ALL = ("home", "home", "clear", "clear", "beat", "beat")
+RARE = ("halt", "stop")  # these count, whoever says them
+
+
+def _orders(model: PlantModel, target: str) -> tuple[str, ...]:
+    if isinstance(model.robots[target], Arm):
+        return (*("move", "effector on", "effector off") * 4, *OF_ALL, *RARE)
+    return (*("path",) * 8, *OF_ALL, *RARE)
+
+
+@kind(targets=whom.robots, words=_orders)
+def second_orchestrator(world: World, fault: Fault) -> None:
+    """An orchestrator that was superseded speaks to the bridge; only its stops count."""
+    dice = Dice(fault.seed, "second")
+    epoch = world.plant.epoch - 1 - dice.below(LATEST)
+    message = Heartbeat(epoch=epoch)
+    if fault.word != "beat":
+        message = ORDERS[fault.word](world.model, fault.target, f"{epoch}-{1 + dice.below(10**9)}", dice)
+    if world.is_on(BRIDGE):
+        world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=message))
+
+
+def _move(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
+    return MoveJoints(id=id, robot=robot, q=dice.pick(model.cell_of[robot].poses).q)
+
+
+def _path(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
+    return FollowPath(id=id, robot=robot, nodes=dice.pick(model.cell_of[robot].paths).nodes)
+
+
+def _switch(on: bool) -> Order:
+    return lambda model, robot, id, dice: SetEffector(id=id, robot=robot, on=on)
+
+
+def _stop(mode: StopMode) -> Order:
+    return lambda model, robot, id, dice: Stop(id=id, robot=robot, mode=mode)
+
+
+Order = Callable[[PlantModel, str, str, Dice], Command]
+ORDERS: dict[str, Order] = {
+    "move": _move,
+    "path": _path,
+    "effector on": _switch(True),
+    "effector off": _switch(False),
+    "home": lambda model, robot, id, dice: Home(id=id, robot=robot),
+    "clear": _stop(StopMode.CLEAR),
+    "halt": _stop(StopMode.HALT),
+    "stop": _stop(StopMode.LATCH),
+}
+
+KINDS = (second_orchestrator,)

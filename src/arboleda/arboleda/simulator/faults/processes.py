@@ -1,0 +1,59 @@
+"""What befalls the processes beside the boards: broker, bridge and plant."""
+
+from __future__ import annotations
+
+from ..network import keeps_its_place
+from ..world import BRIDGE, PLANT, World
+from . import whom
+from .hold import hold, stall, trouble
+from .kind import End, Fault, kind
+
+
+@kind(targets=whom.broker, seconds=(0.0, 5.0), weight=0.5)
+def broker_restart(world: World, fault: Fault) -> End:
+    """The broker dies with all it retained, and is back after a while."""
+    if world.broker.is_up:
+        world.stop_broker()
+    return hold(world, "down", "broker", world.start_broker)
+
+
+@kind(targets=whom.clients, seconds=(0.05, 2.0))
+def lost_queue(world: World, fault: Fault) -> End:
+    """The broker's queue for a client overflows: what is in it or comes is lost, though it is connected."""
+    client = world.broker.clients[fault.target]
+    client.queue += 1
+    return trouble(client.down, lambda message: (0.0,) if keeps_its_place(message) else ())
+
+
+@kind(targets=whom.bridge, seconds=(0.0, 3.0), weight=0.5)
+def bridge_restart(world: World, fault: Fault) -> End:
+    """The bridge's process dies, and is back after a while."""
+    if world.bridge is not None:
+        world.stop_bridge()
+    return hold(world, "down", BRIDGE, lambda: _start_bridge(world))
+
+
+def _start_bridge(world: World) -> None:
+    if world.bridge is None:
+        world.start_bridge()
+
+
+@kind(targets=whom.bridge, seconds=(0.005, 5.0))
+def bridge_stall(world: World, fault: Fault) -> End:
+    """The bridge does nothing for a while; what reaches it waits."""
+    return stall(world, BRIDGE, fault.seconds)
+
+
+@kind(targets=whom.plant, seconds=(0.005, 5.0))
+def plant_stall(world: World, fault: Fault) -> End:
+    """The plant's process does nothing for a while; what reaches it waits."""
+    return stall(world, PLANT, fault.seconds)
+
+
+@kind(targets=whom.plant, weight=0.0)
+def plant_crash(world: World, fault: Fault) -> None:
+    """The plant's process dies and starts anew; never drawn as long as tasks are not durable."""
+    world.crash(PLANT)
+
+
+KINDS = (broker_restart, lost_queue, bridge_restart, bridge_stall, plant_stall, plant_crash)

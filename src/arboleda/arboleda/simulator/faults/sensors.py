@@ -1,0 +1,34 @@
+"""What befalls a piece sensor; only boards that say what it sees can say it wrong."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..chance import Dice
+from ..world import World
+from . import whom
+from .kind import End, Fault, kind, words
+from .telling import deceive
+
+SEES = {"a piece": 1, "nothing": 0}
+
+
+@kind(targets=whom.feelers, words=words(*SEES), seconds=(0.5, 15.0))
+def piece_false(world: World, fault: Fault) -> End:
+    """A piece sensor sees the same whatever is there."""
+    return deceive(world, fault.target, ("piece",), lambda said: {**said, "pieza": SEES[fault.word]})
+
+
+@kind(targets=whom.feelers, seconds=(0.5, 15.0), amount=(0.1, 0.9))
+def piece_flicker(world: World, fault: Fault) -> End:
+    """A piece sensor is wrong now and then; `amount` is the share of wrong values."""
+    dice = Dice(fault.seed, "flicker")
+
+    def flicker(said: dict[str, Any]) -> dict[str, Any]:
+        wrong = dice.chance(fault.amount) and "pieza" in said
+        return {**said, "pieza": 1 - said["pieza"]} if wrong else said
+
+    return deceive(world, fault.target, ("piece",), flicker)
+
+
+KINDS = (piece_false, piece_flicker)

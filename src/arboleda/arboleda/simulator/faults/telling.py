@@ -1,0 +1,57 @@
+"""Boards that say something else than they mean: telemetry altered on its way, lies kept account of."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+from ..deceptions import begin_to_deceive
+from ..world import World
+from .kind import End
+
+Fields = dict[str, Any]
+Change = Callable[[Fields], Fields]
+
+
+def alter(world: World, board: str, change: Callable[[bytes], bytes]) -> End:
+    """Every telemetry message of a board has the payload that `change` makes of it."""
+    address = topic(board, Channel.TELEMETRY)
+
+    def carry(publication: Publication) -> Iterable[Publication]:
+        # a stranger may publish there too, and is not altered
+        if publication.topic != address or world.moment.published[-1][0] != board:
+            return (publication,)
+        return (replace(publication, payload=change(publication.payload)),)
+
+    world.carriers.append(carry)
+    return lambda: world.carriers.remove(carry)
+
+
+def deceive(world: World, board: str, whats: Sequence[str], change: Change) -> End:
+    """Alter the fields of a board's telemetry, which are lies about `whats`."""
+    truth = begin_to_deceive(world, board, whats)
+    end = alter(world, board, lambda payload: retold(payload, change))
+
+    def stop() -> None:
+        end()
+        truth()
+
+    return stop
+
+
+def retold(payload: bytes, change: Change) -> bytes:
+    """The message with other fields; what is no JSON object stays as it is."""
+    try:
+        said = json.loads(payload)
+    except ValueError:
+        return payload
+    return written(change(said)) if isinstance(said, dict) else payload
+
+
+def written(said: Fields) -> bytes:
+    return json.dumps(said, separators=(",", ":")).encode()

@@ -1,0 +1,66 @@
+"""Whom faults befall, by name: boards, lines and processes as the world names them, robots and cells."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.sim.arm import ArmBody
+
+from ..world import BRIDGE, PLANT, World
+
+
+def boards(model: PlantModel) -> tuple[str, ...]:
+    """Every board, by MQTT name."""
+    return tuple(robot.mqtt for robot in _reached(model))
+
+
+def arms(model: PlantModel) -> tuple[str, ...]:
+    """The boards of arms."""
+    return tuple(robot.mqtt for robot in _reached(model) if isinstance(robot, Arm))
+
+
+def feelers(model: PlantModel) -> tuple[str, ...]:
+    """The boards of arms that tell what their piece sensor sees."""
+    heard = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
+    return tuple(robot.mqtt for robot in heard if isinstance(robot, Arm))
+
+
+def clients(model: PlantModel) -> tuple[str, ...]:
+    """Whoever has a connection to the broker."""
+    return (*boards(model), BRIDGE)
+
+
+def robots(model: PlantModel) -> tuple[str, ...]:
+    """Robots by their own names."""
+    return tuple(robot.name for robot in _reached(model))
+
+
+def cells(model: PlantModel) -> tuple[str, ...]:
+    return tuple(cell.name for cell in model.cells)
+
+
+def plant(model: PlantModel) -> tuple[str, ...]:
+    return (PLANT,)
+
+
+def bridge(model: PlantModel) -> tuple[str, ...]:
+    return (BRIDGE,)
+
+
+def broker(model: PlantModel) -> tuple[str, ...]:
+    return ("broker",)
+
+
+def robot_of(model: PlantModel, board: str) -> Robot:
+    """The robot that a board drives."""
+    return next(robot for robot in model.robots.values() if robot.mqtt == board)
+
+
+def arm_body(world: World, board: str) -> ArmBody:
+    """The axes and the effector of an arm's board."""
+    return cast(ArmBody, world.boards[board].body)
+
+
+def _reached(model: PlantModel) -> list[Robot]:
+    return [robot for robot in model.robots.values() if robot.link is Link.MQTT]

@@ -1,0 +1,67 @@
+"""Bounded books: nothing that a plant, a bridge or a board keeps grows with time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.intake import HISTORY
+from arboleda.core.ledger import Feed
+from arboleda.wire.labels import REMEMBERED
+
+from .invariant import Look, When, invariant
+
+NOTHING: tuple[str, ...] = ()
+EVERY_S = 5.0
+PER_ROBOT = 8  # open commands; an operator may ask for the same thing a few times
+WAKES = 100
+INBOX = 20_000  # messages for a process that stalls for 15 s while everybody says everything twice
+
+
+@invariant(When.STEPPED)
+def bounded_books(look: Look) -> Iterable[str]:
+    """What the plant, the bridge and the boards keep stays below fixed bounds."""
+    if look.world.plant.dispatcher.outbox:
+        return ["the plant kept a message after its step"]
+    return _long(look) if look.record.due_for("books", EVERY_S) else NOTHING
+
+
+def _long(look: Look) -> Iterator[str]:
+    for what, length, most in (*_plant(look), *_bridge(look), *_network(look)):
+        if length > most:
+            yield f"{what}: {length}, at most {most}"
+
+
+Row = tuple[str, int, int]
+
+
+def _plant(look: Look) -> Iterator[Row]:
+    plant, robots = look.world.plant, len(look.world.model.robots)
+    dispatcher = plant.dispatcher
+    waiting = sum(cell.cell.queue_limit + 1 for cell in plant.cells.values())
+    yield "open commands", len(dispatcher.ledger.entries), PER_ROBOT * robots
+    yield "cells to wake", len(dispatcher.ledger.changed), 0
+    yield "kinds of ignored feeds", len(dispatcher.ledger.ignored), len(Feed)
+    yield "beliefs", len(dispatcher.beliefs), robots
+    yield "reached goals", len(dispatcher.reached), robots
+    yield "latched robots", len(dispatcher.latched | dispatcher.cleared), robots
+    yield "tasks", len(plant.intake.tasks), HISTORY + waiting
+    yield "waiting for zones", len(plant.zones.waiting), len(plant.cells)
+    for name, cell in plant.cells.items():
+        yield f"queue of {name}", len(cell.queue), cell.cell.queue_limit
+        yield f"wakes of {name}", len(cell.context.wakes), WAKES
+
+
+def _bridge(look: Look) -> Iterator[Row]:
+    bridge = look.world.bridge
+    boards = bridge._boards.items() if bridge is not None else ()  # what it keeps is no part of its interface
+    for name, board in boards:
+        yield f"labels of {name}", len(board.labels._ids), REMEMBERED
+        yield f"known ids of {name}", len(board.labels._known), REMEMBERED
+
+
+def _network(look: Look) -> Iterator[Row]:
+    for name, client in look.world.broker.clients.items():
+        yield f"inbox of {name}", len(client.inbox), INBOX
+
+
+BOOKS = (bounded_books,)

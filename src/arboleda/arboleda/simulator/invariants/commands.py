@@ -1,0 +1,215 @@
+"""Commands: to whom they go, how often, how long they may take, and that what moves is halted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.leaves import Act
+from arboleda.core.ledger import TABLE, State
+from arboleda.core.messages import FollowPath, Home, MoveJoints, Reason, SetEffector, Stop, StopMode, Verb
+from arboleda.core.model import Arm, Mobile, MotionState, Robot, Timing
+
+from ..recorded.commands import SentCommand
+from ..recorded.robots import Obstacle
+from .invariant import Look, When, invariant
+
+NOTHING: tuple[str, ...] = ()
+ROUNDING_S = 1e-6
+HOMING_S = 30.0
+# Homing is what makes an unhomed robot homed; an operator may have the effector opened during a stop.
+STOPPED = frozenset({Obstacle.LATCHED, Obstacle.STOPPED})
+KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
+GIVEN_UP = frozenset({State.CANCELLING, State.CANCELLED, State.FAILED})
+
+
+def _reachable() -> dict[State | None, frozenset[State]]:
+    """To where some chain of the ledger's rows leads from each state; each row counts as it was at import."""
+    after: dict[State, set[State]] = {state: set() for state in State}
+    for (before, _), then in TABLE.items():
+        after[before].add(then)
+    for _ in State:
+        for reached in after.values():
+            reached |= {far for near in reached for far in after[near]}
+    return {None: frozenset(State), **{state: frozenset(reached) for state, reached in after.items()}}
+
+
+REACHABLE = _reachable()
+
+
+@invariant(When.SENT)
+def no_command_to_unfit(look: Look) -> Iterable[str]:
+    """Nothing but stops goes to a robot that is offline, unhomed, faulted or latched by what it has said."""
+    for sent in look.record.commands.new:
+        if sent.obstacles and (wrong := sent.obstacles - _excused(sent)):
+            words = ", ".join(sorted(word.value for word in wrong))
+            yield f"{sent} was sent, which is {words}"
+
+
+def _excused(sent: SentCommand) -> frozenset[Obstacle]:
+    command = sent.command
+    if isinstance(command, Home):
+        return frozenset({Obstacle.UNHOMED})
+    opens = isinstance(command, SetEffector) and not command.on
+    return STOPPED if opens and Verb.RELEASE in sent.verbs else frozenset()
+
+
+@invariant(When.SENT)
+def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
+    """A stop is cleared at a robot only when an operator has asked for that."""
+    for sent in look.record.commands.new:
+        command = sent.command
+        clears = isinstance(command, Stop) and command.mode is StopMode.CLEAR
+        if clears and Verb.CLEAR not in sent.verbs:
+            yield f"{sent} clears its stop, which nobody asked for"
+
+
+@invariant(When.SENT)
+def one_motion_per_robot(look: Look) -> Iterable[str]:
+    """At most one motion command of a robot is open."""
+    for sent in look.record.commands.new:
+        if sent.is_motion:
+            others = (each for each in look.record.commands.open.values() if each.robot == sent.robot)
+            if other := next((each for each in others if each.is_motion and each is not sent), None):
+                yield f"{sent} was sent while {other} was open"
+
+
+@invariant(When.NEWS)
+def only_legal_command_states(look: Look) -> Iterable[str]:
+    """A command changes its state only along the rows of the ledger's table, and leaves it only ended."""
+    return _illegal(look)
+
+
+def _illegal(look: Look) -> Iterator[str]:
+    for sent, before in look.record.commands.moved:
+        if sent.state not in REACHABLE[before]:
+            then = sent.state.value if sent.state else "unknown"
+            yield f"{sent} went from {before.value if before else 'nowhere'} to {then}"
+    for sent in look.record.commands.lost:
+        yield f"{sent} is no longer in the ledger, and has not ended"
+
+
+@invariant(When.STEPPED)
+def no_deadline_overrun(look: Look) -> Iterable[str]:
+    """No command outlasts its deadline, no deadline its longest way, and no wait its end."""
+    record = look.record
+    if record.commands.soonest <= record.stepped_at:
+        return _late(look)
+    return _overrun(look) if record.news else NOTHING
+
+
+def _late(look: Look) -> Iterator[str]:
+    for sent in look.record.commands.open.values():
+        if sent.entry is not None and sent.entry.deadline <= look.record.stepped_at:
+            yield f"{sent} is open past its deadline"
+
+
+def _overrun(look: Look) -> Iterator[str]:
+    record = look.record
+    for sent in record.commands.new:
+        if (too_long := _too_long(look, sent)) is not None:
+            yield too_long
+    for sent in record.commands.open.values():
+        yield from _moved_deadline(look, sent)
+    for cell in record.cells.values():
+        if cell.looked:
+            yield from _waits(cell.leaves, cell.run.context.now)
+
+
+def _too_long(look: Look, sent: SentCommand) -> str | None:
+    allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, look.world.model.timing)
+    if sent.deadline <= sent.at + allowed_s + ROUNDING_S:
+        return None
+    return f"{sent} has {sent.deadline - sent.at:.1f} s; {allowed_s:.1f} s are enough for its longest way"
+
+
+def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
+    command = sent.command
+    if isinstance(command, SetEffector):
+        return timing.effector_timeout_s
+    way_s = HOMING_S
+    if isinstance(command, MoveJoints) and isinstance(robot, Arm):
+        way_s = robot.travel_s(None, command.q)
+    elif isinstance(command, FollowPath) and isinstance(robot, Mobile):
+        way_s = robot.travel_s(command.nodes)
+    return max(robot.timeout_s, way_s * timing.deadline_factor + timing.deadline_floor_s)
+
+
+def _moved_deadline(look: Look, sent: SentCommand) -> Iterator[str]:
+    """Only a cancel gives another deadline: that for its halt."""
+    if sent.entry is None or sent.cancelled_at is None:
+        if sent.entry is not None and sent.entry.deadline != sent.deadline:
+            yield f"the deadline of {sent} was moved"
+    elif sent.entry.deadline > sent.cancelled_at + look.world.model.timing.stop_timeout_s + ROUNDING_S:
+        yield f"{sent} has more than stop_timeout_s to end after its cancel"
+
+
+def _waits(leaves: Iterable[object], now: float) -> Iterator[str]:
+    for leaf in leaves:
+        until = getattr(leaf, "until", None) if not isinstance(leaf, Act) else leaf.again_at
+        if until is not None and until <= now:
+            yield f"{getattr(leaf, 'name', leaf)} still waits {now - until:.3f} s after its end"
+
+
+@invariant(When.SENT)
+def retries_bounded(look: Look) -> Iterable[str]:
+    """A step gives its command once, once per retry, and once more each time that an operator says so."""
+    if not look.record.commands.new:
+        return
+    for cell in look.record.cells.values():
+        most = cell.cell.retry.times + 1 + cell.again
+        for leaf, count in cell.sends.items() if cell.looked else ():
+            if count > most:
+                yield f"{cell.name}: {leaf.name} gave its command {count} times, allowed are {most}"
+
+
+@invariant(When.NEWS)
+def halted_moves_sent_halt(look: Look) -> Iterable[str]:
+    """A motion that is given up, or whose step is left early, has had a halt or a stop sent after it."""
+    return (*_given_up(look), *_left(look))
+
+
+def _given_up(look: Look) -> Iterator[str]:
+    for sent, _ in look.record.commands.moved:
+        if sent.is_motion and sent.state in GIVEN_UP and not _needs_no_halt(look, sent):
+            yield f"{sent} was given up, and no halt was sent"
+
+
+def _left(look: Look) -> Iterator[str]:
+    """A command that no running step waits for any more must be ending; homing has no step."""
+    record = look.record
+    for sent in record.commands.open.values():
+        if not sent.is_motion or sent.state is State.CANCELLING or isinstance(sent.command, Home):
+            continue
+        cell = record.cells[sent.entry.cell] if sent.entry else None
+        if cell is None:
+            continue
+        if cell.run.tree is None:
+            yield f"{sent} is open, and no tree of {cell.name} runs"
+        elif cell.looked and not any(getattr(leaf, "entry", None) is sent.entry for leaf in cell.leaves):
+            yield f"{sent} is open, and no step of {cell.name} waits for it"
+
+
+def _needs_no_halt(look: Look, sent: SentCommand) -> bool:
+    """Whether it has had one, or cannot be under way."""
+    halted = look.record.robots[sent.robot].halts > sent.halts
+    return halted or sent.rejected or _known_still(look, sent)
+
+
+def _known_still(look: Look, sent: SentCommand) -> bool:
+    """Whether its robot itself has said in this step that it stands still."""
+    failure = sent.entry.failure if sent.entry else None
+    if failure is None or failure.reason not in KNOWN_STILL:
+        return False
+    codes = [report.state for report in look.moment.heard if report.robot == sent.robot]
+    return any(code is not MotionState.MOVING for code in (*codes, look.record.robots[sent.robot].state))
+
+
+COMMANDS = (
+    no_command_to_unfit,
+    stops_are_cleared_by_operators,
+    one_motion_per_robot,
+    only_legal_command_states,
+    no_deadline_overrun,
+    retries_bounded,
+    halted_moves_sent_halt,
+)

@@ -1,0 +1,87 @@
+"""What the plant says of its commands, by where robots truly are and what effectors truly do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.model import Evidence
+
+from ..truth import Truth
+from ..truth.arm import ArmTruth
+from ..truth.books import Booked
+from ..truth.mobile import MobileTruth
+from ..truth.robot import RobotTruth
+from .invariant import Look, When, invariant
+
+
+@invariant(When.BOOKED)
+def done_is_true(look: Look) -> Iterator[str]:
+    """A command that the plant takes for done is truly done: the robot stands there, the effector is so."""
+    for booked in look.truth.books.ended:
+        if booked.done and (why := _untrue(look.truth, booked)):
+            yield f"{_told(booked.command)} is called done, but {why}"
+
+
+@invariant(When.BOOKED)
+def tiny_moves_succeed(look: Look) -> Iterator[str]:
+    """A move that no fault and no operator touches is done, even one of no length."""
+    for booked in look.truth.books.ended:
+        if not booked.done and _undisturbed(look.truth, booked):
+            failure = booked.entry.failure
+            yield f"{_told(booked.command)} failed untouched: {failure.sentence if failure else 'no cause'}"
+
+
+def _undisturbed(truth: Truth, booked: Booked) -> bool:
+    entry, robot = booked.entry, truth.robot(booked.command.robot)
+    if robot is None or not entry.is_motion or entry.cancelled_at is not None:
+        return False
+    return robot.homed and not robot.latched and truth.books.calm_since(booked.sent_at)
+
+
+def _told(command: Command) -> str:
+    return f"{type(command).__name__} {command.id} of {command.robot}"
+
+
+def _untrue(truth: Truth, booked: Booked) -> str | None:
+    """What of a command that is called done is not so; None where it is, or where nobody could know."""
+    command, robot = booked.command, truth.robot(booked.command.robot)
+    if robot is None or _unprovable(truth, booked, robot):
+        return None
+    if isinstance(command, SetEffector) and isinstance(robot, ArmTruth):
+        lost = command.on and robot.booted_us >= booked.sent_at * 1e6  # it was on, and its power went
+        return None if lost or robot.on == command.on else f"it is {'on' if robot.on else 'off'}"
+    if isinstance(command, MoveJoints) and isinstance(robot, ArmTruth):
+        return None if robot.stands_at(command.q) else _where(robot, f"{robot.true} motor steps")
+    if isinstance(command, FollowPath) and isinstance(robot, MobileTruth):
+        return None if robot.stands_at(command.nodes[-1]) else _where(robot, f"node {robot.node}")
+    return None if robot.at_reference else _where(robot, "another place than its reference")
+
+
+def _where(robot: RobotTruth, place: str) -> str:
+    return f"it {'moves' if robot.moving else 'stands'} at {place}"
+
+
+def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
+    """Whether what a robot may say, at its level and as its board lies, proves nothing.
+
+    At `ids` a move shows in two ways, its number and the place, and both must be lies. At `joints` it shows
+    in place and state: a boot without a trace makes them worthless, and so does a line that takes its time,
+    for nothing tells what was said before the command came. An effector does not show there at all.
+    """
+    evidence, place = robot.robot.evidence, "q" if isinstance(robot, ArmTruth) else "node"
+
+    def lies(what: str) -> bool:
+        return truth.deceived_since(robot.robot.mqtt, what, booked.sent_at)
+
+    if isinstance(booked.command, SetEffector):
+        return evidence is not Evidence.IDS or lies("effector")
+    if isinstance(booked.command, Home):
+        return lies("homed")
+    if evidence is Evidence.IDS:
+        return lies("done") and lies(place)
+    unseen = evidence is Evidence.STATE or not robot.homed or booked.late
+    return unseen or lies(place) or lies("state")
+
+
+DONE = (done_is_true, tiny_moves_succeed)

@@ -1,0 +1,142 @@
+"""What grips, and where parts are, by what effectors truly did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.model import Evidence
+
+from ..truth.arm import ArmTruth
+from ..truth.deeds import CellTruth, Switch, named
+from ..truth.parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
+from .invariant import Look, When, invariant
+
+NOTHING: tuple[str, ...] = ()
+
+
+@invariant(When.ALWAYS)
+def effector_on_only_between_pick_and_place(look: Look) -> Iterable[str]:
+    """An effector goes on only at the pick-up of a running task that has not placed its part, and is off
+    when a task begins and when one is done; in between a plant that failed keeps its grip.
+    """
+    truth = look.truth
+    return _grips(look) if truth.changed or truth.begun or truth.ended or truth.stray_grips else NOTHING
+
+
+@invariant(When.CHANGED)
+def effector_off_only_where_legal(look: Look) -> Iterable[str]:
+    """An effector is opened only at a pick-up, where the cell's part belongs, or by an operator."""
+    return _opened(look)
+
+
+@invariant(When.PASSED)
+def no_part_dropped(look: Look) -> Iterator[str]:
+    """A part ends on the floor only by a fault that takes it, with the power, or by an operator's release."""
+    world = look.world
+    for passage in look.truth.parts.passages:
+        taken = passage.cause == FELL and (world.faults_active > 0 or world.last_fault_at == world.now)
+        excused = taken or passage.cause in (POWER, RELEASED)
+        if passage.place == FLOOR and not excused and not look.truth.unseen(look.truth.arms[passage.arm]):
+            yield f"{passage.arm} drops part {passage.part.number} ({passage.cause})"
+
+
+@invariant(When.CHANGED)
+def parts_conserved(look: Look) -> Iterator[str]:
+    """An effector holds a part only where one lay and it was on; an effector that is off holds none."""
+    for passage in look.truth.parts.passages:
+        if passage.cause == GRIPPED and not passage.lay_there:
+            yield f"{passage.arm} holds a part where none lay"
+    for robot in look.truth.changed:
+        if isinstance(robot, ArmTruth) and robot.holding and not robot.on:
+            yield f"{robot.robot.name} holds a part with its effector off"
+
+
+@invariant(When.PASSED)
+def station_gets_one_part(look: Look) -> Iterator[str]:
+    """No part is put into a station that has one; the customer takes it when its task has ended."""
+    for (cell, station), parts in look.truth.parts.stations.items():
+        if len(parts) > 1:
+            yield f"{station} of {cell} holds {len(parts)} parts"
+
+
+@invariant(When.ALWAYS)
+def one_pick_one_place(look: Look) -> Iterable[str]:
+    """At most one part leaves the pick-up for a task, and at most one comes to its place."""
+    return _repeated(look) if look.truth.changed or look.truth.ended else NOTHING
+
+
+@invariant(When.ENDED)
+def done_task_is_true(look: Look) -> Iterable[str]:
+    """Of a task that is called done the effector gripped at the pick-up and opened at its place, and arm and
+    mobile got to where they end.
+    """
+    return _not_done(look)
+
+
+def _grips(look: Look) -> Iterator[str]:
+    truth = look.truth
+    for name in truth.stray_grips:
+        yield f"{name} is told to grip while no task of its cell runs"
+    for switch in _switches(look):
+        if not switch.on or truth.unseen(truth.arms[switch.arm]):
+            continue
+        if why := _grips_wrongly(truth.cells[switch.cell], switch):
+            yield f"{switch.arm} grips at {named(switch.poses)}: {why}"
+    for cell in truth.begun:
+        if cell.arm is not None and cell.arm.on and not _untold(look, cell.arm, look.world.now):
+            yield f"{cell.task} begins, and the effector of its arm is on"
+    for ended in truth.ended:
+        if ended.done and ended.grips and not _untold(look, ended.cell.arm, ended.began_at):
+            yield f"{ended.task} is done, and the effector of its arm is on"
+
+
+def _opened(look: Look) -> Iterator[str]:
+    for switch in _switches(look):
+        excused = switch.lost_power or switch.released or look.truth.unseen(look.truth.arms[switch.arm])
+        if not switch.on and not switch.legal and not excused:
+            yield f"the effector of {switch.arm} is opened at {named(switch.poses)}"
+
+
+def _repeated(look: Look) -> Iterator[str]:
+    for each in (*look.truth.cells.values(), *look.truth.ended):
+        if each.picks > 1 or each.places > 1:
+            yield f"task {each.task} has {each.picks} picks and {each.places} places"
+
+
+def _not_done(look: Look) -> Iterator[str]:
+    for ended in look.truth.ended:
+        if ended.missing is not None and not _untold(look, ended.cell.arm, ended.began_at):
+            yield f"{ended.task} ({ended.text}) is called done, but {ended.missing}"
+
+
+def _switches(look: Look) -> list[Switch]:
+    """The effectors that changed in this step."""
+    return [cell.switch for cell in look.truth.cells.values() if cell.switch is not None]
+
+
+def _grips_wrongly(cell: CellTruth, switch: Switch) -> str | None:
+    """Why the effector must not be on there; a command of a task that was stopped may still arrive."""
+    if cell.order is None:
+        return "no task asked for that"
+    if not switch.legal:
+        return "no part is gripped there"
+    return "its task has put its part down" if cell.let_go else None
+
+
+def _untold(look: Look, arm: ArmTruth | None, since: float) -> bool:
+    """Whether nobody can tell what an effector did: its board lied or says nothing of it."""
+    if arm is None:
+        return True
+    unproven = arm.robot.evidence is not Evidence.IDS
+    return unproven or look.truth.deceived_since(arm.robot.mqtt, "effector", since)
+
+
+GRIP = (
+    effector_on_only_between_pick_and_place,
+    effector_off_only_where_legal,
+    no_part_dropped,
+    parts_conserved,
+    station_gets_one_part,
+    one_pick_one_place,
+    done_task_is_true,
+)

@@ -1,0 +1,154 @@
+"""Liveness: nothing sleeps, starves or waits for ever, and in the end all is at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.model import Arm, Evidence, MotionState
+from arboleda.sim.board import Board
+
+from ..recorded.cells import KnownCell
+from .invariant import Look, When, invariant
+
+SLACK_S = 0.001
+AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
+
+
+@invariant(When.NEWS)
+def running_tree_has_waker(look: Look) -> Iterable[str]:
+    """A tree that runs has an open command or a time that will wake it."""
+    awake = {sent.entry.cell for sent in look.record.commands.open.values() if sent.entry}
+    asleep = [cell for cell in look.record.cells.values() if cell.name not in awake and _sleeps(cell)]
+    return [f"{cell.name} sleeps with a running tree" for cell in asleep]
+
+
+def _sleeps(cell: KnownCell) -> bool:
+    """Whether no time will wake a tree that runs; a cell whose own time stands still has none."""
+    runs = cell.tree is not None and cell.state is CellState.EXECUTE
+    return runs and cell.context.next_deadline is None
+
+
+@invariant(When.NEWS)
+def time_stands_still_only_when_held(look: Look) -> Iterable[str]:
+    """The own time of a cell, which its trees wait by, passes unless the cell is held."""
+    frozen = [cell for cell in look.record.cells.values() if cell.frozen_s > SLACK_S]
+    return [f"{cell.name} is {cell.state.value}, and its time stood still" for cell in frozen]
+
+
+@invariant(When.NEWS)
+def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
+    """A cell has a tree only while it works, or is held at work."""
+    left = [
+        cell for cell in look.record.cells.values() if cell.tree is not None and cell.state not in AT_WORK
+    ]
+    return [f"{cell.name} is {cell.state.value}, and still has a tree" for cell in left]
+
+
+@invariant(When.STEPPED)
+def no_starvation(look: Look) -> Iterable[str]:
+    """In a cell that is idle, ready and not paused the next task starts in the same step."""
+    ready = [cell.name for cell in look.record.idle if _ready(look, cell)]
+    return [f"{name} is ready, and its next task does not start" for name in ready]
+
+
+def _ready(look: Look, cell: KnownCell) -> bool:
+    plant, robots = look.world.plant, look.record.robots
+    if cell.paused or cell.stopped or plant.intake.closed:
+        return False
+    for robot in cell.cell.robots:
+        known = robots[robot.name]
+        if known.state is MotionState.MOVING or known.obstacles(plant.now, plant.epoch):
+            return False
+        # whether a jump of its joints was a reboot is for the plant's evidence to judge
+        if robot.evidence is Evidence.JOINTS and plant.dispatcher.beliefs[robot.name].displaced:
+            return False
+    return _outside(look, cell)
+
+
+def _outside(look: Look, cell: KnownCell) -> bool:
+    """Whether the arm of a cell with shared zones is seen at a pose outside of them."""
+    arm, q = cell.cell.arm, look.record.robots[cell.cell.arm.name].q
+    if not cell.cell.crossings and not any(pose.zones for pose in cell.cell.poses):
+        return True
+    free = [pose for pose in cell.cell.poses if not pose.zones]
+    points = [point for pose in free for point in (pose.q, pose.above) if point is not None]
+    return q is not None and any(arm.reached(q, arm.quantised(point)) for point in points)
+
+
+@invariant(When.WAITING)
+def zone_requests_end(look: Look) -> Iterable[str]:
+    """Who waits for a zone gets it, or is refused it, within zone_wait_s of the cell's own time."""
+    return _overdue(look)
+
+
+def _overdue(look: Look) -> Iterator[str]:
+    for cell in look.record.waiting:
+        if cell.waited_s > cell.cell.zone_wait_s + SLACK_S:
+            yield f"{cell.cell.arm.name} waits for its zones for {cell.waited_s:.3f} s"
+
+
+@invariant(When.END)
+def at_rest_at_end(look: Look) -> Iterable[str]:
+    """At the end each task has ended, each cell is idle, each robot at rest, and no zone held."""
+    plant, record, zones = look.world.plant, look.record, look.world.plant.zones
+    for task in record.tasks.open.values():
+        yield f"task {task.id} of {task.cell} is {task.state.value}"
+    for name, cell in plant.cells.items():
+        if cell.state is not CellState.IDLE or cell.tree is not None:
+            yield f"{name} is {cell.state.value}; {cell.held_by or 'its tree runs'}"
+    for sent in record.commands.open.values():
+        yield f"{sent} is open"
+    for zone in look.world.model.zones:
+        if (robot := zones.holder(zone)) is not None:
+            yield f"{robot} holds {zone}{', quarantined' if zones.is_quarantined(zone) else ''}"
+    for robot, _ in zones.waiting:
+        yield f"{robot} waits for zones"
+    yield from _restless(look)
+
+
+def _restless(look: Look) -> Iterator[str]:
+    """Robots by what the plant has heard, and by what is true of their boards."""
+    plant, boards = look.world.plant, look.record.boards.of_robot
+    for name, known in look.record.robots.items():
+        for obstacle in sorted(known.obstacles(plant.now, plant.epoch)):
+            yield f"{name} is {obstacle.value}"
+        if known.state is MotionState.MOVING:
+            yield f"{name} says that it moves"
+        if known.stop is not None:
+            yield f"the stop of {name} is not over"
+        if (board := boards.get(name)) is not None and (words := ", ".join(_troubles(board.board))):
+            yield f"the board of {name} is {words}"
+
+
+def _troubles(board: Board) -> Iterator[str]:
+    rows = {
+        "moving": board.body.moving,
+        "unhomed": not board.homed,
+        "faulted": board.faulted,
+        "latched": board.latched,
+    }
+    return (word for word, is_so in rows.items() if is_so)
+
+
+@invariant(When.END)
+def nothing_waits_at_end(look: Look) -> Iterable[str]:
+    """At the end every queue is empty, none is paused, and no arm holds anything."""
+    for name, cell in look.world.plant.cells.items():
+        if cell.queue:
+            yield f"{len(cell.queue)} tasks wait in {name}: {cell.waiting_for()}"
+        if cell.queue_paused:
+            yield f"the queue of {name} is paused"
+        if isinstance(cell.cell.arm, Arm) and cell.context.holding():
+            yield f"{cell.cell.arm.name} may hold a part"
+
+
+LIVENESS = (
+    running_tree_has_waker,
+    time_stands_still_only_when_held,
+    no_tree_outlives_its_work,
+    no_starvation,
+    zone_requests_end,
+    at_rest_at_end,
+    nothing_waits_at_end,
+)

@@ -1,0 +1,223 @@
+"""Tasks and cells: nothing accepted is lost, everything ends once, states change by their tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.cell_states import TABLE, Cause, CellState
+from arboleda.core.messages import (
+    OperatorAnswer,
+    OperatorRequest,
+    Reason,
+    TaskChanged,
+    TaskRequest,
+    TaskState,
+    Verb,
+)
+
+from ..recorded.cells import KnownCell
+from ..recorded.robots import Stopped
+from .invariant import Look, When, invariant
+
+ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
+LEGAL: dict[TaskState | None, frozenset[TaskState]] = {
+    None: frozenset({TaskState.QUEUED}),
+    TaskState.QUEUED: frozenset({TaskState.RUNNING, TaskState.CANCELLED}),
+    TaskState.RUNNING: ENDED,
+}
+NONE: frozenset[TaskState] = frozenset()
+# What moves a cell without any operator, and what each verb may do to it.
+BY_ITSELF = frozenset({Cause.TASK, Cause.ENDED, Cause.STUCK, Cause.HALTED, Cause.CLEARED})
+BY_VERB: dict[Verb, frozenset[Cause]] = {
+    Verb.STOP: frozenset({Cause.STOP}),
+    Verb.CLEAR: frozenset({Cause.CLEAR}),
+    Verb.RESET: frozenset({Cause.RESET, Cause.READY}),
+    Verb.HOLD: frozenset({Cause.HOLD}),
+    Verb.RESUME: frozenset({Cause.RESUME}),
+    Verb.RETRY: frozenset({Cause.RETRY}),
+    Verb.ABANDON: frozenset({Cause.ABANDON}),
+    Verb.CANCEL: frozenset({Cause.ABANDON}),
+}
+ROWS = tuple(TABLE.items())
+TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
+
+
+@invariant(When.SENT)
+def each_task_ends_once(look: Look) -> Iterable[str]:
+    """Each accepted task is told to have ended once, and only after it was accepted."""
+    for change in look.record.tasks.changes:
+        if not change.answer and change.said.state in ENDED and change.before in (None, *ENDED):
+            was = change.before.value if change.before else "never accepted"
+            yield f"task {change.said.task} ended as {change.said.state.value}, and was {was}"
+
+
+@invariant(When.SENT)
+def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
+    """A task that has ended never changes, and to cancel it is refused."""
+    for change in look.record.tasks.changes:
+        if not change.answer and change.before in ENDED:
+            yield f"task {change.said.task} had ended, and became {change.said.state.value}"
+    for answer in look.record.answers:
+        if answer.verb is Verb.CANCEL and answer.refusal is None and _had_ended(look, answer):
+            yield f"to cancel {answer.scope}, which had ended, was not refused"
+
+
+def _had_ended(look: Look, answer: OperatorAnswer) -> bool:
+    """A word that also names a cell or a robot may mean that; what ended in this step may have run before."""
+    id = answer.scope.strip().lstrip("#")
+    task = look.record.tasks.known(id)
+    ended = task is not None and task.state in ENDED and task.since < look.world.plant.now
+    return ended and id not in look.record.scopes
+
+
+@invariant(When.SENT)
+def only_legal_task_states(look: Look) -> Iterable[str]:
+    """A task is queued, then runs, then ends; only a queued one may be cancelled before it runs."""
+    for change in look.record.tasks.changes:
+        if not change.answer and change.said.state not in LEGAL.get(change.before, NONE):
+            was = change.before.value if change.before else "unknown"
+            yield f"task {change.said.task} became {change.said.state.value}, and was {was}"
+
+
+@invariant(When.SENT)
+def first_come_first_served(look: Look) -> Iterable[str]:
+    """The task of a cell that starts is the one that has waited longest."""
+    for change in look.record.tasks.changes:
+        if change.said.state is TaskState.RUNNING and not change.answer and change.first != change.said.task:
+            yield f"task {change.said.task} started before {change.first}"
+
+
+@invariant(When.SENT)
+def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
+    """A task that an operator has cancelled ends as cancelled, whatever its last move came to."""
+    for change in look.record.tasks.changes:
+        ended = change.said.state in ENDED and not change.answer
+        if ended and change.cancelled and change.said.state is not TaskState.CANCELLED:
+            yield f"task {change.said.task} was cancelled, and ended as {change.said.state.value}"
+
+
+@invariant(When.NEWS)
+def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
+    """Each accepted task is in its cell's queue, runs there, or has ended."""
+    return _unkept(look)
+
+
+def _unkept(look: Look) -> Iterator[str]:
+    tasks = look.record.tasks
+    for name, cell in look.record.cells.items():
+        run, queue = cell.run, tasks.queues[name]
+        runs = run.task.id if run.task is not None else None
+        if runs != tasks.running.get(name):
+            yield f"{name} runs {runs}; by what was told it runs {tasks.running.get(name)}"
+        if len(run.queue) != len(queue) or (tasks.changes and [each.id for each in run.queue] != list(queue)):
+            yield f"{name} has {len(run.queue)} tasks in its queue; by what was told {len(queue)}, or others"
+    for change in tasks.changes:
+        known = look.world.plant.intake.tasks.get(change.said.task)
+        told = tasks.known(change.said.task)
+        if known is not None and told is not None and known.state is not told.state:
+            yield f"task {known.id} is {known.state.value}, and was told to be {told.state.value}"
+
+
+@invariant(When.NEWS)
+def only_legal_cell_states(look: Look) -> Iterable[str]:
+    """A cell changes its state along the rows of its table, by itself or as an operator asked then."""
+    return _at_birth(look) if look.record.born else _illegal(look)
+
+
+def _illegal(look: Look) -> Iterator[str]:
+    for cell, before, after in look.record.transitions:
+        causes = BY_ITSELF.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
+        if after not in _reachable(before, causes):
+            yield f"{cell.name} went from {before.value} to {after.value}, and nobody asked for that"
+
+
+def _verbs(look: Look, cell: KnownCell) -> Iterator[Verb]:
+    """What was done in this step where the cell is; a scope that names no robot may be a task of any cell."""
+    scopes = look.record.scopes
+    for answer in look.record.answers:
+        if answer.refusal is None and (answer.scope not in scopes or cell.name in scopes.cells(answer.scope)):
+            yield answer.verb
+
+
+def _reachable(before: CellState, causes: frozenset[Cause]) -> set[CellState]:
+    reached: set[CellState] = set()
+    frontier = {before}
+    while frontier:
+        rows = ((state, cause, after) for (state, cause), after in ROWS if state in frontier)
+        frontier = {after for _, cause, after in rows if cause in causes} - reached
+        reached |= frontier
+    return reached
+
+
+def _at_birth(look: Look) -> Iterator[str]:
+    """A stop outlives the plant: until clear, and until reset."""
+    robots = look.record.robots
+    for cell in look.record.cells.values():
+        stops = {robots[robot.name].stop for robot in cell.cell.robots}
+        state = CellState.ABORTED if Stopped.LATCHED in stops else CellState.STOPPED if any(stops) else None
+        if state is not None and cell.run.state is not state:
+            yield f"{cell.name} starts {cell.run.state.value}; its stop was not over"
+        if state is None and cell.run.state not in (CellState.IDLE, CellState.HELD):
+            yield f"{cell.name} starts {cell.run.state.value}; it was not stopped"
+
+
+@invariant(When.ASKED)
+def rejected_input_changes_nothing(look: Look) -> Iterable[str]:
+    """A step in which everything asked is refused, and nothing is heard or due, changes nothing."""
+    return look.record.differences
+
+
+@invariant(When.ASKED)
+def every_request_is_answered(look: Look) -> Iterable[str]:
+    """Each task text and each verb has its answer in the step that takes it in."""
+    record, asked = look.record, look.moment.asked
+    verbs = sum(isinstance(each, OperatorRequest) for each in asked)
+    if verbs != len(record.answers):
+        yield f"{verbs} verbs were asked for, {len(record.answers)} answered"
+    tokens = [each.request for each in asked if isinstance(each, TaskRequest) and each.request is not None]
+    told = [each.request for each in look.moment.sent if isinstance(each, TaskChanged)]
+    if tokens != [token for token in told if token is not None]:
+        yield f"task requests {tokens} were answered as {told}"
+
+
+@invariant(When.SENT)
+def no_internal_failure(look: Look) -> Iterable[str]:
+    """No task fails, and no cell is held, for a defect of the plant itself."""
+    for change in look.record.tasks.changes:
+        if change.said.reason is Reason.INTERNAL:
+            yield f"task {change.said.task}: {change.said.sentence}"
+    for cell, _, after in look.record.transitions:
+        trouble = cell.run.trouble
+        if after is CellState.HELD and trouble is not None and trouble.reason is Reason.INTERNAL:
+            yield f"{cell.name} is held: {trouble.sentence}"
+
+
+@invariant(When.SENT)
+def sentences_are_for_people(look: Look) -> Iterable[str]:
+    """What the plant tells people is one line without a traceback, and a failure always has a sentence."""
+    for message in look.moment.sent:
+        if isinstance(message, TaskChanged):
+            failed = message.reason is not None or message.state is TaskState.REFUSED
+            yield from _technical(message.sentence if failed else message.sentence or None)
+        elif isinstance(message, OperatorAnswer):
+            yield from _technical(message.refusal)
+
+
+def _technical(sentence: str | None) -> Iterator[str]:
+    if sentence is not None and (not sentence or any(word in sentence for word in TECHNICAL)):
+        yield f"people are told {sentence!r}"
+
+
+TASKS = (
+    each_task_ends_once,
+    ended_tasks_stay_ended,
+    only_legal_task_states,
+    first_come_first_served,
+    cancelled_tasks_end_cancelled,
+    accepted_tasks_are_kept,
+    only_legal_cell_states,
+    rejected_input_changes_nothing,
+    every_request_is_answered,
+    no_internal_failure,
+    sentences_are_for_people,
+)

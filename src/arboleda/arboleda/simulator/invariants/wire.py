@@ -1,0 +1,155 @@
+"""The wire: what leaves the bridge, what boards carry out, and that positions are what boards have told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from typing import Any
+
+from arboleda.core.messages import FollowPath, MoveJoints
+from arboleda.core.model import Arm, Evidence, Joint, Mobile
+
+from ..recorded.boards import fields, is_number, on_wire
+from ..world import BRIDGE
+from .invariant import Look, When, invariant
+
+LIMIT_BYTES = 512
+ROUNDING_DEG = 0.6e-4  # the wire has four decimals
+
+
+@invariant(When.EXECUTED)
+def executed_numbers_rise(look: Look) -> Iterable[str]:
+    """The (epoca, seq) of the commands that a board carries out rise from its boot on."""
+    for board, goal, before, _ in look.record.boards.executed:
+        if before is not None and goal.seq is not None and (goal.epoch, goal.seq) <= before:
+            yield f"{board} carried out {(goal.epoch, goal.seq)} after {before}"
+
+
+@invariant(When.EXECUTED)
+def no_repeat_has_effect(look: Look) -> Iterable[str]:
+    """A board carries out only what was delivered to it, each message once, and nothing retained."""
+    for board, goal, _, delivered in look.record.boards.executed:
+        if not delivered:
+            yield f"{board} carried out {goal}, which was not delivered anew"
+
+
+@invariant(When.PUBLISHED)
+def wire_targets_legal(look: Look) -> Iterable[str]:
+    """Goals on the wire are finite, inside limits, whole motor steps, and what the plant commanded."""
+    for client, publication in look.moment.published:
+        if client == BRIDGE and publication.topic.endswith(("/juntas", "/camino")):
+            name, _, channel = publication.topic.partition("/")
+            body = fields(publication.payload)
+            yield from _path(look, name, body) if channel == "camino" else _joints(look, name, body)
+
+
+def _joints(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
+    board = look.record.boards.by_name[name]
+    arm = board.robot
+    assert isinstance(arm, Arm)
+    goal = [body.get(f"q{number}") for number in range(1, len(arm.joints) + 1)]
+    if not all(is_number(value) for value in goal) or not _numbered(arm.evidence, body):
+        yield f"{name}/juntas is {body}"
+        return
+    if (held := tuple(goal)) not in board.legal:
+        for joint, value in zip(arm.joints, goal, strict=True):
+            yield from _off_step(name, joint, value)
+        board.legal.add(held)
+    recent = reversed(look.record.commands.goals.get(arm.name, ()))
+    if not any(isinstance(each, MoveJoints) and _is_goal(arm, each.q, goal) for each in recent):
+        yield f"{name}/juntas is {goal}, which the plant has not commanded"
+
+
+def _off_step(name: str, joint: Joint, value: float) -> Iterator[str]:
+    step = on_wire(joint, joint.step)
+    if abs(value - round(value / step) * step) > ROUNDING_DEG:
+        yield f"{name}: {joint.name} {value} is no whole motor step of {step}"
+    # a limit between two steps is reached on the step that stands for it
+    lower = on_wire(joint, min(joint.lower, joint.quantised(joint.lower))) - ROUNDING_DEG
+    upper = on_wire(joint, max(joint.upper, joint.quantised(joint.upper))) + ROUNDING_DEG
+    if not lower <= value <= upper:
+        yield f"{name}: {joint.name} {value} is beyond {lower:.4f} to {upper:.4f}"
+
+
+def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
+    rows = zip(arm.joints, q, goal, strict=True)
+    return all(abs(on_wire(j, q) - said) <= on_wire(j, j.step) / 2 + ROUNDING_DEG for j, q, said in rows)
+
+
+def _path(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
+    mobile = look.record.boards.by_name[name].robot
+    assert isinstance(mobile, Mobile)
+    nodes, grid = body.get("nodos"), mobile.grid
+    whole = isinstance(nodes, list) and nodes and all(type(node) is int for node in nodes)
+    if not whole or not _numbered(mobile.evidence, body):
+        yield f"{name}/camino is {body}"
+        return
+    if not all(0 <= node < grid.size for node in nodes):
+        yield f"{name}/camino leaves the grid: {nodes}"
+    elif any(there not in grid.neighbours(here) for here, there in pairwise(nodes)):
+        yield f"{name}/camino leaves the grid's edges: {nodes}"
+    recent = reversed(look.record.commands.goals.get(mobile.name, ()))
+    if not any(isinstance(each, FollowPath) and list(each.nodes) == nodes for each in recent):
+        yield f"{name}/camino is {nodes}, which the plant has not commanded"
+
+
+def _numbered(evidence: Evidence, body: dict[str, Any]) -> bool:
+    stamps = [body.get("seq"), body.get("epoca")]
+    if evidence is not Evidence.IDS:
+        return stamps == [None, None]
+    return all(type(stamp) is int and stamp > 0 for stamp in stamps)
+
+
+@invariant(When.PUBLISHED)
+def nothing_retained_on_commands(look: Look) -> Iterable[str]:
+    """Of all that the bridge and the boards publish, only presence is retained."""
+    for client, publication in look.moment.published:
+        if publication.retain and client and not publication.topic.endswith("/conexion"):
+            yield f"{client} published {publication.topic} retained"
+
+
+@invariant(When.PUBLISHED)
+def payload_size(look: Look) -> Iterable[str]:
+    """No payload of the bridge or of a board is longer than 512 bytes."""
+    for client, publication in look.moment.published:
+        if len(publication.payload) > LIMIT_BYTES and client:
+            yield f"{client} published {len(publication.payload)} bytes on {publication.topic}"
+
+
+@invariant(When.HEARD)
+def published_joints_are_reported(look: Look) -> Iterable[str]:
+    """A position that the plant shows is the last one it heard, and its board told it lately."""
+    record, wrong = look.record, []
+    for report in look.moment.heard:
+        if report.robot not in record.shown:
+            continue
+        known, board, belief = record.shown[report.robot]
+        if belief.q is not known.q or belief.node != known.node:
+            wrong.append(f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}")
+        if board.is_news(report) and not board.said(report.q, report.node, record.told_since(report.at)):
+            where = report.node if report.q is None else report.q
+            wrong.append(f"{report.robot} is reported at {where}, which its board has not told lately")
+    return wrong
+
+
+@invariant(When.BORN)
+def nothing_shown_before_heard(look: Look) -> Iterable[str]:
+    """A plant that starts shows no position of a robot that it has not heard."""
+    beliefs, robots = look.world.plant.dispatcher.beliefs, look.record.robots
+    wrong = (name for name, belief in beliefs.items() if belief.position is not None)
+    return [f"{name} is shown without a word of it" for name in wrong if not _heard(robots[name])]
+
+
+def _heard(known: Any) -> bool:
+    return known.q is not None or known.node is not None
+
+
+WIRE = (
+    executed_numbers_rise,
+    no_repeat_has_effect,
+    wire_targets_legal,
+    nothing_retained_on_commands,
+    payload_size,
+    published_joints_are_reported,
+    nothing_shown_before_heard,
+)

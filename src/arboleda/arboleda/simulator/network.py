@@ -1,0 +1,135 @@
+"""What lies between two processes: a broker, and lines that lose, repeat, delay and reorder messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from arboleda.wire.transport import Delivery, Publication
+
+At = Callable[[float, Callable[[Any], None], Any], None]  # (time, call, its argument): have it called then
+Trouble = Callable[[Any], Iterable[float]]  # a message -> how late each of its copies comes, s; none: lost
+
+
+class Line:
+    """One direction of a connection; messages keep their order unless `reorders`, presence always does.
+
+    `busy_until` is when the last of what was sent so far arrives.
+    """
+
+    def __init__(self) -> None:
+        self.troubles: list[Trouble] = []
+        self.reorders = 0  # how many faults let later messages overtake
+        self.busy_until = 0.0
+
+    def carry(self, now: float, message: Any) -> list[float]:
+        """When each copy of a message arrives; empty where it is lost."""
+        if not self.troubles and self.busy_until <= now:
+            return [now]
+        delays = [0.0]
+        for trouble in self.troubles:
+            delays = [delay + more for delay in delays for more in trouble(message)]
+        earliest = now if self.reorders and not keeps_its_place(message) else self.busy_until
+        arrivals = [max(earliest, now + delay) for delay in delays]
+        self.busy_until = max(self.busy_until, *arrivals) if arrivals else self.busy_until
+        return arrivals
+
+
+def keeps_its_place(message: Any) -> bool:
+    """Whether MQTT never loses or overtakes it while a connection lasts: presence, retained with QoS 1.
+
+    Nothing numbers it, so that order is all that protects it; lost with its connection, it is told anew.
+    """
+    return isinstance(message, Publication) and message.retain
+
+
+class Client:
+    """A process at the broker: its inbox, and whether it is connected."""
+
+    def __init__(self, name: str, topics: Iterable[str]) -> None:
+        self.name = name
+        self.topics = frozenset(topics)
+        self.inbox: list[Any] = []
+        self.up, self.down = Line(), Line()
+        self.connected = False
+        self.connection = 0  # counts connections: what was under way in an earlier one is lost
+        self.queue = 0  # counts queues at the broker: what waited in an earlier one is lost, presence apart
+
+    def connect(self, up: bool) -> None:
+        self.connected = up
+        self.connection += 1
+
+
+class Broker:
+    """Takes publications from clients to the inboxes of those that listen, as `Delivery`.
+
+    A publication that is not delayed anywhere is in the inbox before `publish` returns.
+    """
+
+    def __init__(self, clock: Callable[[], float], at: At, heard: Callable[[Client, Delivery], None]) -> None:
+        self.is_up = True
+        self.retained: dict[str, Publication] = {}
+        self.clients: dict[str, Client] = {}
+        self._clock = clock
+        self._at = at
+        self._heard = heard
+        self._lives = 0
+        self._listeners: dict[str, list[Client]] = {}
+
+    def join(self, client: Client) -> None:
+        self.clients[client.name] = client
+        for topic in client.topics:
+            self._listeners.setdefault(topic, []).append(client)
+
+    def publish(self, publication: Publication, sender: Client | None = None) -> None:
+        """Somebody publishes; None: somebody who is no part of the plant, or the broker for a lost client."""
+        if sender is None:
+            self._arrive((self._lives, publication))
+        elif sender.connected:
+            for at in sender.up.carry(self._clock(), publication):
+                self._when(at, self._arrive, (self._lives, publication))
+
+    def tell_retained(self, client: Client) -> None:
+        """What a client hears right after it subscribed."""
+        for publication in self.retained.values():
+            if publication.topic in client.topics:
+                self._send(client, publication, retained=True)
+
+    def die(self) -> None:
+        """Every connection ends, and what was retained or under way is gone."""
+        self.is_up = False
+        self._lives += 1
+        self.retained.clear()
+        for client in self.clients.values():
+            client.connect(False)
+
+    def _when(self, at: float, call: Callable[[Any], None], argument: Any) -> None:
+        if at <= self._clock():
+            call(argument)
+        else:
+            self._at(at, call, argument)
+
+    def _arrive(self, carried: tuple[int, Publication]) -> None:
+        life, publication = carried
+        if not self.is_up or life != self._lives:
+            return
+        if publication.retain:
+            self.retained[publication.topic] = publication
+        for client in self._listeners.get(publication.topic, ()):
+            self._send(client, publication, retained=False)
+
+    def _send(self, client: Client, publication: Publication, *, retained: bool) -> None:
+        if client.connected:
+            carried = (client, client.connection, client.queue, publication, retained)
+            for at in client.down.carry(self._clock(), publication):
+                self._when(at, self._hand_over, carried)
+
+    def _hand_over(self, carried: tuple[Client, int, int, Publication, bool]) -> None:
+        client, connection, queue, publication, retained = carried
+        if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
+            self._heard(
+                client,
+                Delivery(
+                    at=self._clock(), topic=publication.topic, payload=publication.payload, retain=retained
+                ),
+            )

@@ -1,0 +1,329 @@
+"""What was said and done in a world so far, kept apart from the plant's own books."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import copy
+from typing import Any
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Home,
+    MoveJoints,
+    OperatorAnswer,
+    OperatorRequest,
+    SetEffector,
+    Stop,
+    StopMode,
+    TaskChanged,
+    TaskRequest,
+    Verb,
+)
+from arboleda.core.plant import Plant
+
+from .recorded.boards import Boards, KnownBoard
+from .recorded.cells import LOOK_S, KnownCell
+from .recorded.commands import Commands, SentCommand
+from .recorded.refusals import differences
+from .recorded.robots import KnownRobot, Obstacle, Stopped
+from .recorded.scopes import Scopes
+from .recorded.tasks import Tasks
+from .world import BRIDGE, World
+
+NO_VERBS: frozenset[Verb] = frozenset()
+SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line may still have old reports
+
+
+class Record:
+    """Follows requests, commands, reports and tasks step by step.
+
+    `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `news`: whether
+    something changed in it besides what robots report, or it is time to look at everything again.
+    `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
+    until then. `answers` and `transitions` (cell, state before, state after) are of this step;
+    `differences` are what a step changed in which everything asked was refused and nothing was heard.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        model = world.model
+        self.scopes = Scopes(model)
+        stale_after_s = model.timing.stale_after_s
+        self.robots = {name: KnownRobot(robot, stale_after_s) for name, robot in model.robots.items()}
+        self.cells = {cell.name: KnownCell(cell) for cell in model.cells}
+        self.commands = Commands()
+        self.tasks = Tasks(self.cells)
+        self.boards = Boards(
+            {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
+        )
+        self.answers: list[OperatorAnswer] = []
+        self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
+        self.differences: list[str] = []
+        self.waiting: list[KnownCell] = []  # whose arm waits for zones
+        self.idle: list[KnownCell] = []  # with tasks in the queue
+        self.stepped = self.news = self.born = False
+        self._cells = tuple(self.cells.values())
+        self._look_again_at = 0.0
+        self._has_news = False
+        self.stepped_at = world.plant.now
+        self.slow_until = world.now
+        self._next: dict[str, float] = {}
+        self._verbs: dict[str, set[Verb]] = {}
+        self._earlier: dict[str, list[KnownRobot]] = {}
+        self._plant = world.plant
+        self._begin(world.plant)
+        self._take_over(world.plant)
+
+    def look(self) -> None:
+        """Take in what happened in this step; called before any invariant."""
+        moment, plant = self.world.moment, self.world.plant
+        if moment.delivered or moment.executed:
+            self._look_at_boards()
+        if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
+            self._look_at_plant(plant)
+        elif self.stepped:
+            self.stepped = self.news = self.born = False
+
+    def told_since(self, at: float) -> float:
+        """Since when a position that reached the plant at `at` may have been told."""
+        return 0.0 if at < self.slow_until else at - self.world.model.timing.stale_after_s
+
+    def _is_new(self, plant: Plant) -> bool:
+        return plant is not self._plant
+
+    def due_for(self, what: str, every_s: float) -> bool:
+        """Whether something that need not be looked at after every step is to be looked at now."""
+        if self.world.now < self._next.get(what, 0.0):
+            return False
+        self._next[what] = self.world.now + every_s
+        return True
+
+    def _begin(self, plant: Plant) -> None:
+        """A plant that starts knows nothing but what it had to keep."""
+        self._plant = plant
+        self.stepped_at = plant.now
+        self.tasks.forget()
+        self.commands.forget()
+        for robot in self.robots.values():
+            robot.forget()
+        for name, cell in self.cells.items():
+            cell.begin(plant.cells[name])
+        beliefs, boards = plant.dispatcher.beliefs, self.boards.of_robot
+        self.shown = {name: (self.robots[name], board, beliefs[name]) for name, board in boards.items()}
+
+    def _take_over(self, plant: Plant) -> None:
+        """What robots said before this record began; the only time that the plant is asked."""
+        for name, known in self.robots.items():
+            belief = plant.dispatcher.beliefs[name]
+            known.heard_at, known.state, known.homed = belief.heard_at, belief.state, belief.homed
+            known.boot, known.epoch, known.plant = belief.boot_id, belief.epoch, belief.plant
+            known.q, known.node = belief.q, belief.node
+            if (board := self.boards.of_robot.get(name)) is not None:
+                board.take_over(self.world.now, belief.q, belief.node)
+
+    def _look_at_boards(self) -> None:
+        boards, moment = self.boards, self.world.moment
+        boards.deliver(moment.delivered)
+        boards.executed.clear()
+        for name, goal in moment.executed:
+            boards.execute(name, goal)
+        clients = self.world.broker.clients
+        boards.forget_read(clients)
+        inbox, now = clients[BRIDGE].inbox, self.world.now
+        if self.world.to_plant.troubles or (inbox and inbox[0].at < now):
+            self.slow_until = now + SLOW_S
+
+    def _look_at_plant(self, plant: Plant) -> None:
+        moment = self.world.moment
+        self.stepped = True
+        self.born = self._is_new(plant)
+        if self._has_news:
+            self._clear_news()
+        if self.born:
+            self._begin(plant)
+        if moment.heard:
+            self._hear(bool(moment.asked))
+        if moment.asked:
+            self._ask(moment.asked)
+        for message in moment.sent:
+            take = TAKES.get(type(message))
+            if take is not None:
+                take(self, message)
+        self._compare(plant)
+        self.stepped_at = plant.now
+
+    def _clear_news(self) -> None:
+        self.commands.clear_news()
+        self.tasks.clear_news()
+        self.answers.clear()
+        self.transitions.clear()
+        self.differences.clear()
+        self._has_news = False
+
+    def _compare(self, plant: Plant) -> None:
+        """Take over what the plant's books say after this step."""
+        moved = self.commands.follow(plant.dispatcher.ledger, plant.now)
+        asked = bool(self.world.moment.asked)
+        if asked:
+            self.differences += differences(self)
+            self._verbs.clear()
+        if self.world.model.zones:
+            self._look_at_zones(plant)
+        changed = self._look_at_cells()
+        if changed:
+            self.idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
+        self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
+        if self.news or plant.now >= self._look_again_at:
+            self._look_into_trees(plant.now)
+
+    def _hear(self, asked: bool) -> None:
+        """Where somebody asked in between, a command may rest on any of the words before it."""
+        heard, robots = self.world.moment.heard, self.robots
+        self._earlier.clear()
+        for report in heard:
+            known = robots.get(report.robot)
+            if known is None:
+                continue
+            if asked or known.robot.home_at_start:
+                self._earlier.setdefault(report.robot, []).append(copy(known))
+            known.hear(report)
+            if report.rejected is not None:
+                self.commands.hear(report)
+
+    def _ask(self, asked: list[Any]) -> None:
+        for event in asked:
+            if isinstance(event, OperatorRequest):
+                for robot in self.scopes.robots(event.scope):
+                    self._verbs.setdefault(robot, set()).add(event.verb)
+
+    def _look_at_zones(self, plant: Plant) -> None:
+        """Called before the cells are taken over: until now each was in the state it had."""
+        robots = {robot for robot, _ in plant.zones.waiting}
+        if not robots:
+            self.waiting.clear()
+            return
+        self.waiting = [cell for cell in self.cells.values() if cell.cell.arm.name in robots]
+        for cell in self.waiting:
+            cell.wait(plant.now - self.stepped_at)
+
+    def _look_at_cells(self) -> bool:
+        """Whether any of them is not as it was."""
+        changed = False
+        for cell in self._cells:
+            cell.looked = False
+            before = cell.state
+            if cell.follow():
+                changed = True
+                if cell.state is not before:
+                    self.transitions.append((cell, before, cell.state))
+        return changed
+
+    def _look_into_trees(self, now: float) -> None:
+        """Into those that sent something, and from time to time into all."""
+        self.news = self._has_news = True
+        due = now >= self._look_again_at
+        if due:
+            self._look_again_at = now + LOOK_S
+        sent = {each.command.id for each in self.commands.new}
+        senders = {each.entry.cell for each in self.commands.new if each.entry}
+        for cell in self._cells:
+            cell.watch_time(now)
+            if cell.state is CellState.EXECUTE and (due or cell.name in senders):
+                cell.look(sent)
+
+    def _on_command(self, command: Command) -> None:
+        known = self.robots[command.robot]
+        verbs = frozenset(self._verbs[command.robot]) if command.robot in self._verbs else NO_VERBS
+        obstacles = frozenset() if isinstance(command, Stop) else self._obstacles(known)
+        if isinstance(command, Stop):
+            verbs |= self._missed(command, known, verbs)
+        self.commands.take(SentCommand(command, self._plant.now, obstacles, verbs, known.halts), known)
+        if isinstance(command, Stop) and command.mode is StopMode.CLEAR:
+            known.stop = Stopped.CLEARED if known.stop is Stopped.LATCHED else known.stop
+
+    def _missed(self, command: Stop, known: KnownRobot, verbs: frozenset[Verb]) -> frozenset[Verb]:
+        """An operator's clear of a robot that was offline counts once more, when it is back."""
+        missed, asked = known.missed_clear, Verb.CLEAR in verbs
+        known.missed_clear = command.mode is StopMode.CLEAR and asked and known.offline(self._plant.now)
+        known.missed_clear |= command.mode is StopMode.HALT and missed
+        return frozenset({Verb.CLEAR}) if missed else NO_VERBS
+
+    def _obstacles(self, known: KnownRobot) -> frozenset[Obstacle]:
+        """What spoke against a command all through this step."""
+        asked = self.world.moment.asked
+        now = min((event.at for event in asked), default=self._plant.now)
+        found = known.obstacles(now, self._plant.epoch)
+        for earlier in self._earlier.get(known.robot.name, ()):
+            earlier.stop = known.stop
+            found &= earlier.obstacles(now, self._plant.epoch)
+        cell = self.cells[self.world.model.cell_of[known.robot.name].name]
+        return found | {Obstacle.STOPPED} if cell.stopped else found
+
+    def _on_task(self, said: TaskChanged) -> None:
+        requests = (each for each in self.world.moment.asked if isinstance(each, TaskRequest))
+        again = said.request is not None or any(each.request is None for each in requests)
+        self.tasks.take(said, self._plant.now, asked_again=again)
+
+    def _on_answer(self, answer: OperatorAnswer) -> None:
+        self.answers.append(answer)
+        done = DONE.get(answer.verb)
+        if answer.refusal is None and done is not None:
+            done(self, answer.scope)
+
+    def _stopped(self, scope: str) -> None:
+        for name in self.scopes.robots(scope):
+            self.robots[name].stop = Stopped.LATCHED
+        for name in self.scopes.cells(scope):
+            self.cells[name].stopped = True
+
+    def _reset(self, scope: str) -> None:
+        for name in self.scopes.cells(scope):
+            cell = self.cells[name]
+            if cell.state is CellState.STOPPED:
+                cell.stopped = False
+                for robot in cell.cell.robots:
+                    self.robots[robot.name].stop = None
+
+    def _again(self, scope: str) -> None:
+        for name in self.scopes.cells(scope):
+            self.cells[name].again += 1
+
+    def _homed(self, scope: str) -> None:
+        asked = self.world.moment.asked
+        if any(isinstance(each, OperatorRequest) and each.by_hand for each in asked):
+            for name in self.scopes.robots(scope):
+                self.robots[name].displaced = False
+
+    def _cancelled(self, scope: str) -> None:
+        """A task by its id, or the one that runs in a cell."""
+        task = self.tasks.known(scope.strip().lstrip("#"))
+        cells = self.scopes.cells(scope)
+        if task is None and len(cells) == 1:
+            task = self.tasks.open.get(self.tasks.running.get(cells[0], ""))
+        if task is not None:
+            task.cancelled = True
+
+
+TAKES: dict[type, Callable[[Record, Any], None]] = {
+    MoveJoints: Record._on_command,
+    FollowPath: Record._on_command,
+    SetEffector: Record._on_command,
+    Stop: Record._on_command,
+    Home: Record._on_command,
+    TaskChanged: Record._on_task,
+    OperatorAnswer: Record._on_answer,
+}
+DONE: dict[Verb, Callable[[Record, str], None]] = {
+    Verb.STOP: Record._stopped,
+    Verb.RESET: Record._reset,
+    Verb.RESUME: Record._again,
+    Verb.RETRY: Record._again,
+    Verb.HOME: Record._homed,
+    Verb.CANCEL: Record._cancelled,
+}
+
+
+def _robot(world: World, mqtt: str) -> Any:
+    return next(robot for robot in world.model.robots.values() if robot.mqtt == mqtt)

@@ -1,0 +1,173 @@
+"""What reached the boards and the bridge over the broker, and what the boards carried out."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import deque
+from collections.abc import Iterator
+from typing import Any
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Report
+from arboleda.core.model import Arm, Joint, Robot
+from arboleda.sim.board import Board
+from arboleda.wire.payloads import Goal, decode
+from arboleda.wire.topics import Channel, parse, topic
+from arboleda.wire.transport import Delivery
+
+from ..network import Client
+
+RECENT = 512  # telemetry messages, more than the bridge or a line keep
+DECIMALS = 4
+EXACT = 0.6e-4
+LOOK_S = 0.5  # a position that stays the same is looked at this often
+Numbers = tuple[int, int]  # (epoca, seq)
+
+
+class KnownBoard:
+    """One board: its numbers since it booted, what is new in its inbox, what the bridge heard of it."""
+
+    def __init__(self, robot: Robot, board: Board) -> None:
+        self.robot = robot
+        self.board = board
+        self.boot = board.boot_id
+        self.last: Numbers | None = None
+        self.inbox: list[Delivery] = []
+        self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
+        self.legal: set[tuple[float, ...]] = set()  # goals on the wire that the axes can hold
+        self._reported_q: tuple[float, ...] | None = None
+        self._reported_node: int | None = None
+        self._look_at = 0.0
+        joints = robot.joints if isinstance(robot, Arm) else ()
+        self._axes = len(joints) or None
+        self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
+        self._keys = tuple(f"q{number}_mov" for number in range(1, len(joints) + 1)) or ("nodo",)
+        self._form = "{" + "".join(f'"{key}":%s,' for key in self._keys)
+
+    def take_over(self, at: float, q: tuple[float, ...] | None, node: int | None) -> None:
+        """What it told before the record began."""
+        if q is not None or node is not None:
+            words = self._words(q, node) + b'"estado":0}'
+            self.telemetry.append(Delivery(at=at, topic="", payload=words))
+
+    def carried_out(self, goal: Goal) -> tuple[Numbers | None, bool]:
+        """A command that it carries out now: its last numbers before, and whether it was delivered to it."""
+        if self.boot != self.board.boot_id:
+            self.boot, self.last = self.board.boot_id, None
+        before, delivered = self.last, self._was_delivered(goal)
+        if goal.seq is not None and goal.epoch is not None:
+            self.last = (goal.epoch, goal.seq)
+        return before, delivered
+
+    def is_news(self, report: Report) -> bool:
+        """Whether it reports another position than before, or the same one for LOOK_S."""
+        q, node = report.q, report.node
+        if q == self._reported_q and node == self._reported_node and report.at < self._look_at:
+            return False
+        self._reported_q, self._reported_node, self._look_at = q, node, report.at + LOOK_S
+        return q is not None or node is not None
+
+    def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
+        """Whether valid telemetry that reached the bridge at `since` or later says that it is there."""
+        if not self.telemetry:
+            return False
+        last = self.telemetry[-1]
+        if last.at >= since and last.payload.startswith(self._words(q, node)):
+            return True
+        there = dict(zip(self._keys, self._on_wire(q, node), strict=True))
+        return any(each.at >= since and _says(each.payload, there) for each in reversed(self.telemetry))
+
+    def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
+        """How telemetry of our boards begins where it says this."""
+        return (self._form % tuple(self._on_wire(q, node))).encode()
+
+    def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> list[Any]:
+        if q is None:
+            return [node]
+        return [
+            round(value * degrees, DECIMALS) + 0.0 for value, degrees in zip(q, self._degrees, strict=True)
+        ]
+
+    def _was_delivered(self, goal: Goal) -> bool:
+        """Retained ones do not count: nobody knows how old they are."""
+        for delivery in self.inbox:
+            if not delivery.retain and self._decoded(delivery) == goal:
+                self.inbox.remove(delivery)
+                return True
+        return False
+
+    def _decoded(self, delivery: Delivery) -> object:
+        try:
+            return decode(parse(delivery.topic)[1], delivery.payload, axes=self._axes)
+        except PayloadError:
+            return None
+
+
+class Boards:
+    """`executed`: what was carried out in this step, with the numbers before and whether it was delivered."""
+
+    def __init__(self, boards: dict[str, KnownBoard]) -> None:
+        self.by_name = boards
+        self.of_robot = {board.robot.name: board for board in boards.values()}
+        self.executed: list[tuple[str, Goal, Numbers | None, bool]] = []
+        self._busy: dict[str, None] = {}  # boards with something in their inbox
+        self._hears = {f"{name}/sensores": board.telemetry.append for name, board in boards.items()}
+        self._obeys = {topic: name for name in boards for topic in _commands(name)}
+
+    def deliver(self, delivered: list[tuple[str, Delivery]]) -> None:
+        """Messages reached the inboxes of the bridge and of boards."""
+        for _, delivery in delivered:
+            hear = self._hears.get(delivery.topic)
+            if hear is None:
+                name = self._obeys.get(delivery.topic)
+                if name is not None:
+                    self.by_name[name].inbox.append(delivery)
+                    self._busy[name] = None
+            elif not delivery.retain:
+                hear(delivery)
+
+    def execute(self, name: str, goal: Goal) -> None:
+        """A board carries out a command."""
+        before, delivered = self.by_name[name].carried_out(goal)
+        self.executed.append((name, goal, before, delivered))
+
+    def forget_read(self, clients: dict[str, Client]) -> None:
+        """What a board has taken out of its inbox, or lost from it, is no longer new to it."""
+        if not self._busy:
+            return
+        for name in tuple(self._busy):
+            unread = clients[name].inbox
+            inbox = [each for each in self.by_name[name].inbox if any(each is other for other in unread)]
+            self.by_name[name].inbox = inbox
+            if not inbox:
+                del self._busy[name]
+
+
+def _commands(board: str) -> list[str]:
+    said = (Channel.TELEMETRY, Channel.PRESENCE, Channel.BEAT)
+    return [topic(board, channel) for channel in Channel if channel not in said]
+
+
+def on_wire(joint: Joint, value: float) -> float:
+    """rad, or m along the rack of a pinion, in degrees."""
+    return math.degrees(value / joint.pinion_radius_m if joint.pinion_radius_m else value)
+
+
+def is_number(value: object) -> bool:
+    return type(value) in (int, float) and math.isfinite(value)  # type: ignore[arg-type]
+
+
+def fields(raw: bytes) -> dict[str, Any]:
+    """The JSON object of a payload; empty where there is none."""
+    try:
+        body = json.loads(raw)
+    except ValueError:
+        return {}
+    return body if isinstance(body, dict) else {}
+
+
+def _says(raw: bytes, there: dict[str, Any]) -> bool:
+    body = fields(raw)
+    rows: Iterator[tuple[Any, Any]] = ((body.get(key), value) for key, value in there.items())
+    return all(is_number(said) and abs(said - value) <= EXACT for said, value in rows)

@@ -1,0 +1,117 @@
+"""Where each cell was after its last step, and which leaves run in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.core.cell import CellRun
+from arboleda.core.cell_states import CellState
+from arboleda.core.leaves import Act, TakeZones
+from arboleda.core.model import Cell
+
+LOOK_S = 1.0  # a tree that sends nothing is looked through this often
+PAUSED = (CellState.HOLDING, CellState.HELD)
+
+
+class KnownCell:
+    """A cell as it was after the last step; `stopped` outlives the plant: from stop to reset.
+
+    `leaves` are those that run, `looked` whether they were looked up in this step; `sends` counts the
+    commands of each leaf of the tree, `again` how often an operator had an interrupted step given anew;
+    `waited_s` is how long its arm has waited for its zones, in the cell's own time; `frozen_s` how much of
+    that time did not pass since the last news although it was not held.
+    """
+
+    def __init__(self, cell: Cell) -> None:
+        self.cell = cell
+        self.name = cell.name
+        self.stopped = False
+
+    def begin(self, run: CellRun) -> None:
+        """A plant starts."""
+        self.run, self.context = run, run.context
+        self.state, self.task = run.state, run.task
+        self.paused, self.queued = run.queue_paused, len(run.queue)
+        self.tree: Behaviour | None = None
+        self.sends: dict[Behaviour, int] = {}
+        self.again = 0
+        self.leaves: list[Any] = []
+        self.looked = False
+        self.waited_s = 0.0
+        self.frozen_s = 0.0
+        self._lag_s = math.inf
+        self._waiter: Behaviour | None = None
+        self.follow()
+
+    def follow(self) -> bool:
+        """Take over how the cell is now; whether that is something else than before."""
+        run = self.run
+        self.wakes = self.context.wakes
+        if (
+            run.state is self.state
+            and run.tree is self.tree
+            and run.task is self.task
+            and run.queue_paused is self.paused
+            and len(run.queue) == self.queued
+        ):
+            return False
+        self.state, self.task = run.state, run.task
+        self.paused, self.queued = run.queue_paused, len(run.queue)
+        if run.tree is not self.tree:
+            self.tree = run.tree
+            self.sends.clear()
+            self.again = 0
+        return True
+
+    def changes(self) -> Iterator[str]:
+        """What is not as it was after the last step."""
+        run = self.run
+        if run.state is not self.state:
+            yield f"{self.name} went from {self.state.value} to {run.state.value}"
+        if (run.queue_paused, len(run.queue)) != (self.paused, self.queued):
+            yield f"the queue of {self.name} changed"
+        if run.task is not self.task or run.tree is not self.tree:
+            yield f"the task of {self.name} changed"
+
+    def woke(self) -> bool:
+        """Whether a time had come that its tree waited for after the last step."""
+        now = self.context.now
+        return any(at <= now for at in self.wakes)
+
+    def wait(self, seconds: float) -> None:
+        """Its arm waits for zones after this step; `seconds` passed since the one before."""
+        leaves = _running(self.run.tree) if self.run.tree else ()
+        waiter = next((leaf for leaf in leaves if isinstance(leaf, TakeZones)), None)
+        if waiter is not self._waiter:
+            self._waiter, self.waited_s = waiter, 0.0
+        elif self.state not in PAUSED:
+            self.waited_s += seconds
+
+    def watch_time(self, now: float) -> None:
+        """Compare the cell's own time with the plant's: it may fall behind only while the cell is held."""
+        lag_s = now - self.context.now
+        self.frozen_s = max(lag_s - self._lag_s, 0.0)
+        self._lag_s = math.inf if self.state in PAUSED else lag_s
+
+    def look(self, sent: set[str]) -> None:
+        """Look up the leaves that run, and count the commands of this step, by id, that are theirs."""
+        self.looked = True
+        self.leaves = list(_running(self.run.tree)) if self.run.tree else []
+        for leaf in self.leaves:
+            if isinstance(leaf, Act) and leaf.entry is not None and leaf.entry.command.id in sent:
+                self.sends[leaf] = self.sends.get(leaf, 0) + 1
+
+
+def _running(node: Behaviour) -> Iterator[Behaviour]:
+    """The leaves that run, from a node on."""
+    if node.status is not Status.RUNNING:
+        return
+    if not node.children:
+        yield node
+    for child in node.children:
+        yield from _running(child)

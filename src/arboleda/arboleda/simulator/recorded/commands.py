@@ -1,0 +1,129 @@
+"""Every command that the plant sent and that has not ended, by its id."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+from arboleda.core.ledger import OPEN, Entry, Ledger, State
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Home,
+    MoveJoints,
+    Report,
+    SetEffector,
+    Stop,
+    StopMode,
+    Verb,
+)
+
+from .robots import KnownRobot, Obstacle
+
+RECENT = 32  # goals per robot that may still be under way to its board
+
+
+class SentCommand:
+    """One command as it was sent; `state` and `entry` are what the ledger says after each step.
+
+    `obstacles` spoke against it by what the robot had said; `verbs` is what operators asked for its robot
+    in the same step; `halts` counts the robot's halts and stops before it.
+    """
+
+    def __init__(
+        self, command: Command, at: float, obstacles: frozenset[Obstacle], verbs: frozenset[Verb], halts: int
+    ) -> None:
+        self.command = command
+        self.at = at
+        self.obstacles = obstacles
+        self.verbs = verbs
+        self.halts = halts
+        self.is_motion = isinstance(command, MoveJoints | FollowPath | Home)
+        self.rejected = False
+        self.entry: Entry | None = None
+        self.state: State | None = None
+        self.deadline = at
+        self.cancelled_at: float | None = None
+
+    @property
+    def robot(self) -> str:
+        return self.command.robot
+
+    def bind(self, entry: Entry) -> None:
+        """The ledger's own page for it."""
+        self.entry, self.state, self.deadline = entry, State.SENT, entry.deadline
+
+    def __str__(self) -> str:
+        return f"{type(self.command).__name__} {self.command.id} to {self.robot}"
+
+
+class Commands:
+    """`new`: sent in this step; `moved`: changed its state in it, with the state before; `lost`: left the
+    ledger without an end; `goals`: the last ones of each robot, whatever became of them; `soonest`: the first
+    deadline of all, s.
+    """
+
+    def __init__(self) -> None:
+        self.open: dict[str, SentCommand] = {}
+        self.new: list[SentCommand] = []
+        self.moved: list[tuple[SentCommand, State | None]] = []
+        self.lost: list[SentCommand] = []
+        self.goals: dict[str, deque[Command]] = {}
+        self.soonest = math.inf
+
+    def forget(self) -> None:
+        """The plant that sent them is gone."""
+        self.open.clear()
+        self.soonest = math.inf
+
+    def clear_news(self) -> None:
+        self.new.clear()
+        self.moved.clear()
+        self.lost.clear()
+
+    def take(self, sent: SentCommand, known: KnownRobot) -> None:
+        """The plant sent a command."""
+        self.new.append(sent)
+        command = sent.command
+        if isinstance(command, Stop):
+            known.halts += command.mode is not StopMode.CLEAR
+        elif not isinstance(command, SetEffector):
+            self.goals.setdefault(command.robot, deque(maxlen=RECENT)).append(command)
+
+    def hear(self, report: Report) -> None:
+        """A report names the command that was rejected last."""
+        rejected = self.open.get(report.rejected or "")
+        if rejected is not None:
+            rejected.rejected = True
+
+    def follow(self, ledger: Ledger, now: float) -> bool:
+        """Compare with the ledger what was open; whether anything changed."""
+        for sent in self.new:
+            entry = ledger.entries.get(sent.command.id)
+            if entry is not None:
+                sent.bind(entry)
+                self.open[sent.command.id] = sent
+        for sent in self.open.values():
+            if sent.entry is not None and sent.entry.state is not sent.state:
+                self._moved(sent, sent.entry.state, now)
+        for sent, _ in self.moved:
+            if sent.state not in OPEN:
+                del self.open[sent.command.id]
+        if len(self.open) != len(ledger.entries):
+            self._lose(ledger)
+        if not (self.new or self.moved or self.lost):
+            return False
+        deadlines = (sent.entry.deadline for sent in self.open.values() if sent.entry)
+        self.soonest = min(deadlines, default=math.inf)
+        return True
+
+    def _moved(self, sent: SentCommand, state: State, now: float) -> None:
+        self.moved.append((sent, sent.state))
+        sent.state = state
+        if state is State.CANCELLING:
+            sent.cancelled_at = now
+
+    def _lose(self, ledger: Ledger) -> None:
+        self.lost += [sent for id, sent in self.open.items() if id not in ledger.entries]
+        for sent in self.lost:
+            del self.open[sent.command.id]

@@ -1,0 +1,52 @@
+"""What a step changed in which everything that was asked was refused, and nothing else happened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from arboleda.core.messages import Fact, Heartbeat, OperatorAnswer, Remember, TaskChanged
+
+if TYPE_CHECKING:
+    from ..record import Record
+
+
+def differences(record: Record) -> list[str]:
+    """Sentences; none where something was done or heard, or may have come due. Called before the mirrors
+    of the record are brought up to date.
+    """
+    if not _only_refused(record) or _something_was_due(record):
+        return []
+    return list(_found(record))
+
+
+def _only_refused(record: Record) -> bool:
+    moment, tasks = record.world.moment, record.tasks
+    refused = sum(answer.refusal is not None for answer in record.answers)
+    repeated = sum(change.answer for change in tasks.changes)
+    return not moment.heard and refused + repeated + tasks.refused == len(moment.asked)
+
+
+def _something_was_due(record: Record) -> bool:
+    now = record.world.plant.now
+    # an arm whose tree has ended gives its zones back at the next step, whatever that is
+    if any(isinstance(each, Remember) and each.fact is Fact.QUARANTINE for each in record.world.moment.sent):
+        return True
+    if any(cell.woke() for cell in record.cells.values()):
+        return True
+    if any(record.stepped_at < robot.stale_at <= now for robot in record.robots.values()):
+        return True
+    commands = [*record.commands.open.values(), *(sent for sent, _ in record.commands.moved)]
+    return any(sent.entry.next_deadline <= now for sent in commands if sent.entry is not None)
+
+
+def _found(record: Record) -> Iterator[str]:
+    for message in record.world.moment.sent:
+        if not isinstance(message, TaskChanged | OperatorAnswer | Heartbeat):
+            yield f"{type(message).__name__} was sent"
+    if any(not change.answer for change in record.tasks.changes):
+        yield "a task changed"
+    for sent, _ in record.commands.moved:
+        yield f"{sent} changed"
+    for cell in record.cells.values():
+        yield from cell.changes()

@@ -1,0 +1,105 @@
+"""What a robot has told the plant, and how operators have stopped it; no belief of the plant is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from enum import Enum
+
+from arboleda.core.messages import Report
+from arboleda.core.model import Evidence, Link, MotionState, Robot
+
+
+class Obstacle(str, Enum):
+    """Why a robot must not be given a command."""
+
+    OFFLINE = "offline"
+    UNANSWERED = "reached by a bridge that does not hear this plant"
+    UNHOMED = "unhomed"
+    FAULTED = "faulted"
+    LATCHED = "latched"
+    STOPPED = "of a cell that was stopped and not reset"
+
+
+class Stopped(Enum):
+    """How far an operator's stop of a robot is undone."""
+
+    LATCHED = "latched"
+    CLEARED = "cleared"
+
+
+class KnownRobot:
+    """The last word of a robot on everything, None where it never said; `stop` outlives the plant."""
+
+    def __init__(self, robot: Robot, stale_after_s: float) -> None:
+        self.robot = robot
+        self.stop: Stopped | None = None
+        self.missed_clear = False  # an operator cleared its stop while it was offline
+        self.halts = 0  # halts and stops that the plant sent it
+        self._patience_s = stale_after_s if robot.evidence is not Evidence.STATE else math.inf
+        self.forget()
+
+    def forget(self) -> None:
+        """A plant that starts has heard nothing."""
+        self.heard_at: float | None = None
+        self.state: MotionState | None = None
+        self.homed: bool | None = None
+        self.boot: int | None = None
+        self.epoch: int | None = None
+        self.plant: int | None = None
+        self.q: tuple[float, ...] | None = None
+        self.node: int | None = None
+        self.displaced = False  # it cannot report its homing, and has booted
+
+    def hear(self, report: Report) -> None:
+        """Take over what it says now."""
+        if report.boot_id is not None:
+            self._hear_boot(report)
+        if report.epoch is not None:
+            self.epoch, self.plant = report.epoch, report.plant
+        if report.homed is not None:
+            self.homed = report.homed
+        if report.q is not None:
+            self.q = report.q
+        if report.node is not None:
+            self.node = report.node
+        if report.state is not None:
+            self.state = report.state
+        if report.state is not MotionState.NO_LINK:
+            self.heard_at = report.at
+
+    def _hear_boot(self, report: Report) -> None:
+        changed = self.boot is not None and self.boot != report.boot_id
+        if changed and self.robot.evidence is Evidence.JOINTS and self.epoch == report.epoch:
+            self.displaced = True
+        self.boot = report.boot_id
+
+    @property
+    def stale_at(self) -> float:
+        """When its silence will have lasted too long, s."""
+        return math.inf if self.heard_at is None else self.heard_at + self._patience_s
+
+    def offline(self, now: float) -> bool:
+        if self.state is MotionState.NO_LINK:
+            return True
+        never = self.heard_at is None and self._patience_s < math.inf
+        return never or self.stale_at <= now
+
+    def obstacles(self, now: float, plant_epoch: int) -> frozenset[Obstacle]:
+        """Everything that speaks against a command to it."""
+        return frozenset(word for word, is_so in OBSTACLES.items() if is_so(self, now, plant_epoch))
+
+
+OBSTACLES: dict[Obstacle, Callable[[KnownRobot, float, int], bool]] = {
+    Obstacle.OFFLINE: lambda known, now, epoch: known.offline(now),
+    Obstacle.UNANSWERED: lambda known, now, epoch: (
+        known.robot.link is Link.MQTT and known.epoch is not None and known.plant != epoch
+    ),
+    Obstacle.UNHOMED: lambda known, now, epoch: (
+        known.homed is False or known.displaced or known.state is MotionState.NOT_HOMED
+    ),
+    Obstacle.FAULTED: lambda known, now, epoch: known.state is MotionState.FAULT,
+    Obstacle.LATCHED: lambda known, now, epoch: (
+        known.stop is Stopped.LATCHED or known.state is MotionState.STOP_LATCHED
+    ),
+}

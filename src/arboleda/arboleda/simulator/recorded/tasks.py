@@ -1,0 +1,105 @@
+"""Every task by what the plant said of it: `TaskChanged`, in order."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from arboleda.core.messages import TaskChanged, TaskState
+
+KEPT = 500  # ended tasks that are remembered: fewer than the plant itself remembers
+OPEN = frozenset({TaskState.QUEUED, TaskState.RUNNING})
+
+
+@dataclass(slots=True)
+class KnownTask:
+    """A task that was accepted; `number` counts the accepted ones, `cancelled` is an operator's word."""
+
+    id: str
+    cell: str
+    number: int
+    state: TaskState
+    since: float
+    cancelled: bool = False
+
+
+@dataclass(slots=True)
+class Change:
+    """What the plant said of a task: its state before, and whether it only answered one who asked again.
+
+    `first` is the task that was first in the queue of its cell.
+    """
+
+    said: TaskChanged
+    before: TaskState | None
+    answer: bool
+    first: str | None
+    cancelled: bool
+
+
+class Tasks:
+    """Open and lately ended tasks, by id; the queue and the running task of each cell, by id."""
+
+    def __init__(self, cells: Iterable[str]) -> None:
+        self.open: dict[str, KnownTask] = {}
+        self.ended: OrderedDict[str, KnownTask] = OrderedDict()
+        self.queues: dict[str, dict[str, KnownTask]] = {cell: {} for cell in cells}
+        self.running: dict[str, str] = {}
+        self.changes: list[Change] = []
+        self.refused = 0  # in this step
+        self._accepted = 0
+
+    def forget(self) -> None:
+        """The plant that knew them is gone, and tasks do not outlive it yet."""
+        self.open.clear()
+        self.ended.clear()
+        self.running.clear()
+        for queue in self.queues.values():
+            queue.clear()
+
+    def clear_news(self) -> None:
+        self.changes.clear()
+        self.refused = 0
+
+    def known(self, id: str) -> KnownTask | None:
+        """The task of this id, unless the plant may have forgotten it and taken the id anew."""
+        task = self.open.get(id) or self.ended.get(id)
+        return task if task is not None and task.number > self._accepted - KEPT else self.open.get(id)
+
+    def take(self, said: TaskChanged, now: float, *, asked_again: bool) -> None:
+        """The plant says what became of a task; `asked_again`: it may only answer a request."""
+        if said.state is TaskState.REFUSED or said.cell is None:
+            self.refused += 1
+            return
+        task = self.known(said.task)
+        before = task.state if task else None
+        answer = asked_again and before is said.state
+        first = next(iter(self.queues[said.cell]), None)
+        self.changes.append(Change(said, before, answer, first, bool(task and task.cancelled)))
+        if not answer:
+            self._follow(said, task, now)
+
+    def _follow(self, said: TaskChanged, task: KnownTask | None, now: float) -> None:
+        if task is None or said.state is TaskState.QUEUED:
+            self._accepted += 1
+            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now)
+        task.state, task.since = said.state, now
+        queue = self.queues[task.cell]
+        queue.pop(task.id, None)
+        self.open.pop(task.id, None)
+        if self.running.get(task.cell) == task.id:
+            del self.running[task.cell]
+        if said.state in OPEN:
+            self.open[task.id] = task
+            if said.state is TaskState.QUEUED:
+                queue[task.id] = task
+            else:
+                self.running[task.cell] = task.id
+        else:
+            self._keep(task)
+
+    def _keep(self, task: KnownTask) -> None:
+        self.ended[task.id] = task
+        if len(self.ended) > KEPT:
+            self.ended.popitem(last=False)

@@ -1,0 +1,94 @@
+"""One seed from its first step to rest: faults, people, truth, record and invariants joined to a world."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from arboleda.core.model import PlantModel
+from arboleda.core.recipes import Recipes
+
+from .faults import Fault
+from .invariants import INVARIANTS, Invariant
+from .people import Attendant, Customers
+from .watched import Broken, Watched
+
+MINUTE_S = 60.0
+PATIENCE = 20  # minutes of faults so dense that nothing gets done, and one more for each cycle that is wanted
+NO_EXCEPTION = "no_exception"
+
+Plan = Callable[[int], Iterable[Fault]]  # minute of the run -> its faults
+
+
+@dataclass(kw_only=True)
+class Result:
+    """What one run did; times in s since it began. `broken` is None where every invariant held."""
+
+    seed: int
+    digest: str = ""
+    seconds: float = 0.0
+    cycles: int = 0
+    faults: list[Fault] = field(default_factory=list)
+    outcomes: dict[str, int] = field(default_factory=dict)
+    checks: Counter[str] = field(default_factory=Counter)
+    minutes: int = 0
+    broken: Broken | None = None
+    lines: list[str] = field(default_factory=list)
+
+
+class Simulation:
+    """A world with people and faults; `run` until so many cycles, or so many seconds, and then to rest.
+
+    `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        seed: int,
+        plan: Plan,
+        *,
+        invariants: Iterable[Invariant] = INVARIANTS,
+        keep: bool = False,
+        tell: Callable[[str], None] | None = None,
+        recipes: Recipes | None = None,
+    ) -> None:
+        self.watched = Watched(model, invariants=invariants, keep=keep, tell=tell, recipes=recipes)
+        self.world, self.trace = self.watched.world, self.watched.trace
+        self.result = Result(seed=seed, faults=self.watched.faults)
+        self._plan = plan
+        self._customers = Customers(self.world, seed)
+        Attendant(self.world, seed)
+
+    def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
+        """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
+        try:
+            while not self._enough(cycles, seconds):
+                self._minute(self.result.minutes)
+            self._customers.go()
+            self.watched.come_to_rest()
+        except Broken as broken:
+            self.result.broken = broken
+        except Exception as error:  # noqa: BLE001 - that none escapes is one of the invariants
+            self.result.broken = Broken(NO_EXCEPTION, f"{type(error).__name__}: {error}")
+        return self._finished()
+
+    def _enough(self, cycles: int | None, seconds: float | None) -> bool:
+        if seconds is not None:
+            return self.result.minutes * MINUTE_S >= seconds
+        wanted = cycles or 0
+        return self._customers.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
+
+    def _minute(self, minute: int) -> None:
+        self.result.minutes += 1
+        for fault in self._plan(minute):
+            self.watched.expect(fault)
+        self.world.advance(self.watched.start + (minute + 1) * MINUTE_S - self.world.now)
+
+    def _finished(self) -> Result:
+        result = self.result
+        result.digest, result.lines = self.trace.digest, self.trace.lines
+        result.seconds, result.checks = self.watched.seconds, self.watched.checks
+        result.cycles, result.outcomes = self._customers.cycles, self._customers.outcomes
+        return result

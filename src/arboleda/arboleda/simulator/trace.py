@@ -1,0 +1,96 @@
+"""What happened, as one hash and, for people, line by line."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import fields
+from hashlib import blake2b
+from typing import Any
+
+from arboleda.core.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
+
+from .world import World
+
+KEPT = 2000  # lines
+QUIET = ("latido", "sensores")  # channels that speak all the time: hashed, but no news for people
+
+
+class Trace:
+    """Everything that crossed a border in a world; two runs with equal digests did the same.
+
+    `keep`: also remember the last lines; `tell`: also called with each line as it happens.
+    """
+
+    def __init__(
+        self, world: World, *, keep: bool = False, tell: Callable[[str], None] | None = None
+    ) -> None:
+        self._world = world
+        self._start = world.now
+        self._hash = blake2b(digest_size=16)
+        self._lines: deque[str] | None = deque(maxlen=KEPT) if keep else None
+        self._tell = tell
+
+    @property
+    def digest(self) -> str:
+        return self._hash.hexdigest()
+
+    @property
+    def lines(self) -> list[str]:
+        """The last things that happened, oldest first."""
+        return list(self._lines or ())
+
+    def look(self) -> None:
+        """Take in what happened in this step."""
+        moment, feed = self._world.moment, self._hash.update
+        feed(self._world.now.hex().encode())
+        for client, publication in moment.published:
+            feed(f"{client}>{publication.topic}{publication.retain}".encode() + publication.payload)
+        for message in moment.sent:
+            feed(repr(message).encode())
+        for event in moment.asked:
+            feed(repr(event).encode())
+        if self._lines is not None or self._tell is not None:
+            for line in self._news():
+                self.note(line)
+
+    def note(self, line: str) -> None:
+        """Add a line for people, with its time."""
+        stamped = f"{self._world.now - self._start:10.3f}  {line}"
+        if self._lines is not None:
+            self._lines.append(stamped)
+        if self._tell is not None:
+            self._tell(stamped)
+
+    def _news(self) -> list[str]:
+        moment = self._world.moment
+        asked = [f"asked      {_asked(event)}" for event in moment.asked]
+        sent = [f"plant      {_sent(each)}" for each in moment.sent if not isinstance(each, Heartbeat)]
+        said = [
+            f"{client or 'stranger':<10} {each.topic} {each.payload.decode(errors='replace')[:200]}"
+            for client, each in moment.published
+            if not each.topic.endswith(QUIET)
+        ]
+        done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
+        return [*asked, *sent, *said, *done]
+
+
+def _asked(event: Any) -> str:
+    if isinstance(event, TaskRequest):
+        return repr(event.text)
+    if isinstance(event, OperatorRequest):
+        return f"{event.verb.value} {event.scope}{' by hand' if event.by_hand else ''}"
+    return _fields(event)
+
+
+def _sent(message: Any) -> str:
+    if isinstance(message, TaskChanged):
+        why = f" ({message.reason.value})" if message.reason else ""
+        return f"task {message.task} {message.text}: {message.state.value}{why} {message.sentence}"
+    return _fields(message)
+
+
+def _fields(message: Any) -> str:
+    said = ((each.name, getattr(message, each.name)) for each in fields(message))
+    shown = [f"{name}={getattr(value, 'value', value)}" for name, value in said if value is not None]
+    return " ".join([type(message).__name__, *shown])

@@ -1,0 +1,177 @@
+"""What is true of one arm: where it stands, which zones it is in or sweeps, what its effector does."""
+
+from __future__ import annotations
+
+from operator import add, sub
+
+from arboleda.core.model import Arm, Cell, Evidence, Pose
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.board import Board
+
+from ..network import Client
+from .robot import RobotTruth
+
+NOWHERE: frozenset[str] = frozenset()
+JITTER_STEPS = 2  # a ramp that slows down may speed up again by that much (D. Austin, 2005)
+RAMP_SLACK = 1.1  # a stepper's ramp is a little longer than the formula's
+Steps = tuple[int, ...]
+
+
+class ArmTruth(RobotTruth):
+    """Positions are in motor steps per joint.
+
+    `true` is where the axes are, `lost` how many steps each lost since it was last put right. Poses, zones
+    and stations have no extent here, so an arm that lost steps counts as where it would be without that:
+    `here` names the poses where it stands still in this sense, `stood` where it stood in this step if it has
+    moved on, `zones` where it is or may have swept.
+    """
+
+    SIGNS = ("body.next_change_us", "boot_id", "body.effector", "body.holding")
+    body: ArmBody
+
+    def __init__(self, robot: Arm, cell: Cell, board: Board, client: Client) -> None:
+        assert isinstance(board.body, ArmBody)
+        self.on, self.holding = board.body.effector, board.body.holding
+        super().__init__(robot, cell, board, client)
+        self.arm = robot
+        self.lost: Steps = (0,) * len(robot.joints)
+        self.here = self.stood = self.goal = NOWHERE
+        self.zones = NOWHERE
+        self.true, self.counted = self.body.true_position, self.body.position
+        self._shift = tuple(map(sub, self.true, self.counted))  # of the counters, by boots alone
+        self._names: dict[Steps, frozenset[str]] = {}
+        self._spots: dict[Steps, frozenset[str]] = {}  # with the points above poses
+        for pose in cell.poses:
+            self._enter(pose)
+        reference = (0,) * len(robot.joints)  # where homing leads; like home it lies outside all zones
+        self._spots.setdefault(reference, frozenset({cell.home.name}))
+        self._between = NOWHERE
+        self._zones_between: dict[frozenset[str], frozenset[str]] = {}
+        self._ramp_us = 1e6 * RAMP_SLACK * max(j.speed / j.acceleration for j in robot.joints) + 1e5
+        self._speeds: tuple[float, ...] | None = None
+        self._jitter = tuple(2 * JITTER_STEPS * j.acceleration / j.step for j in robot.joints)
+        self._locate()
+
+    def poses_like(self, q: tuple[float, ...]) -> frozenset[str]:
+        """The names of all poses that are where `q` is."""
+        return self._names.get(self._steps(q), NOWHERE)
+
+    def stands_at(self, q: tuple[float, ...]) -> bool:
+        """Whether it stands within its tolerance of the motor step nearest to `q`."""
+        rows = zip(self.arm.joints, self.intended, self._steps(q), self.arm.tolerances, strict=True)
+        near = all(abs(here - there) * joint.step <= within for joint, here, there, within in rows)
+        return near and self.stands
+
+    @property
+    def stands(self) -> bool:
+        """Whether it does not move; even no way at all takes a board a moment."""
+        return not self.moving or self.body.targets == self.body.position
+
+    @property
+    def intended(self) -> Steps:
+        """Where it would be if it had lost no steps."""
+        return tuple(map(sub, self.true, self.lost))
+
+    @property
+    def at_reference(self) -> bool:
+        return not self.moving and not any(self.intended)
+
+    @property
+    def unseen(self) -> bool:
+        """Whether nobody can know where it is, for what its board tells: at `state`, that it moved and
+        stopped; at `joints`, counters that a boot may have set to 0 without a trace.
+        """
+        evidence = self.robot.evidence
+        return evidence is Evidence.STATE or (evidence is Evidence.JOINTS and not self.homed)
+
+    @property
+    def outside(self) -> str | None:
+        """The first joint that stands beyond its limits by more than lost steps and a ramp explain."""
+        rows = zip(self.arm.joints, self.true, self.lost, strict=True)
+        for joint, steps, lost in rows:
+            slack = (abs(lost) + 2) * joint.step
+            if not joint.lower - slack <= steps * joint.step <= joint.upper + slack:
+                return joint.name
+        return None
+
+    def forget(self) -> None:
+        super().forget()
+        self.was_on, self.was_holding = self.on, self.holding
+
+    @property
+    def _slows_down(self) -> bool:
+        return self.stopping
+
+    def _follow(self, was_moving: bool) -> None:
+        body = self.body
+        self.on, self.holding = body.effector, body.holding
+        true, counted = body.true_position, body.position
+        still = not (was_moving or self.moving or self.lost_power)
+        self.jumped = still and counted != self.counted
+        if self.lost_power and not was_moving:
+            self.lost = tuple(map(add, self.lost, map(sub, true, self.true)))
+        self.true, self.counted = true, counted
+        self._follow_drift(tuple(map(sub, true, counted)))
+        self._locate(was_moving)
+        self._follow_speed()
+
+    def _follow_drift(self, drift: Steps) -> None:
+        """What counters are wrong by is what boots took away and what was lost; homing ends both."""
+        if not any(drift):
+            self._shift = self.lost = drift
+        elif self.lost_power:
+            self._shift = tuple(map(sub, drift, self.lost))
+        else:
+            self.lost = tuple(map(sub, drift, self._shift))
+
+    def _locate(self, was_moving: bool = False) -> None:
+        place = self.intended
+        was_here, was_bound_for = self.here, self.goal
+        self.here = self._names.get(place, NOWHERE) if self.stands else NOWHERE
+        self.stood = self.here if self.stands else was_here
+        if was_moving and not self.stands and self._arrived:
+            self.stood = was_bound_for
+        target = tuple(map(add, self.body.targets, self._shift)) if self.moving else place
+        self.goal = self._names.get(target, NOWHERE)
+        spot = self._spots.get(target, NOWHERE)
+        self._between = self._between | spot if self.moving or not spot else spot
+        self.zones = self._zones_of(self._between)
+
+    def _zones_of(self, poses: frozenset[str]) -> frozenset[str]:
+        """The zones of these poses and of the moves between them."""
+        if poses not in self._zones_between:
+            inside = [pose.zones for pose in self.cell.poses if pose.name in poses]
+            crossed = [each.zones for each in self.cell.crossings if {each.a, each.b} <= poses]
+            self._zones_between[poses] = NOWHERE.union(*inside, *crossed)
+        return self._zones_between[poses]
+
+    def _follow_speed(self) -> None:
+        """While it stops, no axis gets faster."""
+        if not self.stopping:
+            self._speeds = None
+            return
+        speeds = self.body.speeds
+        slowest = self._speeds or speeds
+        self.sped_up = any(map(_faster, speeds, slowest, self._jitter))
+        self._speeds = tuple(map(min, speeds, slowest))
+
+    def _ends_soon(self, now_us: int) -> bool:
+        due = self.body.next_change_us
+        return due is not None and due <= now_us + self._ramp_us
+
+    def _goes_on(self) -> bool:
+        return False  # `sped_up` tells; how long it may take was judged when it heard the stop
+
+    def _enter(self, pose: Pose) -> None:
+        for book, q in ((self._names, pose.q), (self._spots, pose.q), (self._spots, pose.above)):
+            if q is not None:
+                place = self._steps(q)
+                book[place] = book.get(place, NOWHERE) | {pose.name}
+
+    def _steps(self, q: tuple[float, ...]) -> Steps:
+        return tuple(joint.steps(value) for joint, value in zip(self.arm.joints, q, strict=True))
+
+
+def _faster(now: float, slowest: float, jitter: float) -> bool:
+    """Whether an axis sped up by more than its ramp's `jitter`, in (steps/s)2."""
+    return now * now > slowest * slowest + jitter

@@ -1,0 +1,79 @@
+"""What the plant's books say of its commands: which ended in this step, and how."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.core.ledger import Entry, State
+from arboleda.core.messages import Command
+
+from ..world import BRIDGE, World
+
+CALM_S = 20.0  # after the last fault, whatever it left under way has arrived or is given up
+
+
+@dataclass(frozen=True, kw_only=True)
+class Booked:
+    """A command that the plant takes for ended; `sent_at`: when it left.
+
+    `late`: it, or what its robot said before it came, was under way for some time.
+    """
+
+    entry: Entry
+    sent_at: float
+    late: bool
+
+    @property
+    def command(self) -> Command:
+        return self.entry.command
+
+    @property
+    def done(self) -> bool:
+        return self.entry.state is State.DONE
+
+
+class Books:
+    """Follows the open commands of the running plant; `ended` are those of this step."""
+
+    def __init__(self, world: World) -> None:
+        self.ended: list[Booked] = []
+        self.late: set[str] = set()  # robots whose last command was late
+        self._world = world
+        self._open: dict[str, Booked] = {}
+
+    def drop(self) -> None:
+        """The plant died, and with it its books."""
+        self._open = {}
+
+    def look(self) -> None:
+        """See which of the open commands are open no more since the last step."""
+        if self.ended:
+            self.ended = []
+        if self._open:
+            entries = self._world.plant.dispatcher.ledger.entries
+            for id in [id for id in self._open if id not in entries]:
+                self.ended.append(self._open.pop(id))
+
+    def sent(self, command: Command) -> None:
+        """The plant has sent a command; one that it keeps no book of is passed over."""
+        entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
+        if entry is not None:
+            late = self._is_late(command.robot)
+            self.late = self.late | {command.robot} if late else self.late - {command.robot}
+            self._open[command.id] = Booked(entry=entry, sent_at=self._world.now, late=late)
+
+    def _is_late(self, robot: str) -> bool:
+        """Whether anything between the plant and this robot's board, either way, takes its time now."""
+        world, name = self._world, self._world.model.robots[robot].mqtt
+        clients = [world.broker.clients[each] for each in (BRIDGE, name) if each in world.broker.clients]
+        lines = [
+            world.to_bridge,
+            world.to_plant,
+            *(line for each in clients for line in (each.up, each.down)),
+        ]
+        late = any(line.busy_until > world.now or line.troubles for line in lines)
+        return late or world.is_stalled(BRIDGE) or world.is_stalled(name)
+
+    def calm_since(self, at: float) -> bool:
+        """Whether nothing that a fault did can have touched what happened since then."""
+        return not self._world.faults_active and self._world.last_fault_at < at - CALM_S

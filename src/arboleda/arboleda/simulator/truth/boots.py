@@ -1,0 +1,34 @@
+"""Which boots of boards that report no homing the plant has heard of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.core.messages import Report
+from arboleda.core.model import Evidence
+
+from .robot import RobotTruth
+
+
+class Boots:
+    """Follows the robots at `joints`, whose boots show only in the number that the bridge gives them."""
+
+    def __init__(self, robots: Iterable[RobotTruth]) -> None:
+        self.mute = {each.robot.name: each for each in robots if each.robot.evidence is Evidence.JOINTS}
+        self._last: dict[str, tuple[int | None, int | None]] = {}
+        self._told: set[str] = set()
+
+    def look(self, heard: Iterable[Report]) -> None:
+        """Take in what the plant heard in this step."""
+        for report in heard:
+            if report.robot in self.mute and report.boot_id is not None:
+                epoch, boot = self._last.get(report.robot, (None, None))
+                self._last[report.robot] = (report.epoch, report.boot_id)
+                if epoch == report.epoch and boot != report.boot_id:
+                    self._told.add(report.robot)
+        for name in [name for name in self._told if self.mute[name].homed]:
+            self._told.discard(name)
+
+    def told(self, robot: str) -> bool:
+        """Whether the plant knows that it booted, and nobody has put it right since."""
+        return robot in self._told

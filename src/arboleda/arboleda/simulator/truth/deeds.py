@@ -1,0 +1,172 @@
+"""What was truly done for a cell's task: where its effector was switched, what was picked and placed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.core.model import Cell, Pose
+from arboleda.core.task import Order
+from arboleda.wire.payloads import EffectorGoal, PathGoal
+
+from .arm import NOWHERE, ArmTruth
+from .mobile import MobileTruth
+
+KEPT = 50  # switches of one task
+
+
+@dataclass(frozen=True, kw_only=True)
+class Switch:
+    """An effector that changed, at the named poses where its arm stood still.
+
+    `asked`: the board carried out a command for it; `released`: an operator had it opened; `legal`: at the
+    pick-up or palletizing pick or, opened, where the part of the cell's last task belongs or at the
+    palletizing place.
+    """
+
+    cell: str
+    arm: str
+    on: bool
+    poses: frozenset[str]
+    lost_power: bool
+    asked: bool
+    released: bool
+    legal: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ended:
+    """A task that has ended, and how things stood then; `missing`: why it is not done if it is called so."""
+
+    cell: CellTruth
+    task: str
+    text: str
+    done: bool
+    began_at: float
+    picks: int
+    places: int
+    grips: bool
+    missing: str | None
+
+
+class CellTruth:
+    """What was done since the cell's last task began; `task` is None once it has ended.
+
+    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong.
+    """
+
+    def __init__(self, cell: Cell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
+        self.cell = cell
+        self.arm = arm
+        self.mobile = mobile
+        self.task: str | None = None
+        self.order: Order | None = None
+        self.began_at = 0.0
+        self.released = False  # an operator has the effector opened
+        self.switch: Switch | None = None  # of this step
+        self.picks = self.places = 0
+        self.let_go = False  # the effector was opened where the part belongs
+        self._switches: list[Switch] = []
+        self._heading = self._arrived = False
+
+    @property
+    def pick(self) -> Pose:
+        """Where the part of the last task is gripped."""
+        stored = self.order is None or self.order.station is not None
+        return self.cell.pickup if stored else self.cell.palletizing.pick
+
+    @property
+    def place(self) -> Pose | None:
+        """Where the part of the last task belongs."""
+        if self.order is None:
+            return None
+        return self.order.station or self.cell.palletizing.place
+
+    def begin(self, task: str, order: Order, now: float) -> None:
+        """A task begins."""
+        self.task, self.order, self.began_at = task, order, now
+        self.released = self.let_go = self._heading = self._arrived = False
+        self.picks = self.places = 0
+        self._switches = []
+
+    def end(self, text: str = "", *, done: bool = False) -> Ended:
+        """The running task has ended, or nobody knows of it any more."""
+        task, self.task = self.task, None
+        return Ended(
+            cell=self,
+            task=task or "",
+            text=text,
+            done=done,
+            began_at=self.began_at,
+            picks=self.picks,
+            places=self.places,
+            grips=self.arm is not None and self.arm.on,
+            missing=self._missing() if done and self.arm is not None else None,
+        )
+
+    def look(self) -> None:
+        """Take in what arm and mobile did in this step."""
+        self._follow_mobile()
+        arm, self.switch = self.arm, None
+        if arm is not None and arm.on != arm.was_on:
+            self.switch = self._switch(arm)
+            self.released = self.released and arm.on
+            at_place = self.place is not None and self._at(arm, self.place)
+            self.let_go = self.let_go or (not arm.on and at_place)
+            self._switches = [*self._switches[-KEPT:], self.switch]
+
+    def _missing(self) -> str | None:
+        assert self.arm is not None and self.place is not None and self.order is not None
+        due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
+        done = [(each.on, bool(each.poses & poses)) for each, poses in zip(self._switches, due, strict=True)]
+        last = self.cell.home if self.order.station else self.place
+        if not done or done != [(True, True), (False, True)] * (len(done) // 2):
+            told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
+            return f"the effector was switched {told or 'not at all'}"
+        ends = [q for q in (last.q, last.above) if q is not None]
+        if not any(self.arm.stands_at(q) for q in ends):
+            return f"the arm does not stand at {last.name}"
+        if self.order.path and self.mobile and not self._arrived:
+            return f"the mobile never stood at node {self.order.path.nodes[-1]}"
+        return None
+
+    def legal_to_open(self, arm: ArmTruth) -> bool:
+        """Whether nothing falls down where the arm stands."""
+        places = (self.cell.pickup, self.cell.palletizing.pick, self.cell.palletizing.place, self.place)
+        return any(self._at(arm, pose) for pose in places if pose is not None)
+
+    def _switch(self, arm: ArmTruth) -> Switch:
+        goals = [act.goal for act in arm.acts]
+        picks = (self.cell.pickup, self.cell.palletizing.pick)
+        at_pick = any(self._at(arm, pose) for pose in picks)
+        return Switch(
+            cell=self.cell.name,
+            arm=arm.robot.name,
+            on=arm.on,
+            poses=arm.stood,
+            lost_power=arm.lost_power,
+            asked=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
+            released=self.released,
+            legal=at_pick if arm.on else self.legal_to_open(arm),
+        )
+
+    def _due(self, switch: Switch) -> Pose:
+        """Where a switch belongs: all at the pick-up but the last one."""
+        last = self._switches and switch is self._switches[-1]
+        return self.place if last and not switch.on and self.place else self.pick
+
+    def _at(self, arm: ArmTruth, pose: Pose) -> bool:
+        return bool(arm.stood & arm.poses_like(pose.q))
+
+    def _follow_mobile(self) -> None:
+        mobile = self.mobile
+        if mobile is None or self.task is None or self.order is None or self.order.path is None:
+            return
+        goals = [act.goal for act in mobile.acts if isinstance(act.goal, PathGoal)]
+        self._heading = self._heading or any(goal.nodes[-1] == self.order.path.nodes[-1] for goal in goals)
+        here = mobile.stands_at(self.order.path.nodes[-1])
+        self._arrived = self._arrived or (self._heading and here)
+
+
+def named(poses: frozenset[str]) -> str:
+    """Poses for people."""
+    return "/".join(sorted(poses)) if poses != NOWHERE else "no pose"

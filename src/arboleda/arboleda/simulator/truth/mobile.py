@@ -1,0 +1,53 @@
+"""What is true of one mobile robot: at which node it is."""
+
+from __future__ import annotations
+
+from arboleda.core.model import Cell, Mobile
+from arboleda.sim.board import Board
+from arboleda.sim.mobile import MobileBody
+from arboleda.wire.payloads import PathGoal
+
+from ..network import Client
+from .robot import RobotTruth
+
+
+class MobileTruth(RobotTruth):
+    """`node` is where it stands, or what it passed last while it is on an edge; `counted` where it takes
+    itself to be, `strayed` whether these differ though it is homed: somebody moved it unseen.
+
+    `goal` is the last node of the path that it drives or drove last.
+    """
+
+    SIGNS = ("body.next_change_us", "boot_id", "body.true_node")
+    body: MobileBody
+
+    def __init__(self, robot: Mobile, cell: Cell, board: Board, client: Client) -> None:
+        super().__init__(robot, cell, board, client)
+        self.node, self.counted = self.body.true_node, self.body.node
+        self.goal: int | None = None
+
+    @property
+    def strayed(self) -> bool:
+        return self.homed and self.node != self.counted
+
+    def stands_at(self, node: int) -> bool:
+        """Whether it stands there, or would if nobody had moved it."""
+        return not self.moving and node in (self.node, self.counted if self.strayed else None)
+
+    @property
+    def at_reference(self) -> bool:
+        return not self.moving and self.node == self.cell.paths[0].nodes[0]
+
+    def _follow(self, was_moving: bool) -> None:
+        still = not (was_moving or self.moving or self.lost_power)
+        self.jumped = still and self.body.node != self.counted
+        self.node, self.counted = self.body.true_node, self.body.node
+        for act in self.acts:
+            if isinstance(act.goal, PathGoal):
+                self.goal = act.goal.nodes[-1]
+
+    def _ends_soon(self, now_us: int) -> bool:
+        return True  # it always has an edge to finish
+
+    def _goes_on(self) -> bool:
+        return self.body.node != self.counted  # and so on a further edge

@@ -1,0 +1,131 @@
+"""Where every part is: it lies ready at a pick-up, hangs in an effector, and is put down or falls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import count
+
+from arboleda.core.model import Pose
+
+from .arm import ArmTruth
+from .deeds import CellTruth
+
+FLOOR, EFFECTOR = "floor", "effector"  # where a part can be, besides a pose
+GRIPPED, PUT, RELEASED, FELL, POWER = "gripped", "put down", "released", "fell", "lost with the power"
+
+
+@dataclass(kw_only=True)
+class Part:
+    """One part of a cell; `counts`: once it leaves the pick-up, that is a pick.
+
+    It does not where an effector that had lost its part unseen came back to the pick-up and got this one.
+    """
+
+    number: int
+    cell: str
+    counts: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Passage:
+    """A part that came to another place: how, and to which pose or FLOOR or EFFECTOR.
+
+    `lay_there`: one lay where the arm gripped it.
+    """
+
+    part: Part
+    arm: str
+    cause: str
+    place: str
+    lay_there: bool = True
+
+
+class Parts:
+    """Every part is at one place; a pick-up has new ones for ever, and takes back what is returned."""
+
+    def __init__(self) -> None:
+        self.passages: list[Passage] = []  # of this step
+        self.held: dict[str, Part] = {}  # by arm
+        self.returned: dict[tuple[str, str], Part] = {}  # (cell, pose) -> the one that is gripped next there
+        self.stations: dict[tuple[str, str], list[Part]] = {}  # (cell, pose), until the customer comes
+        self._numbers = count(1)
+
+    def forget(self) -> None:
+        """Nothing has happened yet in the step that begins."""
+        self.passages = []
+
+    def start(self, arm: ArmTruth) -> None:
+        """Take over what an arm holds already."""
+        if arm.holding:
+            self.held[arm.robot.name] = Part(number=next(self._numbers), cell=arm.cell.name)
+
+    def look(self, cell: CellTruth, arm: ArmTruth) -> None:
+        """Take in what an arm did with its part in this step."""
+        name = arm.robot.name
+        if arm.was_holding and not arm.holding and name in self.held:
+            self._part_with(self.held.pop(name), cell, arm)
+        if arm.holding and name not in self.held:
+            self._grip(cell, arm)
+        part = self.held.get(name)
+        if part is not None and part.counts and arm.moving and not self._at_a_pick(arm.goal, cell, arm):
+            part.counts = False
+            cell.picks += 1
+
+    def empty(self, cell: str) -> None:
+        """The customer takes what lies in the stations of a cell."""
+        for key in [key for key in self.stations if key[0] == cell]:
+            del self.stations[key]
+
+    def _grip(self, cell: CellTruth, arm: ArmTruth) -> None:
+        name, key = arm.robot.name, (cell.cell.name, _pick_like(arm.stood, cell, arm))
+        part = self.returned.pop(key, None) or Part(number=next(self._numbers), cell=cell.cell.name)
+        part.counts = cell.switch is not None and cell.switch.on
+        self.held[name] = part
+        lay_there = arm.on and self._at_a_pick(arm.stood, cell, arm)
+        passage = Passage(part=part, arm=name, cause=GRIPPED, place=EFFECTOR, lay_there=lay_there)
+        self.passages.append(passage)
+
+    def _part_with(self, part: Part, cell: CellTruth, arm: ArmTruth) -> None:
+        cause, place = _cause(cell, arm), FLOOR
+        if cause in (PUT, RELEASED):
+            place = self._put(part, cell, arm)
+        if cause == PUT and place != FLOOR and cell.place and arm.stood & arm.poses_like(cell.place.q):
+            cell.places += 1
+        self.passages.append(Passage(part=part, arm=arm.robot.name, cause=cause, place=place))
+
+    def _put(self, part: Part, cell: CellTruth, arm: ArmTruth) -> str:
+        if not arm.stood:
+            return FLOOR
+        name = cell.cell.name
+        station = _station(arm.stood, cell)
+        if self._at_a_pick(arm.stood, cell, arm):
+            self.returned[name, _pick_like(arm.stood, cell, arm)] = part
+        elif station is not None:
+            if cell.task is not None:  # else the customer has it at once
+                self.stations.setdefault((name, station), []).append(part)
+        elif not cell.legal_to_open(arm):
+            return FLOOR
+        return "/".join(sorted(arm.stood))
+
+    def _at_a_pick(self, poses: frozenset[str], cell: CellTruth, arm: ArmTruth) -> bool:
+        return any(poses & arm.poses_like(pick.q) for pick in _picks(cell))
+
+
+def _cause(cell: CellTruth, arm: ArmTruth) -> str:
+    if arm.lost_power:
+        return POWER
+    if arm.on:
+        return FELL
+    return RELEASED if cell.switch is not None and cell.switch.released else PUT
+
+
+def _picks(cell: CellTruth) -> tuple[Pose, Pose]:
+    return (cell.cell.pickup, cell.cell.palletizing.pick)
+
+
+def _pick_like(poses: frozenset[str], cell: CellTruth, arm: ArmTruth) -> str:
+    return next((pick.name for pick in _picks(cell) if poses & arm.poses_like(pick.q)), "")
+
+
+def _station(poses: frozenset[str], cell: CellTruth) -> str | None:
+    return next((pose.name for pose in cell.cell.stations if pose.name in poses), None)

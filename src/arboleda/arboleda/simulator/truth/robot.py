@@ -1,0 +1,217 @@
+"""What is true of one robot: its power and its reference, what its board heard and carried out."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Any
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import StopMode
+from arboleda.core.model import Cell, Robot
+from arboleda.sim.board import Board
+from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal, decode
+from arboleda.wire.topics import Channel, parse
+from arboleda.wire.transport import Delivery, Publication
+
+from ..network import Client
+
+MOTIONS = (JointsGoal, PathGoal, HomeGoal)
+BEATS = f"/{Channel.BEAT.value}"
+UNDER_WAY = 64  # publications of the bridge that may still reach the board
+
+
+@dataclass(frozen=True, kw_only=True)
+class Act:
+    """A goal that a board carried out, and what held just before.
+
+    `ours`: our bridge published it; `latched`: the board had obeyed a latching stop that was not cleared;
+    `homed`: its counters were right.
+    """
+
+    goal: Goal
+    ours: bool
+    latched: bool
+    homed: bool
+
+    @property
+    def moves(self) -> bool:
+        """Whether it sets the robot in motion."""
+        return isinstance(self.goal, MOTIONS)
+
+    @property
+    def starts(self) -> bool:
+        """Whether a stop forbids it: it moves, or grips."""
+        return self.moves or (isinstance(self.goal, EffectorGoal) and self.goal.on)
+
+
+class RobotTruth:
+    """One robot, followed step by step; `look` says whether there was more to see than a body on its way.
+
+    `stopping`: from a stop or halt that its board heard until it stands still or gets a new goal.
+    What `forget` forgets is of one step: `acts`, `lost_power`; `started`, `swerved`, `jumped`: it began to
+    move, changed its way or is elsewhere, and nothing that it heard explains it; `sped_up`, `runs_on`: it
+    was told to stop and does not.
+    """
+
+    SIGNS: tuple[str, ...]  # of a board: what changes with whatever happens, the end of a motion first
+
+    def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
+        self.robot = robot
+        self.cell = cell
+        self.board = board
+        self.body: Any = board.body
+        self.moving = board.body.moving
+        self.homed = board.homed
+        self.latched = board.latched
+        self.stopping = False
+        self.acts: list[Act] = []
+        self.again = True  # look even if nothing seems to have changed
+        self.booted_us = -1  # when it last lost its power
+        self._signs = attrgetter(*self.SIGNS)
+        self._client = client
+        self._executed: list[Goal] = []  # what the board says that it carried out in this step
+        self._ahead: list[Delivery] = []  # what reached it and was not yet heard
+        self._boot = board.boot_id
+        self._left = 0  # how many of `_ahead` were there before this step
+        self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
+        self._homing = self._put_right = False
+        self._arrived = not self.moving  # whether it stood still at some time in this step
+        self._seen: tuple[Any, ...] = ()
+        self.forget()
+
+    def forget(self) -> None:
+        """Nothing has happened yet in the step that begins."""
+        if self.acts:
+            self.acts = []
+        self.lost_power = self.started = self.swerved = self.jumped = False
+        self.sped_up = self.runs_on = False
+
+    def expect(self, publication: Publication) -> None:
+        """Our bridge published a command for it."""
+        self._ours.append((publication.topic, publication.payload))
+
+    def put_right(self) -> None:
+        """Somebody has put it by hand to its reference, where its counters are right."""
+        self.homed = self.again = self._put_right = True
+
+    def reach(self, delivery: Delivery) -> None:
+        """A message is at its board, which has not heard it yet."""
+        self._ahead.append(delivery)
+        self.again = True
+
+    def carry_out(self, goal: Goal) -> None:
+        """Its board says that it carries a goal out."""
+        self._executed.append(goal)
+        self.again = True
+
+    def look(self, now_us: int) -> bool:
+        """Take in the present."""
+        seen = self._signs(self.board)
+        if seen == self._seen and not self.again:
+            return False
+        self._take_in(seen, now_us)
+        self.again = bool(self._ahead) or self._slows_down
+        return True
+
+    def _take_in(self, seen: tuple[Any, ...], now_us: int) -> None:
+        due, turned, self._seen = self._seen[:1], seen[:1] != self._seen[:1], seen
+        if self._boot != self.board.boot_id:
+            self._boot_up(now_us)
+        told = self.stopping
+        self._hear()
+        was_moving, self.moving = self.moving, self.body.moving
+        self._arrived = not was_moving or _is_over(due, now_us)
+        self.stopping = self.stopping and self.moving
+        asked, soon = any(act.moves for act in self.acts), self._ends_soon(now_us)
+        self.started = self.moving and not was_moving and not asked
+        self.swerved = self.moving and was_moving and turned and not asked and not soon
+        self.runs_on = self.stopping and (self._goes_on() if told else not soon)
+        self._follow(was_moving)
+        self.jumped = self.jumped and not self._put_right
+        self._put_right = False
+        self._follow_homing()
+
+    @property
+    def _slows_down(self) -> bool:
+        """Whether there is something to see at every moment."""
+        return False
+
+    def _follow(self, was_moving: bool) -> None:
+        """Take in where the body is."""
+        raise NotImplementedError
+
+    def _ends_soon(self, now_us: int) -> bool:
+        """Whether the present motion can be a stopping ramp, or goes on as before."""
+        raise NotImplementedError
+
+    def _goes_on(self) -> bool:
+        """Whether it did more since the last look than a robot that was told to stop before that."""
+        raise NotImplementedError
+
+    @property
+    def at_reference(self) -> bool:
+        """Whether it truly stands where homing ends."""
+        raise NotImplementedError
+
+    def _boot_up(self, now_us: int) -> None:
+        self._boot, self.booted_us = self.board.boot_id, now_us
+        self.lost_power = True
+        self.homed = self.latched = self._homing = self.stopping = False
+        del self._ahead[: self._left]
+
+    def _hear(self) -> None:
+        """Go through what the board heard and did, in order."""
+        executed, self._executed = self._executed, []
+        waiting = sum(map(_is_command, self._client.inbox)) if self._ahead else 0
+        heard = len(self._ahead) - waiting
+        for delivery in self._ahead[:heard]:
+            goal = None if delivery.retain else _goal(delivery, self.body.axes)
+            if goal is not None:
+                self._obeyed(goal)
+            if executed and goal == executed[0]:
+                self._did(executed.pop(0), ours=(delivery.topic, delivery.payload) in self._ours)
+        del self._ahead[:heard]
+        self._left = waiting
+        for goal in executed:  # nobody sent it, or the board does what it was not told
+            self._did(goal, ours=False)
+
+    def _obeyed(self, goal: Goal) -> None:
+        """A stop counts whatever its numbers; one of the instant of a boot may have come before it."""
+        if isinstance(goal, StopGoal) and goal.mode is not StopMode.CLEAR and not self.lost_power:
+            self.latched = self.latched or goal.mode is StopMode.LATCH
+            self._homing = False
+            self.stopping = True
+
+    def _did(self, goal: Goal, *, ours: bool) -> None:
+        self.acts.append(Act(goal=goal, ours=ours, latched=self.latched, homed=self.homed))
+        if isinstance(goal, MOTIONS):
+            self.stopping = False
+        if isinstance(goal, HomeGoal):
+            self.homed, self._homing = False, True
+        if isinstance(goal, StopGoal) and goal.mode is not StopMode.HALT:
+            self.latched = goal.mode is StopMode.LATCH
+
+    def _follow_homing(self) -> None:
+        if self._homing and not self.moving:
+            self.homed, self._homing = self.at_reference, False
+
+
+def _is_over(due: tuple[int | None, ...], now_us: int) -> bool:
+    """Whether a motion that was to end then has ended."""
+    return any(at is not None and at <= now_us for at in due)
+
+
+def _is_command(event: object) -> bool:
+    return isinstance(event, Delivery) and not event.topic.endswith(BEATS)
+
+
+def _goal(delivery: Delivery, axes: int | None) -> Goal | None:
+    """The command in a message to a board; None for a beat and for what nobody can read."""
+    try:
+        _, channel = parse(delivery.topic)
+        said = decode(channel, delivery.payload, axes=axes)
+    except PayloadError:
+        return None
+    return said if isinstance(said, Goal) else None

@@ -1,0 +1,109 @@
+"""Which robots an operator has stopped, and what was under way to them then."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from arboleda.core.messages import (
+    Command,
+    Fact,
+    FollowPath,
+    Home,
+    MoveJoints,
+    OperatorAnswer,
+    Remember,
+    SetEffector,
+    Verb,
+)
+from arboleda.core.model import PlantModel, Robot
+from arboleda.wire import goals
+from arboleda.wire.payloads import Goal, JointsGoal
+
+from .robot import Act
+
+UNDER_WAY_S = 60.0  # a command that was sent longer ago does not arrive any more
+KEPT = 16
+ROUNDING_DEG = 1e-3  # of angles on the wire
+
+
+class Stops:
+    """A stop holds until its robot was cleared and its cell reset; what was sent before may still arrive."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self._model = model
+        self._cleared: dict[str, bool] = {}  # stopped robot -> whether it was cleared
+        self._resets: set[str] = set()  # robots in the scope of a reset that was answered in this step
+        self._forgotten: set[str] = set()
+        self._sent: dict[str, deque[tuple[float, Command]]] = {
+            name: deque(maxlen=KEPT) for name in model.robots
+        }
+
+    def holds(self, robot: str) -> bool:
+        """Whether an operator's stop of this robot is not over."""
+        return robot in self._cleared
+
+    def sent(self, command: Command, now: float) -> None:
+        """The plant sends a command."""
+        if not self.holds(command.robot) and starts(command):
+            self._sent[command.robot].append((now, command))
+
+    def breaks(self, robot: Robot, act: Act, now: float) -> bool:
+        """Whether what a board does was sent by nobody before the stop that holds."""
+        under_way = self._sent[robot.name]
+        for at, command in under_way:
+            if at > now - UNDER_WAY_S and _is(act.goal, robot, command):
+                under_way.remove((at, command))
+                return False
+        return self.holds(robot.name)
+
+    def answered(self, answer: OperatorAnswer) -> None:
+        """An operator's verb was carried out."""
+        robots = robots_of(self._model, answer.scope)
+        if answer.verb is Verb.STOP:
+            self._cleared.update(dict.fromkeys(robots, False))
+        elif answer.verb is Verb.CLEAR:
+            self._cleared.update({name: True for name in robots if name in self._cleared})
+        elif answer.verb is Verb.RESET:
+            cells = {self._model.cell_of[name].name for name in robots}
+            self._resets.update(
+                robot.name for cell in self._model.cells if cell.name in cells for robot in cell.robots
+            )
+
+    def remembered(self, fact: Remember) -> None:
+        """A reset does what it can in its scope; whose stop it ended, the plant need not keep any more."""
+        if fact.fact is Fact.LATCH and fact.value is None:
+            self._forgotten.add(fact.name)
+
+    def settle(self) -> None:
+        """The step is over: stops that were cleared and then reset are no more."""
+        if self._resets:
+            for name in self._resets & self._forgotten:
+                if self._cleared.get(name):
+                    del self._cleared[name]
+        if self._resets or self._forgotten:
+            self._resets, self._forgotten = set(), set()
+
+
+def starts(command: Command) -> bool:
+    """Whether a stop forbids it: motions, and effector on."""
+    if isinstance(command, SetEffector):
+        return command.on
+    return isinstance(command, MoveJoints | FollowPath | Home)
+
+
+def robots_of(model: PlantModel, scope: str) -> list[str]:
+    """The robots of an operator's scope: the plant, a cell or a robot."""
+    scope = scope.strip().lower()
+    if scope in ("", "plant"):
+        return list(model.robots)
+    if scope in model.robots:
+        return [scope]
+    return [robot.name for cell in model.cells if cell.name == scope for robot in cell.robots]
+
+
+def _is(goal: Goal, robot: Robot, command: Command) -> bool:
+    """Whether a goal on the wire is this command."""
+    _, expected = goals.goal(robot, command, seq=goal.seq, epoch=goal.epoch)
+    if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
+        return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))
+    return goal == expected

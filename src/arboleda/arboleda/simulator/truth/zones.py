@@ -1,0 +1,103 @@
+"""Which arms are truly in which shared zone, and which zones the plant has just freed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..world import World
+from .arm import ArmTruth
+
+
+@dataclass(frozen=True, kw_only=True)
+class Freed:
+    """A zone that the plant took from the arm that held it; `by_hand`: an operator said so."""
+
+    zone: str
+    arm: str
+    by_hand: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meeting:
+    """A zone with more than one arm in it; nobody but an operator, or a lie, can answer for `excused` there.
+
+    An arm is, from an override or from the release of its zone on false evidence until it has left.
+    """
+
+    zone: str
+    arms: tuple[str, ...]
+    excused: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """An arm that set out into a zone, and who held it then by the plant's books."""
+
+    zone: str
+    arm: str
+    holder: str | None
+
+
+class ZonesTruth:
+    """What happened in this step: `freed`, `meetings`, `entries`."""
+
+    def __init__(self, world: World, arms: dict[str, ArmTruth], mistaken: Callable[[ArmTruth], bool]) -> None:
+        self.meetings: list[Meeting] = []
+        self.freed: list[Freed] = []
+        self.entries: list[Entry] = []
+        self._world = world
+        self._arms = arms
+        self._mistaken = mistaken
+        self._names = world.model.zones
+        self._holders = {zone: world.plant.zones.holder(zone) for zone in self._names}
+        self._inside = {zone: self._arms_in(zone) for zone in self._names}
+        self._overridden: set[str] = set()  # zones, in this step
+        self._answered_for: set[tuple[str, str]] = set()  # (zone, arm) until the arm is truly outside
+
+    def overridden(self, zone: str) -> None:
+        """An operator has answered for a zone being empty."""
+        self._overridden.add(zone)
+        self._answered_for.update((zone, name) for name in self._arms_in(zone))
+
+    def look(self, moved: bool) -> None:
+        """Take in where the arms are, if they `moved`, and who holds what by the plant's books."""
+        if self.meetings or self.freed or self.entries:
+            self.meetings, self.freed, self.entries = [], [], []
+        if moved:
+            self._look_inside()
+        holder = self._world.plant.zones.holder
+        for zone in self._names:
+            before, now = self._holders[zone], holder(zone)
+            if before != now:
+                self._holders[zone] = now
+                if before is not None:
+                    self._freed(zone, before)
+        if self._overridden:
+            self._overridden = set()
+
+    def _freed(self, zone: str, name: str) -> None:
+        self.freed.append(Freed(zone=zone, arm=name, by_hand=zone in self._overridden))
+        arm = self._arms.get(name)
+        if arm is not None and zone in arm.zones and self._mistaken(arm):
+            self._answered_for.add((zone, name))
+
+    def _arms_in(self, zone: str) -> list[str]:
+        return [name for name, arm in self._arms.items() if zone in arm.zones]
+
+    def _look_inside(self) -> None:
+        for zone, before in self._inside.items():
+            inside = self._arms_in(zone)
+            if inside == before:
+                continue
+            self._inside[zone] = inside
+            holder = self._holders[zone]  # before this step: the boards step before the plant
+            self.entries += [
+                Entry(zone=zone, arm=name, holder=holder) for name in inside if name not in before
+            ]
+            self._answered_for = {
+                (where, name) for where, name in self._answered_for if where != zone or name in inside
+            }
+            if len(inside) > 1:
+                excused = tuple(name for name in inside if (zone, name) in self._answered_for)
+                self.meetings.append(Meeting(zone=zone, arms=tuple(inside), excused=excused))

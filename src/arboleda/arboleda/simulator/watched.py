@@ -1,0 +1,131 @@
+"""A world whose faults, truth, record, trace and invariants go along with every step."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+from arboleda.core.model import PlantModel
+from arboleda.core.recipes import Recipes
+
+from .faults import KINDS, Fault
+from .invariants import INVARIANTS, Invariant
+from .invariants.invariant import Look, When, occasions
+from .record import Record
+from .trace import Trace
+from .truth import Truth
+from .world import World
+
+REST_S = 600.0  # after the last fault, everything must have come to rest by then
+STAYS_S = 10.0  # and stay there
+
+
+class Broken(Exception):
+    """An invariant does not hold."""
+
+    def __init__(self, invariant: str, sentence: str) -> None:
+        super().__init__(f"{invariant}: {sentence}")
+        self.invariant = invariant
+        self.sentence = sentence
+
+
+class Watched:
+    """A world in which every step is judged: Broken leaves the one that breaks an invariant.
+
+    `faults` are those that have begun; their times are in s since `start`.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        *,
+        invariants: Iterable[Invariant] = INVARIANTS,
+        keep: bool = False,
+        tell: Callable[[str], None] | None = None,
+        recipes: Recipes | None = None,
+    ) -> None:
+        self.world = World(model, recipes=recipes)
+        self.start = self.world.now
+        self.faults: list[Fault] = []
+        self.invariants = tuple(invariants)
+        self.trace = Trace(self.world, keep=keep, tell=tell)
+        self._ends: dict[int, Callable[[], None]] = {}
+        self._rests = 0  # a fault that is expected since before a rest never begins
+        self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
+        self._rules = {when: [each for each in self.invariants if each.when is when] for when in When}
+        self._looks: Counter[When] = Counter()
+        self.world.watchers.append(self._check)
+
+    @property
+    def seconds(self) -> float:
+        """How long it runs, s."""
+        return self.world.now - self.start
+
+    @property
+    def checks(self) -> Counter[str]:
+        """How often each invariant was looked at."""
+        return Counter({each.name: self._looks[each.when] for each in self.invariants})
+
+    def expect(self, fault: Fault) -> None:
+        """Have a fault begin when its time has come, if that is before the next rest."""
+        self.world.at(self.start + fault.at, self._begin_expected, (self._rests, fault))
+
+    def begin(self, fault: Fault) -> None:
+        """Bring a fault about now, and have it end when its seconds have passed."""
+        world, number = self.world, len(self.faults)
+        self.faults.append(fault)
+        self.trace.note(f"FAULT      {_told(fault)}")
+        end = KINDS[fault.kind].begin(world, fault)
+        world.last_fault_at = world.now
+        if end is not None:
+            world.faults_active += 1
+            self._ends[number] = end
+            world.at(world.now + fault.seconds, self._end, number)
+
+    def come_to_rest(self) -> None:
+        """Without any fault, let everything come to rest, and judge whether it did and stays there."""
+        self._rests += 1
+        for number in list(self._ends):
+            self._end(number)
+        end = self.world.now + REST_S
+        while self.world.now < end and self._restless():
+            self.world.advance(1.0)
+        self._apply(When.END)
+        self.world.advance(STAYS_S)
+        self._apply(When.END)
+
+    def _begin_expected(self, expected: tuple[int, Fault]) -> None:
+        rests, fault = expected
+        if rests == self._rests:
+            self.begin(fault)
+
+    def _end(self, number: int) -> None:
+        end = self._ends.pop(number, None)
+        if end is not None:
+            end()
+            self.world.faults_active -= 1
+            self.world.last_fault_at = self.world.now
+            self.trace.note(f"fault over {_told(self.faults[number])}")
+
+    def _restless(self) -> bool:
+        return any(sentence for each in self._rules[When.END] for sentence in each.rule(self._look))
+
+    def _check(self) -> None:
+        self._look.truth.look()
+        self._look.record.look()
+        self.trace.look()
+        for when in occasions(self._look):
+            self._apply(when)
+
+    def _apply(self, when: When) -> None:
+        self._looks[when] += 1
+        for each in self._rules[when]:
+            for sentence in each.rule(self._look):
+                raise Broken(each.name, sentence)
+
+
+def _told(fault: Fault) -> str:
+    parts = [fault.kind, fault.target, fault.word, f"{fault.amount:g}" if fault.amount else ""]
+    lasting = f"for {fault.seconds:.3f} s" if 0 < fault.seconds < math.inf else ""
+    return " ".join(part for part in (*parts, lasting) if part)

@@ -1,0 +1,412 @@
+"""A whole plant in one process: plant, bridge, boards and broker, under time that is handed to them."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from heapq import heappop, heappush
+from itertools import count
+from typing import Any
+
+from arboleda.core.messages import (
+    Command,
+    Event,
+    Fact,
+    Heartbeat,
+    OperatorRequest,
+    Remember,
+    Report,
+    TaskRequest,
+    Verb,
+)
+from arboleda.core.model import PlantModel
+from arboleda.core.plant import Plant
+from arboleda.core.recipes import Recipes
+from arboleda.sim.board import Board
+from arboleda.sim.devices import Devices
+from arboleda.wire.bridge import Bridge, FromPlant
+from arboleda.wire.payloads import Goal
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+from .network import Broker, Client, Line
+
+PLANT, BRIDGE = "plant", "bridge"
+BY_HAND_S = 1.0  # from a robot put right to the word that it is
+AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
+Carry = Callable[[Publication], Iterable[Publication]]
+
+
+@dataclass(slots=True)
+class Moment:
+    """What happened in one pass over the machines, in order; emptied before the next one."""
+
+    asked: list[Event] = field(default_factory=list)  # tasks and operators' requests that reached the plant
+    heard: list[Report] = field(default_factory=list)  # reports that reached the plant
+    sent: list[Any] = field(default_factory=list)  # commands and notices of the plant
+    published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
+    delivered: list[tuple[str, Delivery]] = field(default_factory=list)  # (client, what reached it)
+    executed: list[tuple[str, Goal]] = field(default_factory=list)  # (board, command it carries out)
+    put_right: list[str] = field(default_factory=list)  # boards whose robots somebody moved by hand
+
+    def clear(self) -> None:
+        for happened in (
+            self.asked,
+            self.heard,
+            self.sent,
+            self.published,
+            self.delivered,
+            self.executed,
+            self.put_right,
+        ):
+            happened.clear()
+
+
+class World:
+    """A plant at `now` seconds; `advance` moves it from deadline to deadline, `watchers` are called after
+    every pass with what happened in `moment`.
+
+    `carriers` turn what somebody publishes into what the network gets; `memory` is what the plant had to
+    keep. Processes and their lines are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        *,
+        now: float = 100.0,
+        epoch: int = 1000,
+        watchers: Iterable[Callable[[], None]] = (),
+        carriers: Iterable[Carry] = (),
+        recipes: Recipes | None = None,
+    ) -> None:
+        self.model = model
+        self.now = now
+        self.moment = Moment()
+        self.watchers = list(watchers)
+        self.carriers = list(carriers)
+        self.memory: dict[Fact, dict[str, str]] = {}
+        self.faults_active = 0  # lasting faults that have begun and not ended
+        self.last_fault_at = -math.inf
+        self.deceptions: Counter[tuple[str, str]] = Counter()  # (board, what it now may lie about)
+        self.holds: Counter[tuple[str, str]] = Counter()  # (what faults keep up, whom): by how many of them
+        self.obeyed: dict[str, Goal] = {}  # the last command that each board carried out since it booted
+        self._epochs = count(epoch)
+        self._boot_ids = count(1)
+        self._agenda: list[tuple[float, int, Callable[[Any], None], Any]] = []
+        self._agenda_no = count()
+        self._stalled: dict[str, float] = {}
+        self._off: set[str] = set()
+        self.broker = Broker(lambda: self.now, self.at, self._hear)
+        self.to_bridge, self.to_plant = Line(), Line()  # the hop between plant and bridge
+        self._recipes = recipes
+        self.plant = Plant(model, epoch=next(self._epochs), now=now, recipes=recipes)
+        self.devices = Devices(model, now=now, boot_ids=lambda: next(self._boot_ids))
+        self.boards: dict[str, Board] = self.devices.boards
+        self.bridge: Bridge | None = None
+        self._plant_inbox: list[Event] = []
+        self._due: dict[str, float] = dict.fromkeys((PLANT, *self.boards), now)
+        for name, board in self.boards.items():
+            self._add_board(name, board)
+        self.start_bridge()
+        self.settle()
+
+    def request_task(self, text: str) -> None:
+        """Somebody asks for a task; the plant takes it in at its next step."""
+        self.tell(TaskRequest(at=self.now, text=text, request=text))
+
+    def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
+        """An operator acts; one who says that a robot is homed by hand has put it at its reference before."""
+        self.tell(OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand))
+
+    def home_by_hand(self, scope: str) -> None:
+        """Somebody puts the still robots of a scope at their reference, then tells the plant so."""
+        self.put_at_reference(scope)
+        declared = OperatorRequest(at=self.now + BY_HAND_S, verb=Verb.HOME, scope=scope, by_hand=True)
+        self.at(declared.at, self.tell, declared)
+
+    def put_at_reference(self, scope: str) -> None:
+        """Somebody moves the still robots of a scope by hand to where their counters begin."""
+        for name in self._boards_of(scope):
+            if not self.boards[name].body.moving:
+                self.boards[name].body.put_at_reference()
+                self.moment.put_right.append(name)
+
+    def tell(self, event: Event) -> None:
+        """Put an event into the plant's inbox."""
+        self._plant_inbox.append(event)
+
+    def crash(self, process: str = PLANT) -> None:
+        """A process dies and starts anew at once, the plant with what it had to keep, a board as it boots."""
+        if process == PLANT:
+            self._plant_inbox = []
+            self.plant = Plant(
+                self.model, epoch=next(self._epochs), now=self.now, memory=self.memory, recipes=self._recipes
+            )
+            self._due[PLANT] = self.now
+        elif process == BRIDGE:
+            self.stop_bridge()
+            self.start_bridge()
+        else:
+            self.power_off(process)
+            self.power_on(process)
+
+    def stall(self, process: str, seconds: float) -> None:
+        """A process does nothing for a while; what reaches it waits."""
+        until = max(self.now + seconds, self._stalled.get(process, 0.0))
+        self._stalled[process] = until
+        self.at(until, self._go_on, process)
+
+    def go_on(self, process: str) -> None:
+        """A process that is stalled does something again."""
+        if self._stalled.pop(process, None) is not None:
+            self.wake(process)
+
+    def is_stalled(self, process: str) -> bool:
+        """Whether a process does nothing for a while."""
+        return process in self._stalled
+
+    def wake(self, process: str) -> None:
+        """Have a process that is there step in this pass, as something was done to it."""
+        if process in self._due and self._awake(process):
+            self._due[process] = self.now
+
+    def power_off(self, board: str, *, will_after_s: float = 0.0) -> None:
+        """A board loses power; the broker tells its last will when it notices."""
+        if board in self._off:
+            return
+        client = self.broker.clients[board]
+        self._off.add(board)
+        self.obeyed.pop(board, None)
+        client.inbox.clear()
+        now_us = _us(self.now)
+        self.boards[board].connect(now_us, False)
+        self.boards[board].reboot(now_us, next(self._boot_ids))
+        self._take(board)
+        client.connect(False)
+        will = (client, client.connection)
+        if will_after_s:
+            self.at(self.now + will_after_s, self._tell_will, will)
+        else:
+            self._tell_will(will)
+
+    def power_on(self, board: str) -> None:
+        """The board boots and reaches the broker."""
+        if board not in self._off:
+            return
+        self._off.discard(board)
+        self._due[board] = self.now
+        self._reconnect(self.broker.clients[board])
+
+    def is_on(self, process: str) -> bool:
+        """Whether a board has power, or the bridge runs."""
+        return process not in self._off
+
+    def stop_broker(self) -> None:
+        """The broker dies: every connection breaks, and what it retained is gone."""
+        self.broker.die()
+        for client in self.broker.clients.values():
+            self._tell_connection(client)
+
+    def start_broker(self) -> None:
+        """A new broker: everybody is back."""
+        self.broker.is_up = True
+        for client in self.broker.clients.values():
+            self._reconnect(client)
+
+    def stop_bridge(self) -> None:
+        """The bridge's process dies."""
+        self.bridge = None
+        self._off.add(BRIDGE)
+        client = self.broker.clients[BRIDGE]
+        client.inbox.clear()
+        client.connect(False)
+        self._due.pop(BRIDGE, None)
+
+    def start_bridge(self) -> None:
+        """A new bridge process connects; the broker delivers what it retained."""
+        self.bridge = Bridge(self.model, epoch=next(self._epochs), now=self.now)
+        self._off.discard(BRIDGE)
+        if BRIDGE not in self.broker.clients:
+            self.broker.join(Client(BRIDGE, self.bridge.subscriptions))
+        self._due[BRIDGE] = self.now
+        self._reconnect(self.broker.clients[BRIDGE])
+
+    def publish(self, publication: Publication, sender: Client | None = None) -> None:
+        """Somebody publishes; None: a foreign client, over a line without faults."""
+        self.moment.published.append((sender.name if sender else "", publication))
+        if not self.carriers:
+            self.broker.publish(publication, sender)
+            return
+        carried = [publication]
+        for carrier in self.carriers:
+            carried = [each for one in carried for each in carrier(one)]
+        for each in carried:
+            self.broker.publish(each, sender)
+
+    def at(self, time: float, call: Callable[[Any], None], argument: Any = None) -> None:
+        """Have `call(argument)` made at `time`, or now where that has passed."""
+        heappush(self._agenda, (time, next(self._agenda_no), call, argument))
+
+    def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Let time pass, at most `seconds`; whether `until` came true."""
+        end = self.now + seconds
+        if self._has_work():
+            self.settle()
+        while not until():
+            due = self.next_deadline
+            if due > end:
+                self.now = end
+                return until()
+            self.now = max(self.now, due)
+            self.settle()
+        return True
+
+    @property
+    def next_deadline(self) -> float:
+        """When something happens next if nobody interferes."""
+        due = self._agenda[0][0] if self._agenda else math.inf
+        if not self._stalled:
+            return min(due, *self._due.values())
+        return min(due, *(at for name, at in self._due.items() if name not in self._stalled))
+
+    def settle(self) -> None:
+        """Step whoever has something to do now, until nobody has."""
+        for _ in range(AT_ONE_INSTANT):
+            self._pass()
+            for watch in self.watchers:
+                watch()
+            self.moment.clear()
+            if not self._has_work() and self.next_deadline > self.now:
+                return
+        raise AssertionError(f"the machines do not come to rest at {self.now}")
+
+    def _has_work(self) -> bool:
+        if self._plant_inbox and self._awake(PLANT):
+            return True
+        full = [client.name for client in self.broker.clients.values() if client.inbox]
+        return any(self._awake(name) for name in full)
+
+    def _awake(self, process: str) -> bool:
+        return process not in self._off and process not in self._stalled
+
+    def _go_on(self, process: str) -> None:
+        if self._stalled.get(process, math.inf) <= self.now:
+            self.go_on(process)
+
+    def _pass(self) -> None:
+        while self._agenda and self._agenda[0][0] <= self.now:
+            _, _, call, argument = heappop(self._agenda)
+            call(argument)
+        for name, board in self.boards.items():
+            client = self.broker.clients[name]
+            if (client.inbox or self._due[name] <= self.now) and self._awake(name):
+                self._step_board(name, board, client)
+        if self.bridge is not None:
+            client = self.broker.clients[BRIDGE]
+            if (client.inbox or self._due[BRIDGE] <= self.now) and self._awake(BRIDGE):
+                self._step_bridge(self.bridge, client)
+        if (self._plant_inbox or self._due[PLANT] <= self.now) and self._awake(PLANT):
+            self._step_plant()
+
+    def _step_board(self, name: str, board: Board, client: Client) -> None:
+        now_us = _us(self.now)
+        inbox, client.inbox = client.inbox, []
+        for event in inbox:
+            if isinstance(event, Delivery):
+                board.receive(now_us, event)
+            else:
+                board.connect(now_us, event.up)
+        board.advance(now_us)
+        for publication in self._take(name):
+            self.publish(publication, client)
+
+    def _take(self, name: str) -> list[Publication]:
+        due_us = self.boards[name].next_deadline_us
+        self._due[name] = math.inf if due_us is None or name in self._off else due_us / 1e6
+        return self.boards[name].take()
+
+    def _step_bridge(self, bridge: Bridge, client: Client) -> None:
+        inbox, client.inbox = client.inbox, []
+        for message in bridge.step(self.now, inbox):
+            if isinstance(message, Report):
+                self._carry(self.to_plant, self._to_plant, message)
+            else:
+                self.publish(message, client)
+        due = bridge.next_deadline
+        self._due[BRIDGE] = math.inf if due is None else due
+
+    def _step_plant(self) -> None:
+        events, self._plant_inbox = self._plant_inbox, []
+        for event in events:
+            (self.moment.heard if isinstance(event, Report) else self.moment.asked).append(event)  # type: ignore[arg-type]
+        for message in self.plant.step(self.now, events):
+            self.moment.sent.append(message)
+            if isinstance(message, Command | Heartbeat):
+                self._carry(self.to_bridge, self._to_bridge, message)
+            elif isinstance(message, Remember):
+                self._remember(message)
+        self._due[PLANT] = self.plant.next_deadline
+
+    def _carry(self, line: Line, call: Callable[[Any], None], message: Any) -> None:
+        for at in line.carry(self.now, message):
+            if at <= self.now:
+                call(message)
+            else:
+                self.at(at, call, message)
+
+    def _to_bridge(self, message: Command | Heartbeat) -> None:
+        if self.bridge is not None:
+            self.broker.clients[BRIDGE].inbox.append(FromPlant(at=self.now, message=message))
+
+    def _to_plant(self, report: Report) -> None:
+        self._plant_inbox.append(report if report.at == self.now else replace(report, at=self.now))
+
+    def _hear(self, client: Client, delivery: Delivery) -> None:
+        self.moment.delivered.append((client.name, delivery))
+        client.inbox.append(delivery)
+
+    def _remember(self, fact: Remember) -> None:
+        kept = self.memory.setdefault(fact.fact, {})
+        if fact.value is None:
+            kept.pop(fact.name, None)
+        else:
+            kept[fact.name] = fact.value
+
+    def _boards_of(self, scope: str) -> list[str]:
+        """The boards of a robot, a cell or the plant."""
+        scope = scope.strip().lower()
+        cells = {cell.name: [robot.name for robot in cell.robots] for cell in self.model.cells}
+        robots = cells.get(scope, [scope] if scope in self.model.robots else list(self.model.robots))
+        return [self.model.robots[name].mqtt for name in robots]
+
+    def _add_board(self, name: str, board: Board) -> None:
+        client = Client(name, board.subscriptions)
+        self.broker.join(client)
+        board.watch = lambda goal: self._obey(name, goal)
+        self._reconnect(client)
+
+    def _obey(self, board: str, goal: Goal) -> None:
+        self.obeyed[board] = goal
+        self.moment.executed.append((board, goal))
+
+    def _reconnect(self, client: Client) -> None:
+        if not self.broker.is_up or client.name in self._off or (client.name == BRIDGE and not self.bridge):
+            return
+        client.connect(True)
+        self._tell_connection(client)
+        self.broker.tell_retained(client)
+
+    def _tell_connection(self, client: Client) -> None:
+        if client.name not in self._off:
+            client.inbox.append(Connection(at=self.now, client=client.name, up=client.connected))
+
+    def _tell_will(self, will: tuple[Client, int]) -> None:
+        client, connection = will
+        if client.connection == connection:
+            self.publish(Publication(topic=f"{client.name}/conexion", payload=b"0", retain=True))
+
+
+def _us(seconds: float) -> int:
+    return round(seconds * 1e6)

@@ -1,0 +1,178 @@
+"""Lines and the broker: order, copies, losses, and what a connection takes with it when it ends."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.simulator.network import Broker, Client, Line
+from arboleda.wire.transport import Publication
+
+TELEMETRY, COMMAND, PRESENCE = "ra_1/sensores", "ra_1/juntas", "ra_1/conexion"
+
+
+class Net:
+    """A broker with a board and a bridge; `pass_time` brings what is under way."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.heard: list[tuple[float, str, bytes, bool]] = []
+        self._agenda: list[tuple[float, int, object, object]] = []
+        self.broker = Broker(lambda: self.now, self._at, self._hear)
+        self.board, self.bridge = Client("ra_1", [COMMAND]), Client("bridge", [TELEMETRY, PRESENCE])
+        for client in (self.board, self.bridge):
+            self.broker.join(client)
+            client.connect(True)
+
+    def say(self, payload: bytes, topic: str = TELEMETRY, *, retain: bool = False) -> None:
+        self.broker.publish(Publication(topic=topic, payload=payload, retain=retain), self.board)
+
+    def pass_time(self, seconds: float) -> list[bytes]:
+        """The payloads that arrive meanwhile."""
+        before, end = len(self.heard), self.now + seconds
+        while self._agenda and min(self._agenda)[0] <= end:
+            due = min(self._agenda)
+            self._agenda.remove(due)
+            self.now = due[0]
+            due[2](due[3])
+        self.now = end
+        return [payload for _, _, payload, _ in self.heard[before:]]
+
+    @property
+    def payloads(self) -> list[bytes]:
+        return [payload for _, _, payload, _ in self.heard]
+
+    def _at(self, time, call, argument):
+        self._agenda.append((time, len(self._agenda) + len(self.heard) * 1000, call, argument))
+
+    def _hear(self, client, delivery):
+        self.heard.append((self.now, client.name, delivery.payload, delivery.retain))
+
+
+@pytest.fixture
+def net():
+    return Net()
+
+
+def late(seconds):
+    return lambda message: (seconds,)
+
+
+def test_a_calm_line_brings_everything_at_once():
+    line = Line()
+    assert [line.carry(now, "x") for now in (1.0, 1.0, 2.5)] == [[1.0], [1.0], [2.5]]
+
+
+def test_the_delays_of_several_troubles_add_up():
+    line = Line()
+    line.troubles += [late(0.5), late(0.25)]
+    assert line.carry(1.0, "x") == [1.75]
+
+
+def test_messages_keep_their_order_behind_a_late_one():
+    line = Line()
+    line.troubles.append(late(2.0))
+    line.carry(1.0, "slow")
+    line.troubles.clear()
+    assert line.carry(1.5, "behind it") == [3.0]
+    assert line.carry(4.0, "later") == [4.0]
+
+
+def test_messages_overtake_each_other_where_the_line_reorders():
+    line = Line()
+    line.troubles.append(late(2.0))
+    line.carry(1.0, "slow")
+    line.troubles.clear()
+    line.reorders += 1
+    assert line.carry(1.5, "quick") == [1.5]
+    line.reorders -= 1
+    assert line.carry(1.6, "in order again") == [3.0]
+
+
+def test_presence_keeps_its_place_even_where_the_line_reorders():
+    line = Line()
+    line.reorders += 1
+    line.troubles.append(late(2.0))
+    line.carry(1.0, Publication(topic=PRESENCE, payload=b"0", retain=True))
+    line.troubles.clear()
+    assert line.carry(1.5, Publication(topic=PRESENCE, payload=b"1", retain=True)) == [3.0]
+
+
+def test_a_message_can_be_lost_or_come_twice():
+    line = Line()
+    line.troubles.append(lambda message: () if message == "lost" else (0.0, 0.5))
+    assert line.carry(1.0, "lost") == []
+    assert line.carry(1.0, "twice") == [1.0, 1.5]
+    assert line.busy_until == 1.5
+
+
+def test_troubles_multiply_copies():
+    line = Line()
+    line.troubles += [lambda message: (0.0, 1.0), lambda message: (0.0, 0.5)]
+    assert sorted(line.carry(0.0, "x")) == [0.0, 0.5, 1.0, 1.5]
+
+
+def test_what_is_not_late_is_there_before_publish_returns(net):
+    net.say(b"1")
+    assert net.heard == [(0.0, "bridge", b"1", False)]
+
+
+def test_only_those_who_subscribed_hear_it(net):
+    net.broker.publish(Publication(topic=COMMAND, payload=b"go"))
+    assert [name for _, name, _, _ in net.heard] == ["ra_1"]
+
+
+def test_both_directions_make_it_late(net):
+    net.board.up.troubles.append(late(1.0))
+    net.bridge.down.troubles.append(late(0.5))
+    net.say(b"1")
+    assert net.pass_time(1.4) == []
+    assert net.pass_time(0.2) == [b"1"]
+
+
+def test_who_is_not_connected_neither_speaks_nor_hears(net):
+    net.board.connect(False)
+    net.say(b"1")
+    net.board.connect(True)
+    net.bridge.connect(False)
+    net.say(b"2")
+    assert net.payloads == []
+
+
+def test_what_was_under_way_is_lost_with_the_connection(net):
+    net.bridge.down.troubles.append(late(1.0))
+    net.say(b"1")
+    net.bridge.connect(False)
+    net.bridge.connect(True)
+    assert net.pass_time(5.0) == []
+
+
+def test_a_lost_queue_takes_what_waits_but_not_presence(net):
+    net.bridge.down.troubles.append(late(1.0))
+    net.say(b"telemetry")
+    net.say(b"1", PRESENCE, retain=True)
+    net.bridge.queue += 1
+    net.say(b"later")
+    assert net.pass_time(5.0) == [b"1", b"later"]
+
+
+def test_the_last_retained_message_is_told_to_whoever_subscribes(net):
+    for payload in (b"0", b"1"):
+        net.say(payload, PRESENCE, retain=True)
+    net.heard.clear()
+    net.broker.tell_retained(net.bridge)
+    net.broker.tell_retained(net.board)
+    assert net.heard == [(0.0, "bridge", b"1", True)]
+
+
+def test_a_broker_that_dies_takes_everything_with_it(net):
+    net.say(b"1", PRESENCE, retain=True)
+    net.heard.clear()
+    net.board.up.troubles.append(late(1.0))
+    net.say(b"under way")
+    net.broker.die()
+    net.broker.is_up = True
+    for client in (net.board, net.bridge):
+        client.connect(True)
+        net.broker.tell_retained(client)
+    assert net.pass_time(5.0) == []
+    assert not net.broker.retained

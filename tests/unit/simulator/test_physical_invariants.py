@@ -1,0 +1,354 @@
+"""Each invariant of zones, motion, grip and stop holds for a plant that works, and bites."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.core import evidence, recipes
+from arboleda.core.context import Context
+from arboleda.core.dispatcher import Dispatcher
+from arboleda.core.evidence import Verdict
+from arboleda.core.ledger import Feed
+from arboleda.core.messages import Home, MoveJoints, SetEffector, Verb
+from arboleda.core.model import Evidence, PlantModel
+from arboleda.core.task import Recipe
+from arboleda.core.zones import Zones
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.mobile import MobileBody
+from arboleda.simulator.invariants.grip import GRIP
+from arboleda.simulator.invariants.invariant import Look, occasions
+from arboleda.simulator.invariants.motion import MOTION
+from arboleda.simulator.invariants.stop import STOP
+from arboleda.simulator.invariants.zones import ZONES
+from arboleda.simulator.record import Record
+from arboleda.simulator.truth import Truth
+from arboleda.simulator.world import World
+from arboleda.testing.plants import shipped
+from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+INVARIANTS = (*ZONES, *MOTION, *GRIP, *STOP)
+ARM, MOBILE = "ra_1", "rm_sis_a"
+IN_THE_MIDDLE = 0.5  # s after a move of the arm began
+Patch = pytest.MonkeyPatch
+
+
+class Watch:
+    """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
+
+    def __init__(self, model: PlantModel | None = None, **world: Any) -> None:
+        self.world = World(model or shipped("sis_a"), **world)
+        self.truth = Truth(self.world)
+        self.found: dict[str, list[str]] = {}
+        self._look = Look(world=self.world, truth=self.truth, record=Record(self.world))
+        self.world.watchers.append(self._check)
+        self.wait(0.5)
+
+    @property
+    def body(self) -> Any:
+        return self.world.boards[ARM].body
+
+    def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
+        self.world.advance(seconds, until)
+
+    def task(self, text: str = "sis_a palletizing", wait_s: float = 20.0) -> None:
+        self.world.request_task(text)
+        self.wait(wait_s)
+
+    def carry(self) -> None:
+        """Be in the middle of the way from pick-up to place."""
+        self.task(wait_s=0.0)
+        self.wait(60.0, until=lambda: self.truth.cells["sis_a"].picks == 1)
+        self.wait(0.1)
+
+    def verb(self, verb: Verb, scope: str = "", wait_s: float = 1.0) -> None:
+        self.world.request_verb(verb, scope)
+        self.wait(wait_s)
+
+    def say(self, channel: Channel, make: Callable[..., Goal], **fields: Any) -> None:
+        """A stranger with better numbers than anybody's commands ra1."""
+        goal = make(**fields, seq=1, epoch=9999)
+        self.world.publish(Publication(topic=topic(ARM, channel), payload=encode(goal)))
+        self.wait(0.01)
+
+    def _check(self) -> None:
+        self.truth.look()
+        occasion = set(occasions(self._look))
+        for each in INVARIANTS:
+            if each.when in occasion:
+                for sentence in each.rule(self._look):
+                    self.found.setdefault(each.name, []).append(sentence)
+
+
+def zoned() -> PlantModel:
+    """Three cells whose pick-ups lie in one zone."""
+    plant = shipped()
+    cells = []
+    for cell in plant.cells:
+        pickup = replace(cell.pickup, zones=frozenset({"centre"}))
+        cells.append(replace(cell, pickup=pickup, palletizing=replace(cell.palletizing, pick=pickup)))
+    return replace(plant, zones=("centre",), cells=tuple(cells))
+
+
+def test_every_invariant_says_what_must_hold() -> None:
+    for each in INVARIANTS:
+        assert each.sentence.endswith("."), each.name
+    assert len({each.name for each in INVARIANTS}) == len(INVARIANTS)
+
+
+@pytest.mark.parametrize("model", [shipped, zoned], ids=["shipped", "zoned"])
+def test_nothing_is_found_while_all_goes_well(model: Callable[[], PlantModel]) -> None:
+    watch = Watch(model())
+    for round in range(4):
+        for cell in watch.world.model.cells:
+            watch.world.request_task(f"{cell.name} 0B {3 * round % 9}")
+            watch.world.request_task(f"{cell.name} palletizing")
+        watch.wait(30.0)
+    assert watch.found == {}
+
+
+FAULTS: dict[str, Callable[[Watch], None]] = {
+    "power": lambda watch: watch.world.crash(ARM),
+    "mobile's power": lambda watch: watch.world.crash(MOBILE),
+    "lost steps": lambda watch: watch.body.lose_steps(0, 3),
+    "alarm": lambda watch: watch.world.boards[ARM].fail(round(watch.world.now * 1e6)),
+    "bridge": lambda watch: watch.world.crash("bridge"),
+    "plant": lambda watch: watch.world.crash(),
+    "stall": lambda watch: watch.world.stall(ARM, 3.0),
+    "stop": lambda watch: watch.verb(Verb.STOP),
+    "hold": lambda watch: watch.verb(Verb.HOLD, "sis_a"),
+    "cancel": lambda watch: watch.verb(Verb.CANCEL, "sis_a"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("after_s", [0.4, 1.0, 1.3, 1.6, 2.2])
+def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) -> None:
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(after_s)
+    watch.world.faults_active = 1
+    FAULTS[fault](watch)
+    watch.wait(10.0)
+    for verb in (Verb.CLEAR, Verb.RESET, Verb.RESUME):
+        watch.verb(verb, "sis_a")
+    watch.verb(Verb.HOME, "ra1", wait_s=10.0)
+    watch.verb(Verb.ABANDON, "sis_a", wait_s=10.0)
+    assert watch.found == {}
+
+
+def everybody_gets_it(patch: Patch) -> Watch:
+    patch.setattr(Context, "take_zones", lambda self, zones, *, inside=False: True)
+    watch = Watch(zoned())
+    for cell in watch.world.model.cells:
+        watch.world.request_task(f"{cell.name} palletizing")
+    watch.wait(5.0)
+    return watch
+
+
+def freed_at_a_stop(patch: Patch) -> Watch:
+    patch.setattr(Dispatcher, "place", lambda self, cell: cell.home)
+    watch = Watch(zoned())
+    watch.carry()
+    watch.verb(Verb.STOP)
+    return watch
+
+
+def entered_unasked(patch: Patch) -> Watch:
+    patch.setattr(Zones, "request", lambda self, robot, zones: True)
+    watch = Watch(zoned())
+    watch.task()
+    return watch
+
+
+def moved_unhomed(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.world.crash(ARM)
+    watch.world.boards[ARM].homed = True
+    watch.wait(1.0)
+    watch.task()
+    return watch
+
+
+def moved_after_a_told_boot(patch: Patch) -> Watch:
+    patch.setattr(evidence, "displaced", lambda before, belief, report: False)
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    watch.world.crash(ARM)
+    watch.wait(3.0)
+    watch.task()
+    return watch
+
+
+def began_by_itself(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.start(round(watch.world.now * 1e6), JointsGoal(q=(9.0, 9.0, 0.0), seq=None, epoch=None))
+    watch.world.wake(ARM)
+    watch.wait(1.0)
+    return watch
+
+
+def switched_by_itself(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.switch_effector(True)
+    watch.wait(1.0)
+    return watch
+
+
+def obeyed_a_stranger(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
+    return watch
+
+
+def beyond_its_limits(patch: Patch) -> Watch:
+    patch.setattr(ArmBody, "admits", lambda self, goal: True)
+    watch = Watch()
+    watch.say(Channel.JOINTS, JointsGoal, q=(170.0, 0.0, 0.0))
+    watch.wait(5.0)
+    return watch
+
+
+def done_when_accepted(command: type) -> Callable[[Patch], Watch]:
+    """The plant takes a command for done as soon as it hears anything."""
+
+    def break_it(patch: Patch) -> Watch:
+        rule: Any = lambda entry, belief, report: Verdict(feed=Feed.DONE)  # noqa: E731
+        patch.setitem(evidence.RULES, (command, Evidence.IDS), rule)
+        if command is SetEffector:
+            patch.setattr(ArmBody, "switch_effector", lambda self, on: None)
+        watch = Watch()
+        if command is Home:
+            watch.task(wait_s=1.0)
+            watch.world.crash(ARM)
+            watch.wait(10.0)
+            watch.verb(Verb.HOME, "ra1")
+        watch.task()
+        return watch
+
+    return break_it
+
+
+def never_reached(patch: Patch) -> Watch:
+    patch.setattr(evidence, "reached", lambda entry, belief: False)
+    watch = Watch()
+    watch.wait(30.0)
+    watch.task()
+    return watch
+
+
+def gripped_at_home(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.say(Channel.EFFECTOR, EffectorGoal, on=True)
+    return watch
+
+
+def began_with_the_effector_on(patch: Patch) -> Watch:
+    patch.setattr(Context, "holding", lambda self: False)
+    watch = Watch()
+    watch.body.switch_effector(True)
+    watch.wait(1.0)
+    watch.task()
+    return watch
+
+
+def opened_on_the_way(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.carry()
+    watch.say(Channel.EFFECTOR, EffectorGoal, on=False)
+    return watch
+
+
+def a_part_from_nowhere(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.body.holding = True
+    watch.wait(0.5)
+    return watch
+
+
+def twice(order: Any, context: Context) -> Any:
+    """A storage recipe that stores two parts."""
+    cell, station = context.cell, order.station
+    visits = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context))]
+    again = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context))]
+    way = (cell.home, cell.pickup, station, cell.pickup, station)
+    return recipes._recovering(Recipe.STORAGE, recipes._visit(context, way, [*visits, *again]), context)
+
+
+def two_parts(patch: Patch) -> Watch:
+    watch = Watch(recipes={Recipe.STORAGE: twice})
+    watch.task("sis_a 0B 7", wait_s=30.0)
+    return watch
+
+
+def nothing_was_done(patch: Patch) -> Watch:
+    watch = Watch(recipes={Recipe.STORAGE: lambda order, context: recipes._start(context)})
+    watch.task("sis_a 0B 7")
+    return watch
+
+
+def moved_while_latched(patch: Patch) -> Watch:
+    watch = Watch()
+    watch.verb(Verb.STOP)
+    watch.world.boards[ARM].latched = False
+    watch.say(Channel.JOINTS, JointsGoal, q=(9.0, 9.0, 0.0))
+    return watch
+
+
+def arm_runs_on(patch: Patch) -> Watch:
+    patch.setattr(ArmBody, "stop", lambda self, now_us: None)
+    watch = Watch()
+    watch.task("sis_a palletizing", wait_s=0.45)
+    watch.verb(Verb.STOP)
+    return watch
+
+
+def mobile_runs_on(patch: Patch) -> Watch:
+    patch.setattr(MobileBody, "stop", lambda self, now_us: None)
+    watch = Watch()
+    watch.task("sis_a 0B 7", wait_s=1.0)
+    watch.verb(Verb.STOP, wait_s=10.0)
+    return watch
+
+
+BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
+    ("one_robot_per_zone", everybody_gets_it),
+    ("zone_released_only_outside", freed_at_a_stop),
+    ("zone_entered_only_when_held", entered_unasked),
+    ("no_unhomed_move", moved_unhomed),
+    ("no_move_after_a_boot_that_was_told", moved_after_a_told_boot),
+    ("nothing_moves_unasked", began_by_itself),
+    ("nothing_moves_unasked", switched_by_itself),
+    ("nothing_moves_unasked", obeyed_a_stranger),
+    ("arm_stays_within_limits", beyond_its_limits),
+    ("done_is_true", done_when_accepted(MoveJoints)),
+    ("done_is_true", done_when_accepted(SetEffector)),
+    ("done_is_true", done_when_accepted(Home)),
+    ("tiny_moves_succeed", never_reached),
+    ("effector_on_only_between_pick_and_place", gripped_at_home),
+    ("effector_on_only_between_pick_and_place", began_with_the_effector_on),
+    ("effector_off_only_where_legal", opened_on_the_way),
+    ("no_part_dropped", opened_on_the_way),
+    ("parts_conserved", a_part_from_nowhere),
+    ("station_gets_one_part", two_parts),
+    ("one_pick_one_place", two_parts),
+    ("done_task_is_true", nothing_was_done),
+    ("latched_board_stays_still", moved_while_latched),
+    ("stop_holds", moved_while_latched),
+    ("speed_never_rises_after_stop", arm_runs_on),
+    ("speed_never_rises_after_stop", mobile_runs_on),
+]
+
+
+@pytest.mark.parametrize(("name", "break_it"), BREAKS, ids=[f"{n}-{b.__name__}" for n, b in BREAKS])
+def test_it_bites(name: str, break_it: Callable[[Patch], Watch], monkeypatch: Patch) -> None:
+    assert name in break_it(monkeypatch).found
+
+
+def test_every_invariant_has_something_that_breaks_it() -> None:
+    assert {name for name, _ in BREAKS} == {each.name for each in INVARIANTS}

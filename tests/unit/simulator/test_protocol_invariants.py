@@ -1,0 +1,650 @@
+"""Each invariant of commands, tasks, wire, liveness and books holds for a plant that works, and bites."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.core import belief, cell, context, dispatcher, leaves, ledger, operator, plant, recipes
+from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import TABLE, Feed, State
+from arboleda.core.messages import Fact, OperatorRequest, StopMode, TaskState, Verb
+from arboleda.core.model import Arm, PlantModel, Retry
+from arboleda.core.task import Recipe
+from arboleda.sim.board import Board
+from arboleda.sim.receipts import Receipts
+from arboleda.simulator.invariants.books import BOOKS
+from arboleda.simulator.invariants.commands import COMMANDS
+from arboleda.simulator.invariants.invariant import Look, When, occasions
+from arboleda.simulator.invariants.liveness import LIVENESS
+from arboleda.simulator.invariants.tasks import TASKS
+from arboleda.simulator.invariants.wire import WIRE
+from arboleda.simulator.record import Record
+from arboleda.simulator.truth import Truth
+from arboleda.simulator.world import BRIDGE, PLANT, World
+from arboleda.testing.plants import shipped, slowed
+from arboleda.wire import board as wire_board
+from arboleda.wire.transport import Publication
+
+INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
+TASK = "sis_a 0B 7"
+
+
+class Watch:
+    """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
+
+    def __init__(self, model: PlantModel | None = None) -> None:
+        self.world = World(model or shipped("sis_a"))
+        self.found: dict[str, list[str]] = {}
+        self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
+        self.world.watchers.append(self._check)
+        self.world.advance(0.5)
+
+    @property
+    def record(self) -> Record:
+        return self._look.record
+
+    def wait(self, seconds: float) -> None:
+        self.world.advance(seconds)
+
+    def task(self, text: str = TASK, wait_s: float = 0.01) -> None:
+        self.world.request_task(text)
+        self.wait(wait_s)
+
+    def verb(self, verb: Verb, scope: str = "", wait_s: float = 0.01) -> None:
+        self.world.request_verb(verb, scope)
+        self.wait(wait_s)
+
+    def end(self) -> None:
+        """Look at what must hold once everything is at rest."""
+        self._apply(When.END)
+
+    def _check(self) -> None:
+        self._look.record.look()
+        for when in occasions(self._look):
+            self._apply(when)
+
+    def _apply(self, when: When) -> None:
+        for each in INVARIANTS:
+            for sentence in each.rule(self._look) if each.when is when else ():
+                self.found.setdefault(each.name, []).append(sentence)
+
+
+@pytest.fixture
+def bites(request: pytest.FixtureRequest) -> Callable[[Watch], None]:
+    """Assert that the invariant which the test is named after has found something."""
+    name = request.node.originalname.removeprefix("test_").partition("__")[0]
+    assert name in {each.name for each in INVARIANTS}
+
+    def bites(watch: Watch) -> None:
+        assert name in watch.found, watch.found
+
+    return bites
+
+
+def arm_of(watch: Watch) -> Board:
+    return watch.world.boards["ra_1"]
+
+
+def cut(watch: Watch, client: str) -> None:
+    """Nothing of what a client says arrives any more."""
+    watch.world.broker.clients[client].up.troubles.append(lambda message: [])
+
+
+# What a plant does that works.
+
+
+def test_nothing_is_found_in_three_cells_at_work():
+    watch = Watch(shipped())
+    for number in range(6):
+        for name in ("sis_a", "sis_b", "sis_c"):
+            watch.task(f"{name} 0B {number}" if number % 2 else f"{name} palletizing")
+    watch.wait(120)
+    watch.end()
+    assert watch.found == {}
+    assert sum(task.state is TaskState.DONE for task in watch.record.tasks.ended.values()) == 18
+
+
+@pytest.mark.parametrize("at_s", [0.1, 1.5, 4.2, 5.6])
+@pytest.mark.parametrize(
+    "verbs",
+    [
+        (Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RESUME),
+        (Verb.HOLD, Verb.RESUME),
+        (Verb.HOLD, Verb.ABANDON, Verb.RESUME),
+        (Verb.CANCEL,),
+        (Verb.HOLD, Verb.STOP, Verb.CLEAR, Verb.RESET, Verb.RELEASE, Verb.RESUME, Verb.RESET),
+    ],
+    ids=lambda verbs: "-".join(verb.value for verb in verbs),
+)
+def test_nothing_is_found_with_operators(verbs, at_s):
+    watch = Watch()
+    watch.task()
+    watch.task("sis_a palletizing #second")
+    watch.wait(at_s)
+    for verb in verbs:
+        watch.verb(verb, "sis_a", wait_s=2.0)
+    watch.wait(1)
+    for verb in (Verb.RELEASE, Verb.RESUME):
+        watch.verb(verb, "sis_a", wait_s=1.0)
+    watch.wait(30)
+    watch.end()
+    assert watch.found == {}
+
+
+@pytest.mark.parametrize("process", [PLANT, BRIDGE, "ra_1", "rm_sis_a"])
+@pytest.mark.parametrize("at_s", [0.1, 1.5, 4.2, 5.6])
+def test_nothing_is_found_with_crashes(process, at_s):
+    watch = Watch()
+    watch.task()
+    watch.wait(at_s)
+    watch.world.crash(process)
+    watch.wait(15)
+    for verb, scope in (
+        (Verb.RELEASE, "ra1"),
+        (Verb.HOME, "ra1"),
+        (Verb.HOME, "rm_sis_a"),
+        (Verb.ABANDON, "sis_a"),
+        (Verb.RESUME, "sis_a"),
+    ):
+        watch.verb(verb, scope, wait_s=15.0)
+    watch.end()
+    assert watch.found == {}
+
+
+@pytest.mark.parametrize("process", [PLANT, BRIDGE, "ra_1"])
+def test_nothing_is_found_with_stalls_and_a_slow_line(process):
+    watch = Watch()
+    watch.world.to_plant.troubles.append(lambda report: [0.3, 0.7])
+    watch.task()
+    for _ in range(4):
+        watch.world.stall(process, 1.2)
+        watch.wait(3)
+    watch.world.to_plant.troubles.clear()
+    watch.wait(5)
+    watch.verb(Verb.RESUME, "sis_a", wait_s=30)
+    assert watch.found == {}
+
+
+# Commands.
+
+
+def test_no_command_to_unfit(monkeypatch, bites):
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    watch = Watch()
+    watch.world.crash("rm_sis_a")
+    watch.wait(0.5)
+    watch.task(wait_s=1)
+    bites(watch)
+    assert "unhomed" in watch.found["no_command_to_unfit"][0]
+
+
+@pytest.mark.parametrize(("code", "word"), [(2, "faulted"), (4, "latched")])
+def test_no_command_to_unfit__by_its_code(monkeypatch, bites, code, word):
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    watch = Watch()
+    board = watch.world.boards["rm_sis_a"]
+    board.faulted, board.latched = code == 2, code == 4
+    watch.wait(0.5)
+    watch.task(wait_s=1)
+    bites(watch)
+    assert word in watch.found["no_command_to_unfit"][0]
+
+
+def test_no_command_to_unfit__offline(monkeypatch, bites):
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    watch = Watch()
+    cut(watch, "rm_sis_a")
+    watch.wait(3)
+    watch.task(wait_s=1)
+    bites(watch)
+
+
+def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
+    monkeypatch.setattr(dispatcher.Dispatcher, "obstacle", lambda self, robot: None)
+    monkeypatch.setattr(cell.CellRun, "stop", lambda self: None)
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.STOP, "sis_a", wait_s=5)
+    bites(watch)
+
+
+def test_stops_are_cleared_by_operators(monkeypatch, bites):
+    monkeypatch.setattr(dispatcher.Dispatcher, "forget_stop", dispatcher.Dispatcher.unlatch)
+    watch = Watch()
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        watch.verb(verb, "sis_a", wait_s=1)
+    bites(watch)
+
+
+def test_one_motion_per_robot(monkeypatch, bites):
+    monkeypatch.setattr(dispatcher.Dispatcher, "_obstacle_to", lambda self, command: None)
+    watch = Watch()
+    watch.world.request_verb(Verb.HOME, "ra1")
+    watch.verb(Verb.HOME, "ra1")
+    bites(watch)
+
+
+def test_only_legal_command_states(monkeypatch, bites):
+    monkeypatch.setitem(TABLE, (State.RUNNING, Feed.ACCEPTED), State.SENT)
+    monkeypatch.setattr("arboleda.core.evidence._move_by_ids", lambda *seen: None)
+    watch = Watch()
+    watch.task(wait_s=1)
+    for _ in range(2):
+        open_ids = list(watch.world.plant.dispatcher.ledger.entries)
+        watch.world.at(watch.world.now, lambda _, ids=open_ids: feed(watch, ids))
+        watch.wait(0.3)
+    bites(watch)
+
+
+def feed(watch: Watch, ids: list[str]) -> None:
+    for id in ids:
+        watch.world.plant.dispatcher.ledger.feed(id, Feed.ACCEPTED, watch.world.now)
+
+
+def test_only_legal_command_states__lost(bites):
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.world.plant.dispatcher.ledger.entries.clear()
+    watch.wait(0.5)
+    bites(watch)
+
+
+def test_no_deadline_overrun(monkeypatch, bites):
+    monkeypatch.setattr(ledger.Entry, "next_deadline", property(lambda self: self.deadline + 0.5))
+    watch = Watch()
+    arm_of(watch).body.stuck = True
+    watch.task(wait_s=20)
+    bites(watch)
+
+
+def test_no_deadline_overrun__of_a_deadline_without_end(monkeypatch, bites):
+    monkeypatch.setattr(dispatcher.Dispatcher, "_allowed_s", lambda self, command: 1e6)
+    watch = Watch()
+    watch.task(wait_s=1)
+    bites(watch)
+
+
+def test_no_deadline_overrun__of_a_wait(monkeypatch, bites):
+    monkeypatch.setattr(leaves.Dwell, "update", lambda self: leaves.Status.RUNNING)
+    watch = Watch()
+    watch.task(wait_s=3)
+    bites(watch)
+
+
+def test_retries_bounded(monkeypatch, bites):
+    monkeypatch.setattr(
+        leaves.Act, "tries", property(lambda self: 0, lambda self, tries: None), raising=False
+    )
+    model = shipped("sis_a")
+    cells = tuple(replace(each, retry=Retry(times=1, backoff_s=0.1)) for each in model.cells)
+    watch = Watch(replace(model, cells=cells))
+    arm_of(watch).body.stuck = True
+    watch.task(wait_s=40)
+    bites(watch)
+
+
+def test_halted_moves_sent_halt(monkeypatch, bites):
+    stop = dispatcher.Dispatcher._stop
+
+    def only_latch(self: Any, robot: str, mode: StopMode) -> None:
+        if mode is not StopMode.HALT:
+            stop(self, robot, mode)
+
+    monkeypatch.setattr(dispatcher.Dispatcher, "_stop", only_latch)
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.CANCEL, "sis_a")
+    bites(watch)
+
+
+def test_halted_moves_sent_halt__by_a_step_left_early(monkeypatch, bites):
+    monkeypatch.setattr(leaves.Act, "terminate", lambda self, status: None)
+    monkeypatch.setattr(context.Context, "cancel_all", lambda self: None)
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.STOP, "sis_a")
+    bites(watch)
+
+
+# Tasks and cells.
+
+
+def twice(state: TaskState) -> Callable[..., None]:
+    told = plant.Plant._task_changed
+
+    def tell(self: Any, task: Any, request: str | None = None) -> None:
+        told(self, task, request)
+        if task.state is state:
+            told(self, task, request)
+
+    return tell
+
+
+def test_each_task_ends_once(monkeypatch, bites):
+    monkeypatch.setattr(plant.Plant, "_task_changed", twice(TaskState.DONE))
+    watch = Watch()
+    watch.task(wait_s=20)
+    bites(watch)
+
+
+def test_ended_tasks_stay_ended(monkeypatch, bites):
+    monkeypatch.setattr(operator.Operator, "_cancel_task", lambda self, id: None)
+    watch = Watch()
+    watch.task(f"{TASK} #one", wait_s=20)
+    watch.verb(Verb.CANCEL, "#one")
+    bites(watch)
+
+
+def test_only_legal_task_states(monkeypatch, bites):
+    monkeypatch.setattr(plant.Plant, "_task_changed", twice(TaskState.RUNNING))
+    watch = Watch()
+    watch.task()
+    bites(watch)
+
+
+class LastFirst(deque):
+    def popleft(self) -> Any:
+        return self.pop()
+
+
+def test_first_come_first_served(bites):
+    watch = Watch()
+    watch.world.plant.cells["sis_a"].queue = LastFirst()
+    for _ in range(3):
+        watch.task()
+    watch.wait(20)
+    bites(watch)
+
+
+def test_cancelled_tasks_end_cancelled(monkeypatch, bites):
+    monkeypatch.setattr(
+        cell.CellRun, "_cancelling", property(lambda self: False, lambda self, word: None), raising=False
+    )
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.CANCEL, "sis_a", wait_s=20)
+    bites(watch)
+
+
+def test_accepted_tasks_are_kept(bites):
+    watch = Watch()
+    watch.task()
+    watch.task()
+    watch.world.plant.cells["sis_a"].queue.clear()
+    watch.wait(0.5)
+    bites(watch)
+
+
+def test_only_legal_cell_states(bites):
+    watch = Watch()
+    watch.task()
+    watch.world.plant.cells["sis_a"].state = CellState.ABORTED
+    watch.wait(0.5)
+    bites(watch)
+
+
+def test_only_legal_cell_states__of_a_stop_that_was_forgotten(bites):
+    watch = Watch()
+    watch.verb(Verb.STOP, "sis_a", wait_s=1)
+    watch.world.memory.pop(Fact.LATCH)
+    watch.world.crash(PLANT)
+    watch.wait(0.5)
+    bites(watch)
+
+
+def test_rejected_input_changes_nothing(monkeypatch, bites):
+    parse = plant.Intake.task
+
+    def with_effect(self: Any, words: str) -> Any:
+        watch.world.plant.cells["sis_a"].queue_paused = True
+        return parse(self, words)
+
+    watch = Watch()
+    monkeypatch.setattr(plant.Intake, "task", with_effect)
+    watch.wait(0.031)
+    watch.task("nonsense")
+    bites(watch)
+
+
+def test_every_request_is_answered(monkeypatch, bites):
+    monkeypatch.setitem(plant.HANDLERS, OperatorRequest, lambda self, event: None)
+    watch = Watch()
+    watch.verb(Verb.HOLD)
+    bites(watch)
+
+
+def broken(order: Any, context: Any) -> Any:
+    raise KeyError("a defect")
+
+
+def test_no_internal_failure(bites, monkeypatch):
+    monkeypatch.setattr(recipes, "storage", broken)
+    monkeypatch.setattr(recipes, "RECIPES", {**recipes.RECIPES, Recipe.STORAGE: broken})
+    monkeypatch.setattr(plant, "RECIPES", recipes.RECIPES, raising=False)
+    watch = Watch()
+    watch.task()
+    bites(watch)
+
+
+def test_sentences_are_for_people(monkeypatch, bites):
+    monkeypatch.setattr("arboleda.core.text.FORM", "KeyError('storage')")
+    watch = Watch()
+    watch.task("")
+    bites(watch)
+
+
+# The wire.
+
+
+def test_executed_numbers_rise(monkeypatch, bites):
+    def no_objection(self: Receipts, goal: Any) -> None:
+        self.epoch = goal.epoch
+
+    monkeypatch.setattr(Receipts, "objection", no_objection)
+    monkeypatch.setattr(Receipts, "repeats", lambda self, goal: False)
+    watch = Watch()
+    watch.world.broker.clients["ra_1"].down.troubles.append(lambda message: [0.0, 0.0])
+    watch.task(wait_s=15)
+    bites(watch)
+
+
+def test_no_repeat_has_effect(monkeypatch, bites):
+    receive = Board.receive
+
+    def believe(self: Any, now_us: int, delivery: Any) -> None:
+        receive(self, now_us, replace(delivery, retain=False))
+
+    monkeypatch.setattr(Board, "receive", believe)
+    watch = Watch()
+    payload = b'{"efector":1,"seq":9,"epoca":999}'
+    watch.world.publish(Publication(topic="ra_1/efector", payload=payload, retain=True))
+    watch.wait(0.5)
+    assert watch.found == {}
+    watch.world.crash("ra_1")
+    watch.wait(0.5)
+    bites(watch)
+
+
+def test_wire_targets_legal(monkeypatch, bites):
+    monkeypatch.setattr(Arm, "quantised", lambda self, q: tuple(q))
+    watch = Watch()
+    watch.task(wait_s=15)
+    bites(watch)
+
+
+@pytest.mark.parametrize(
+    ("topic", "payload", "words"),
+    [
+        ("ra_1/juntas", b'{"q1":0.0,"q2":0.0,"q3":NaN,"seq":1,"epoca":1}', "ra_1/juntas is"),
+        ("ra_1/juntas", b'{"q1":0.0,"q2":0.0,"q3":0.0}', "ra_1/juntas is"),
+        ("ra_1/juntas", b'{"q1":0.01,"q2":0.0,"q3":0.0,"seq":1,"epoca":1}', "no whole motor step"),
+        ("ra_1/juntas", b'{"q1":0.0,"q2":-180.0,"q3":0.0,"seq":1,"epoca":1}', "beyond"),
+        ("ra_1/juntas", b'{"q1":0.0,"q2":0.9,"q3":0.0,"seq":1,"epoca":1}', "has not commanded"),
+        ("rm_sis_a/camino", b'{"nodos":[0,4],"seq":1,"epoca":1}', "edges"),
+        ("rm_sis_a/camino", b'{"nodos":[6,9],"seq":1,"epoca":1}', "the grid"),
+        ("rm_sis_a/camino", b'{"nodos":[0,1],"seq":1,"epoca":1}', "has not commanded"),
+        ("rm_sis_a/camino", b'{"nodos":[true],"seq":1,"epoca":1}', "rm_sis_a/camino is"),
+    ],
+)
+def test_wire_targets_legal__on_the_wire(bites, topic, payload, words):
+    watch = Watch()
+    watch.world.publish(Publication(topic=topic, payload=payload), watch.world.broker.clients[BRIDGE])
+    watch.wait(0.1)
+    bites(watch)
+    assert any(words in sentence for sentence in watch.found["wire_targets_legal"])
+
+
+def test_nothing_retained_on_commands(monkeypatch, bites):
+    publication = wire_board.Board._publication
+    monkeypatch.setattr(
+        wire_board.Board,
+        "_publication",
+        lambda *args, **more: replace(publication(*args, **more), retain=True),
+    )
+    watch = Watch()
+    watch.task(wait_s=1)
+    bites(watch)
+
+
+def test_payload_size(bites):
+    watch = Watch()
+    clients = watch.world.broker.clients
+    watch.world.publish(Publication(topic="ra_1/efector", payload=b" " * 513), clients[BRIDGE])
+    watch.wait(0.1)
+    bites(watch)
+
+
+@pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
+def test_published_joints_are_reported(monkeypatch, bites, q):
+    watch = Watch(slowed(shipped("sis_a"), 4))
+    monkeypatch.setattr(wire_board.Board, "_joints", lambda self, said: q if said.q else None)
+    watch.task(wait_s=10)
+    bites(watch)
+
+
+def test_published_joints_are_reported__by_a_belief_that_lags(monkeypatch, bites):
+    monkeypatch.setattr(belief, "MERGED", tuple(name for name in belief.MERGED if name != "node"))
+    watch = Watch()
+    watch.task(wait_s=10)
+    bites(watch)
+
+
+def test_nothing_shown_before_heard(monkeypatch, bites):
+    init = belief.Belief.__init__
+
+    def at_home(self: Any, *args: Any) -> None:
+        init(self, *args)
+        self.q = (0.0, 0.0, 0.0)
+
+    watch = Watch()
+    monkeypatch.setattr(belief.Belief, "__init__", at_home)
+    watch.world.crash(PLANT)
+    watch.wait(0.5)
+    bites(watch)
+
+
+# Liveness and books.
+
+
+def test_running_tree_has_waker(monkeypatch, bites):
+    monkeypatch.setattr(context.Context, "wake_at", lambda self, at: None)
+    watch = Watch()
+    watch.task()
+    bites(watch)
+
+
+def test_running_tree_has_waker__in_a_cell_whose_time_stands_still(bites):
+    watch = Watch()
+    watch.world.plant.cells["sis_a"].context.pause()
+    watch.task()
+    bites(watch)
+
+
+def test_time_stands_still_only_when_held(monkeypatch, bites):
+    monkeypatch.setattr(context.Context, "go_on", lambda self: None)
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.HOLD, "sis_a", wait_s=3)
+    assert watch.found == {}
+    watch.verb(Verb.RESUME, "sis_a", wait_s=3)
+    bites(watch)
+
+
+def test_no_tree_outlives_its_work(monkeypatch, bites):
+    monkeypatch.setattr(cell.CellRun, "interrupt", lambda self, failure: None)
+    watch = Watch()
+    watch.task(wait_s=1)
+    watch.verb(Verb.STOP, "sis_a")
+    bites(watch)
+
+
+def test_no_starvation(monkeypatch, bites):
+    monkeypatch.setattr(cell.CellRun, "waiting_for", lambda self: "its muse")
+    watch = Watch()
+    watch.task()
+    bites(watch)
+
+
+def zoned() -> PlantModel:
+    """Two cells whose pick-up poses lie in one zone, for which an arm waits at most 3 s."""
+    model = shipped("sis_a", "sis_b")
+    zone = frozenset({"table"})
+    cells = []
+    for each in model.cells:
+        pickup = replace(each.pickup, zones=zone)
+        fixed = replace(each.palletizing, pick=pickup)
+        cells.append(replace(each, pickup=pickup, palletizing=fixed, zone_wait_s=3.0))
+    return replace(model, cells=tuple(cells), zones=("table",))
+
+
+def test_zone_requests_end(monkeypatch, bites):
+    watch = Watch(zoned())
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(leaves.TakeZones, "update", lambda self: self.arrived() or leaves.Status.RUNNING)
+    watch.task("sis_a palletizing", wait_s=2.9)
+    assert "zone_requests_end" not in watch.found
+    watch.wait(1)
+    bites(watch)
+
+
+def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
+    watch = Watch(zoned())
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    watch.task("sis_a palletizing", wait_s=1)
+    watch.verb(Verb.HOLD, "sis_a", wait_s=10)
+    watch.verb(Verb.RESUME, "sis_a", wait_s=5)
+    watch.wait(10)
+    assert watch.found == {}
+
+
+@pytest.mark.parametrize("act", [lambda watch: watch.task(wait_s=1), lambda watch: watch.world.crash("ra_1")])
+def test_at_rest_at_end(bites, act):
+    watch = Watch()
+    watch.end()
+    assert watch.found == {}
+    act(watch)
+    watch.wait(0.5)
+    watch.end()
+    bites(watch)
+
+
+def test_nothing_waits_at_end(bites):
+    watch = Watch()
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        watch.verb(verb, "sis_a", wait_s=1)
+    watch.end()
+    bites(watch)
+
+
+def test_bounded_books(bites):
+    watch = Watch()
+    watch.world.plant.cells["sis_a"].context.wakes += [1e9] * 200
+    watch.wait(10)
+    bites(watch)

@@ -1,0 +1,198 @@
+"""What the truth knows of a world that the plant may be wrong about."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.messages import Verb
+from arboleda.core.model import Crossing, PlantModel
+from arboleda.simulator.truth import Truth
+from arboleda.simulator.truth.arm import ArmTruth
+from arboleda.simulator.world import World
+from arboleda.testing import shipped
+
+ARM, MOBILE = "ra_1", "rm_sis_a"
+
+
+def zoned() -> PlantModel:
+    """The shipped plant; all pick-ups lie in `centre`, and ra1 crosses `aisle` from its station 7 to home."""
+    plant = shipped()
+    return replace(plant, zones=("centre", "aisle"), cells=tuple(map(_zoned, plant.cells)))
+
+
+def _zoned(cell):
+    pickup = replace(cell.pickup, zones=frozenset({"centre"}))
+    palletizing = replace(cell.palletizing, pick=pickup)
+    crossings = (Crossing(a="home", b="station 7", zones=frozenset({"aisle"})),)
+    crossings = crossings if cell.name == "sis_a" else ()
+    return replace(cell, pickup=pickup, palletizing=palletizing, crossings=crossings)
+
+
+class Stage:
+    """A world and its truth; `arm` is ra1's."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self.world = World(model)
+        self.truth = Truth(self.world)
+        self.world.watchers.append(self.truth.look)
+        self.zones: list[frozenset[str]] = []
+        self.places: list[str] = []
+        self.world.watchers.append(self._keep)
+        self.world.advance(0.5)
+
+    @property
+    def arm(self) -> ArmTruth:
+        return self.truth.arms["ra1"]
+
+    @property
+    def body(self):
+        return self.world.boards[ARM].body
+
+    def ask(self, text: str, seconds: float = 0.0) -> None:
+        self.world.request_task(text)
+        self.world.advance(seconds)
+
+    def until(self, found) -> None:
+        assert self.world.advance(60.0, until=found)
+
+    def _keep(self) -> None:
+        if self.arm.zones not in self.zones[-1:]:
+            self.zones.append(self.arm.zones)
+        self.places += [passage.place for passage in self.truth.parts.passages]
+
+
+@pytest.fixture
+def stage() -> Stage:
+    return Stage(shipped("sis_a"))
+
+
+def test_an_arm_is_at_the_poses_where_it_stands_and_nowhere_on_its_way(stage):
+    assert stage.arm.here == {"home", "station 0"}
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.arm.moving and "pick-up" in stage.arm.goal)
+    assert not stage.arm.here
+    stage.until(lambda: stage.arm.here == {"pick-up"})
+
+
+def test_power_takes_the_counters_but_not_the_arm(stage):
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.arm.here == {"pick-up"})
+    stood = stage.arm.true
+    stage.world.crash(ARM)
+    stage.world.advance(0.1)
+    assert stage.body.position == (0, 0, 0)
+    assert (stage.arm.true, stage.arm.here, stage.arm.homed) == (stood, {"pick-up"}, False)
+
+
+def test_lost_steps_are_told_from_those_that_a_boot_forgets_until_homing_finds_them(stage):
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.arm.here == {"pick-up"})
+    stage.body.lose_steps(0, 5)
+    stage.world.crash(ARM)
+    stage.world.advance(20.0)
+    assert (stage.arm.lost, stage.arm.here) == ((5, 0, 0), {"pick-up"})
+    stage.world.request_verb(Verb.HOME, "ra1")
+    stage.until(lambda: stage.arm.homed)
+    assert (stage.arm.lost, stage.arm.true, stage.arm.at_reference) == ((0, 0, 0), (0, 0, 0), True)
+
+
+def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
+    stage.body.lose_steps(1, -2)
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.arm.here == {"pick-up"})
+    assert stage.arm.true[1] == stage.arm.intended[1] - 2
+    assert stage.arm.stands_at(stage.arm.cell.pickup.q)
+
+
+def test_a_move_sweeps_the_zones_of_both_ends_and_those_between():
+    stage = Stage(zoned())
+    stage.ask("sis_a 0B 7", 20.0)
+    assert stage.zones == [set(), {"centre"}, set(), {"aisle"}, set()]
+
+
+def test_a_halted_arm_is_in_all_that_it_may_have_swept_until_it_stands_at_a_pose_again():
+    stage = Stage(zoned())
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: "pick-up" in stage.arm.goal)
+    stage.world.advance(0.2)
+    stage.world.crash(ARM)
+    stage.world.advance(10.0)
+    assert (stage.arm.here, stage.arm.zones) == (set(), {"centre"})
+    stage.world.request_verb(Verb.HOME, "ra1")
+    stage.until(lambda: bool(stage.arm.here))
+    assert stage.arm.zones == set()
+
+
+def test_a_part_goes_from_the_pick_up_to_its_station_and_the_customer_takes_it(stage):
+    stage.ask("sis_a 0B 7")
+    stage.until(lambda: bool(stage.truth.parts.stations))
+    cell = stage.truth.cells["sis_a"]
+    assert (cell.picks, cell.places, cell.let_go) == (1, 1, True)
+    stage.until(lambda: bool(stage.truth.ended))
+    assert stage.truth.ended[0].missing is None
+    assert (stage.places, stage.truth.parts.stations) == (["effector", "station 7"], {})
+
+
+def test_a_part_that_is_carried_back_is_the_next_one_to_be_gripped(stage):
+    parts = stage.truth.parts
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    number = parts.held["ra1"].number
+    stage.world.request_verb(Verb.CANCEL, "sis_a")
+    stage.until(lambda: stage.places == ["effector", "pick-up"])
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: "ra1" in parts.held)
+    assert parts.held["ra1"].number == number
+
+
+@pytest.mark.parametrize(("how", "cause"), [("lose_piece", "fell"), ("crash", "lost with the power")])
+def test_a_part_that_falls_is_on_the_floor(stage, how, cause):
+    causes = []
+    stage.world.watchers.append(lambda: causes.extend(each.cause for each in stage.truth.parts.passages))
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    stage.body.lose_piece() if how == "lose_piece" else stage.world.crash(ARM)
+    stage.world.advance(0.2)
+    assert (stage.places[-1], causes[-1]) == ("floor", cause)
+
+
+def test_what_a_task_that_is_called_done_did_not_do_is_named(stage):
+    stage.ask("sis_a palletizing")
+    stage.until(lambda: stage.arm.here == {"pick-up"})
+    ended = stage.truth.cells["sis_a"].end("sis_a palletizing", done=True)
+    assert ended.missing == "the effector was switched on at pick-up"
+
+
+def test_a_mobile_is_where_it_is_whatever_it_counts(stage):
+    mobile = stage.truth.mobiles["rm_sis_a"]
+    stage.world.boards[MOBILE].body.true_node = 1
+    stage.ask("sis_a 0A 7")
+    stage.until(lambda: mobile.counted == 6 and not mobile.moving)
+    assert (mobile.node, mobile.strayed, mobile.stands_at(6)) == (7, True, True)
+
+
+def test_a_stop_of_a_robot_lasts_until_it_was_cleared_and_its_cell_reset(stage):
+    stops = stage.truth.stops
+    for verb, holds in ((Verb.STOP, True), (Verb.RESET, True), (Verb.CLEAR, True), (Verb.RESET, False)):
+        stage.world.request_verb(verb)
+        stage.world.advance(1.0)
+        assert stops.holds("ra1") is stops.holds("rm_sis_a") is holds
+
+
+def test_a_board_that_was_told_to_stop_is_latched_until_it_is_cleared_or_boots(stage):
+    stage.world.request_verb(Verb.STOP)
+    stage.world.advance(0.5)
+    assert stage.arm.latched
+    stage.world.request_verb(Verb.CLEAR)
+    stage.world.advance(0.5)
+    assert not stage.arm.latched
+
+
+def test_a_restarted_plant_runs_no_task(stage):
+    stage.ask("sis_a palletizing", 0.5)
+    assert stage.truth.cells["sis_a"].task is not None
+    stage.world.crash()
+    stage.world.advance(0.1)
+    assert stage.truth.cells["sis_a"].task is None
