@@ -221,11 +221,11 @@ def power_off(rig: Rig, spot: Spot) -> None:
 
 
 def reboot(rig: Rig, spot: Spot) -> None:
-    rig.reboot(spot.board)
+    rig.crash(spot.board)
 
 
 def latched_elsewhere(rig: Rig, spot: Spot) -> None:
-    rig.publish(Publication(topic=f"{spot.board}/paro", payload=b'{"paro":1,"seq":1,"epoca":1}'))
+    rig.inject(Publication(topic=f"{spot.board}/paro", payload=b'{"paro":1,"seq":1,"epoca":1}'))
 
 
 def replayed(rig: Rig, spot: Spot) -> None:

@@ -64,7 +64,7 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidenc
 @LEVELS
 def test_a_board_that_reboots_in_a_move_fails_it(evidence: Evidence) -> None:
     rig = moving(evidence)
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     change = outcome(rig)
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.LINK_LOST)
 
@@ -80,7 +80,7 @@ REBOOTS = {
 def test_a_reboot_without_a_last_will_is_seen_in_the_telemetry(evidence: Evidence) -> None:
     rig = moving(evidence)
     rig.lost = lambda publication: publication.topic == "ra_1/conexion"
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     assert outcome(rig).reason is REBOOTS[evidence]
 
 

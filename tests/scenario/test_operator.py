@@ -288,7 +288,7 @@ def test_a_stop_is_repeated_to_a_board_that_may_have_forgotten_it(
     act(rig, Verb.STOP)
     mark = len(rig.to_boards)
     if again == "board":
-        rig.reboot("ra_1")
+        rig.crash("ra_1")
     elif again == "bridge":
         rig.stop_bridge()
         rig.start_bridge()
@@ -320,10 +320,10 @@ def test_a_stop_is_for_its_scope(scope: str, cells: set[str]) -> None:
 
 
 FAULTS: dict[str, Callable[[Rig], None]] = {
-    "the arm's board reboots": lambda rig: rig.reboot("ra_1"),
-    "the mobile's board reboots": lambda rig: rig.reboot("rm_sis_a"),
+    "the arm's board reboots": lambda rig: rig.crash("ra_1"),
+    "the mobile's board reboots": lambda rig: rig.crash("rm_sis_a"),
     "the arm's board dies": lambda rig: rig.power_off("ra_1"),
-    "somebody latches the arm": lambda rig: rig.publish(foreign_stop("ra_1")),
+    "somebody latches the arm": lambda rig: rig.inject(foreign_stop("ra_1")),
 }
 
 
@@ -411,7 +411,7 @@ def test_release_of_a_mobile_is_refused(stage: Stage) -> None:
 
 def test_a_rebooted_arm_is_homed_by_the_verb(stage: Stage) -> None:
     rig, witness = stage()
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     rig.wait(1.0)
     rig.submit(TASK)
     assert cell(rig).waiting_for() == "ra1 is not homed"
@@ -429,12 +429,12 @@ def test_an_arm_that_is_not_homed_at_start_is_homed_where_the_plant_file_says_so
     cells = [replace(each, arm=replace(each.arm, home_at_start=asked)) for each in model.cells]
     rig = Rig(replace(model, cells=tuple(cells)))
     rig.stop_bridge()
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     rig.crash()
     rig.start_bridge()
     rig.wait(30.0)
     assert rig.devices.boards["ra_1"].homed is asked
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     rig.wait(30.0)
     assert not rig.devices.boards["ra_1"].homed, "only at the start"
 
@@ -445,7 +445,7 @@ def test_a_robot_that_cannot_say_so_is_homed_by_hand(evidence: Evidence) -> None
     rig.wait(0.5)
     fetch(rig)
     rig.lost = lambda publication: publication.topic == "ra_1/conexion"
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     rig.wait(30.0, until=lambda: rig.plant.at_rest)
     if evidence is Evidence.STATE:
         return  # a reboot is not detectable there

@@ -117,7 +117,7 @@ def fault_code(rig: Rig) -> None:
 
 
 HOPELESS: dict[str, Callable[[Rig], None]] = {
-    "the board reboots": lambda rig: rig.reboot("ra_1"),
+    "the board reboots": lambda rig: rig.crash("ra_1"),
     "the board reports a fault": fault_code,
     "the part falls": lambda rig: body(rig).lose_piece(),
 }

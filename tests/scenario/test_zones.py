@@ -142,7 +142,7 @@ def test_a_silent_arm_that_is_seen_outside_again_frees_its_zones(
 def test_a_rebooted_arm_keeps_its_zones_until_it_is_homed_and_seen_outside(zoned: Plants) -> None:
     rig, witness = start(zoned(Evidence.IDS))
     meet(rig)
-    rig.reboot("ra_1")
+    rig.crash("ra_1")
     rig.wait(12.0)
     assert zone(rig, "centre") == ("quarantined", "ra1")
     assert rig.operate(Verb.HOME, "ra1") is None
@@ -323,7 +323,7 @@ def storm(rig: Rig, chance: random.Random) -> None:
         rig.wait(chance.uniform(0.1, 4.0))
         rig.start_broker()
     elif kind == "reboot":
-        rig.reboot(board)
+        rig.crash(board)
     else:
         rig.crash()
     rig.wait(chance.uniform(0.0, 5.0))
