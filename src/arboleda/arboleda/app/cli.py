@@ -29,6 +29,7 @@ from .client import Refused
 from .parts.broker import address
 from .rate import check_rate
 from .screen import table
+from .simulate import command as simulate
 from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
@@ -174,6 +175,7 @@ def status(
     Console(highlight=False).print(table(snapshot))
 
 
+simulate.add_to(cli)
 verbs.add_to(cli)
 
 

@@ -1,0 +1,53 @@
+"""Many seeds, one after the other in this process; `workers.py` is the same in several."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from types import TracebackType
+
+from arboleda.simulator.run import Result
+
+from .setting import Setting, Tick
+
+
+class Campaign:
+    """Runs `seeds` in turn, to the first broken one with `until_failure`.
+
+    `minutes` is how many were simulated so far; `tick` is called now and then while they pass.
+    """
+
+    def __init__(
+        self, setting: Setting, seeds: Iterable[int], *, until_failure: bool = False, tick: Tick
+    ) -> None:
+        self.setting = setting
+        self.seeds = iter(seeds)
+        self.tick = tick
+        self._until_failure = until_failure
+        self._minutes = 0
+
+    def __enter__(self) -> Campaign:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        pass
+
+    @property
+    def minutes(self) -> int:
+        return self._minutes
+
+    def results(self) -> Iterator[Result]:
+        """What the seeds did, in the order in which they end; after a failure, what had begun still ends."""
+        for result in self._run():
+            if result.broken and self._until_failure:
+                self.seeds = iter(())
+            yield result
+
+    def _run(self) -> Iterator[Result]:
+        while (seed := next(self.seeds, None)) is not None:
+            yield self.setting.run(seed, tick=self._passed)
+
+    def _passed(self) -> None:
+        self._minutes += 1
+        self.tick()

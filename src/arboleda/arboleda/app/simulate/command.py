@@ -1,0 +1,117 @@
+"""The command `arboleda simulate`: its options, and how it ends."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from arboleda.core.errors import ConfigError
+from arboleda.simulator.climate import LEVELS
+
+from . import one, screen
+from .many import Many
+from .request import CYCLES, LEVEL, SEED, SEEDS, Request
+from .workers import processors
+
+HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
+
+\b
+arboleda simulate                            {SEEDS} seeds on two plants
+arboleda simulate --plant my_plant.yaml      your plant
+arboleda simulate --until-failure            seed after seed until something breaks
+arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
+arboleda simulate --seeds 500 --json out.json
+arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
+
+Exit status: 0 every invariant held, 1 one was broken, 2 bad input, 130 Ctrl-C."""
+
+Plant = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Plant file. [default: odd seeds the shipped plant, even seeds one with shared zones]",
+    ),
+]
+Seed = Annotated[int | None, typer.Option(metavar="N", min=0, help=f"The first seed. [default: {SEED}]")]
+Seeds = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        help=f"How many seeds. [default: {SEEDS}; 1 with --trace or --record; no end with --until-failure]",
+    ),
+]
+Cycles = Annotated[
+    int,
+    typer.Option(metavar="N", min=1, help="How many tasks are ended in each seed, at least."),
+]
+Faults = Annotated[
+    str,
+    typer.Option(
+        metavar="LEVEL|FILE",
+        help=f"How much goes wrong: {', '.join(LEVELS)}; or a file of faults, or one that --json wrote.",
+    ),
+]
+UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
+]
+Record = Annotated[
+    Path | None,
+    typer.Option("--record", metavar="FILE", help="Write all that happens in one seed, an object per line."),
+]
+Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
+]
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command("simulate", help=HELP, short_help=HELP.partition("\n")[0])(simulate)
+
+
+def simulate(
+    plant: Plant = None,
+    seed: Seed = None,
+    seeds: Seeds = None,
+    cycles: Cycles = CYCLES,
+    faults: Faults = LEVEL,
+    until_failure: UntilFailure = False,
+    json: Json = None,
+    record: Record = None,
+    trace: Trace = False,
+    jobs: Jobs = None,
+) -> None:
+    alone = trace or record is not None
+    if alone and ((seeds or 1) > 1 or until_failure):
+        raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
+    request = Request(
+        plant=plant,
+        seed=seed,
+        seeds=1 if alone else seeds,
+        cycles=cycles,
+        faults=faults,
+        until_failure=until_failure,
+    )
+    for file in (json, record):
+        _check_writable(file)
+    console = screen.console()
+    for note in request.notes:
+        console.print(Text(note, style="dim"), soft_wrap=True)
+    if alone:
+        raise typer.Exit(one.run(request, console, trace=trace, record=record, file=json))
+    raise typer.Exit(Many(request, console, json).run(jobs or processors()))
+
+
+def _check_writable(file: Path | None) -> None:
+    """ConfigError now rather than an error after minutes."""
+    try:
+        if file is not None:
+            file.open("a").close()
+    except OSError as error:
+        raise ConfigError((f"{file}: cannot be written: {error.strerror}",)) from None

@@ -1,0 +1,127 @@
+"""Many seeds: run them, shrink the first breach, say what came of it."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from arboleda.simulator.run import Result
+
+from . import report, story, summary
+from .campaign import Campaign
+from .request import Request
+from .screen import progress
+from .setting import Tick
+from .tally import Tally
+from .words import counted, short
+from .workers import Workers
+
+HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
+
+
+class Many:
+    """A campaign in a terminal; `file` gets what came of it."""
+
+    def __init__(self, request: Request, console: Console, file: Path | None) -> None:
+        self._request = request
+        self._console = console
+        self._file = file
+        self._tally = Tally(setting=request.setting)
+        self._began = time.monotonic()
+        self._elapsed_s = 0.0
+        self._shrunk: Result | None = None
+        self._tick: Tick = lambda: None
+
+    def run(self, jobs: int) -> int:
+        """All of it; the exit status. Ctrl-C ends it with what was done so far."""
+        status = INTERRUPTED
+        try:
+            self._simulate(jobs)
+            self._shrink()
+            status = BROKEN if self._tally.broken else HELD
+        except KeyboardInterrupt:
+            self._say("interrupted; so far:", "yellow")
+        self._report()
+        if self._file is not None:
+            complete = status != INTERRUPTED
+            summary.write(self._file, self._request, self._tally, self._shrunk, complete=complete)
+        return status
+
+    def _simulate(self, jobs: int) -> None:
+        tally, count = self._tally, self._request.count
+        try:
+            with self._campaign(jobs) as campaign, progress(self._console, "simulating", count) as show:
+                self._tick = lambda: show(self._so_far(campaign.minutes), len(tally.rows))
+                for result in campaign.results():
+                    tally.add(result)
+                    self._tick()
+        finally:
+            self._elapsed_s = self._since()
+
+    def _campaign(self, jobs: int) -> Campaign:
+        request = self._request
+        jobs = jobs if request.count is None else min(jobs, request.count)
+        tick, until_failure = lambda: self._tick(), request.until_failure
+        if jobs == 1:
+            return Campaign(request.setting, request.turn, until_failure=until_failure, tick=tick)
+        return Workers(request.setting, request.turn, until_failure=until_failure, tick=tick, jobs=jobs)
+
+    def _so_far(self, minutes: int) -> str:
+        tally, count = self._tally, self._request.count
+        done = len(tally.rows)
+        said = [
+            f"{done:,} of {count:,} seeds" if count else counted(done, "seed"),
+            f"{minutes:,} min",
+            f"{tally.cycles:,} cycles",
+            f"{tally.cycles / self._since():,.0f}/s",
+            f"{tally.faults.total():,} faults",
+            *([f"{short(tally.checks)} checks"] if tally.checks else []),
+            *([f"{len(tally.broken)} BROKEN"] if tally.broken else []),
+        ]
+        return ", ".join(said)
+
+    def _shrink(self) -> None:
+        lowest = self._tally.lowest
+        if lowest is None:
+            return
+        injected = len(lowest.faults)
+        with progress(self._console, f"shrinking seed {lowest.seed}", None) as show:
+            show(f"{counted(injected, 'fault')}", 0)
+            self._shrunk = self._request.setting.shrunk(
+                lowest, lambda runs, left: show(f"{left} of {injected} faults left after {runs} runs", runs)
+            )
+
+    def _report(self) -> None:
+        tally = self._tally
+        if tally.rows:
+            self._console.print(report.tables(tally))
+            self._say(f"{report.amount(tally)} {report.speed(tally, self._elapsed_s)}")
+        for seed, result in sorted(tally.broken.items()):
+            told = self._shrunk if self._shrunk and self._shrunk.seed == seed else None
+            if told is None:
+                self._line(seed, result)
+            else:
+                self._story(told, len(result.faults))
+        self._console.print(report.verdict(tally), soft_wrap=True)
+
+    def _story(self, told: Result, injected: int) -> None:
+        self._say("")
+        story.breach(self._console, told, self._tally.setting.plant(told.seed).name)
+        story.faults(self._console, told, injected)
+        story.timeline(self._console, told)
+        self._say(f"  replay     {self._request.replay(told.seed)}", "bold")
+        if self._file:
+            self._say(f"             {self._request.replay_shrunk(self._file, told.seed)}", "bold")
+        self._say("")
+
+    def _line(self, seed: int, result: Result) -> None:
+        self._say(f"seed {seed} breaks {result.broken}; replay: {self._request.replay(seed)}", "red")
+
+    def _since(self) -> float:
+        return max(time.monotonic() - self._began, 1e-3)
+
+    def _say(self, line: str, style: str = "") -> None:
+        self._console.print(Text(line, style=style), soft_wrap=True)

@@ -1,0 +1,59 @@
+"""What a campaign came to, for a person: tables, how much was simulated, and a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from .setting import rules
+from .tally import Tally
+from .words import counted, seeds, short
+
+ONE_COLUMN = 8  # kinds of faults; more are drawn in two
+
+
+def tables(tally: Tally) -> Table:
+    """Faults by kind and outcomes of tasks, side by side."""
+    faults = sorted(tally.faults.items())
+    half = len(faults) if len(faults) <= ONE_COLUMN else (len(faults) + 1) // 2
+    outcomes = sorted(tally.outcomes.items(), key=lambda item: (-item[1], item[0]))
+    parts = [("fault", faults[:half]), ("fault", faults[half:]), ("task outcome", outcomes)]
+    drawn = [_counts(heading, counts) for heading, counts in parts if counts]
+    beside = Table.grid(padding=(0, 2, 0, 0))
+    beside.add_row(*drawn)
+    return beside
+
+
+def _counts(heading: str, counts: Iterable[tuple[str, int]]) -> Table:
+    drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    drawn.add_column(heading, no_wrap=True)
+    drawn.add_column("count", justify="right", no_wrap=True)
+    for name, count in counts:
+        drawn.add_row(Text(name), f"{count:,}")
+    return drawn
+
+
+def amount(tally: Tally) -> str:
+    """How much was simulated."""
+    done = [seeds(tally.rows), counted(tally.cycles, "cycle"), counted(tally.faults.total(), "fault")]
+    return f"{', '.join(done)}, {tally.seconds:,.0f} s of plant time"
+
+
+def speed(tally: Tally, elapsed_s: float) -> str:
+    """How fast."""
+    rate = f"{tally.cycles / elapsed_s:,.0f} cycles/s, {tally.seconds / elapsed_s:,.0f} times real time"
+    return f"in {elapsed_s:.1f} s ({rate})"
+
+
+def verdict(tally: Tally) -> Text:
+    """Whether everything held."""
+    if not tally.rows:
+        return Text("no seed came to its end", style="yellow")
+    if tally.broken:
+        share = f"{counted(len(tally.broken), 'seed')} of {len(tally.rows):,}"
+        return Text(f"BROKEN: an invariant did not hold in {share}", style="bold red")
+    checks = f" {short(tally.checks)} checks of" if tally.checks else ""
+    return Text(f"HELD:{checks} {counted(len(rules()), 'invariant')}", style="bold green")

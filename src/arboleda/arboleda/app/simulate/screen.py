@@ -1,0 +1,53 @@
+"""How far something long is: a bar in a terminal, else a plain line every few seconds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Column
+from rich.text import Text
+
+EVERY_S = 5.0  # between plain lines
+WIDTH = 120  # columns where there is no terminal that has a width
+Show = Callable[[str, int], None]  # (what to say, how much is done)
+
+
+def console() -> Console:
+    """Standard output, wide enough for a table in a file too."""
+    made = Console(highlight=False)
+    if not made.is_terminal:
+        made.width = max(made.width, WIDTH)
+    return made
+
+
+@contextmanager
+def progress(console: Console, doing: str, total: int | None) -> Iterator[Show]:
+    """Gives what shows the progress towards `total`; None: nobody knows how far it is."""
+    with _bar(console, doing, total) if console.is_terminal else _lines(console, doing) as show:
+        yield show
+
+
+@contextmanager
+def _bar(console: Console, doing: str, total: int | None) -> Iterator[Show]:
+    elapsed = TimeElapsedColumn(table_column=Column(no_wrap=True, min_width=len("0:00:00")))
+    words = (TextColumn("{task.description}"), elapsed, TextColumn("{task.fields[said]}"))
+    with Progress(SpinnerColumn(), BarColumn(bar_width=20), *words, console=console, transient=True) as bar:
+        task = bar.add_task(doing, total=total, said="")
+        yield lambda said, done: bar.update(task, said=said, completed=done)
+
+
+@contextmanager
+def _lines(console: Console, doing: str) -> Iterator[Show]:
+    last = time.monotonic()
+
+    def show(said: str, done: int) -> None:
+        nonlocal last
+        if time.monotonic() - last >= EVERY_S:
+            last = time.monotonic()
+            console.print(Text(f"{doing}: {said}"), soft_wrap=True)
+
+    yield show

@@ -1,0 +1,65 @@
+"""How an invariant came to be broken: what must hold, what was seen, the faults, the last seconds."""
+
+from __future__ import annotations
+
+import re
+
+from rich.console import Console
+from rich.text import Text
+
+from arboleda.simulator.run import Result
+
+from .setting import rules
+from .words import counted, told
+
+LINES = 40  # of the timeline
+LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")
+
+
+def breach(console: Console, result: Result, plant: str) -> None:
+    """Which invariant was broken, when, and what was seen."""
+    if result.broken is None:
+        return
+    name = result.broken.invariant
+    _say(
+        console, f"seed {result.seed} breaks {name} after {result.seconds:.3f} s of plant {plant}", "bold red"
+    )
+    _say(console, f"  must hold  {rules().get(name, '')}")
+    _say(console, f"  was seen   {result.broken.sentence}")
+
+
+def faults(console: Console, result: Result, injected: int) -> None:
+    """The faults that are enough to break it."""
+    needed = len(result.faults)
+    if not needed:
+        _say(console, f"  faults     none of {injected:,} is needed")
+        return
+    _say(
+        console,
+        f"  faults     {needed:,} of {counted(injected, 'fault')} {'is' if needed == 1 else 'are'} enough:",
+    )
+    for fault in result.faults:
+        _say(console, f"{fault.at:10.3f}  {told(fault)}", "yellow")
+
+
+def timeline(console: Console, result: Result) -> None:
+    """The last things that happened before the breach."""
+    lines = result.lines[-LINES:]
+    if not lines:
+        return
+    _say(console, f"  the last {len(lines)} of the things that happened before it, with the time in s:")
+    for line in lines:
+        style = "yellow" if line[12:].lower().startswith("fault") else "dim"
+        _say(console, _cropped(LONG_NUMBER.sub(_rounded, line), console.width), style)
+
+
+def _rounded(number: re.Match[str]) -> str:
+    return f"{float(number[0]):.4f}"
+
+
+def _cropped(line: str, width: int) -> str:
+    return line if len(line) <= width else f"{line[: width - 3]}..."
+
+
+def _say(console: Console, line: str, style: str = "") -> None:
+    console.print(Text(line, style=style), soft_wrap=True)

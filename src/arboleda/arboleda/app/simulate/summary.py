@@ -1,0 +1,67 @@
+"""A campaign as plain data, for `--json`."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from arboleda import __version__
+from arboleda.core.errors import ArboledaError
+from arboleda.simulator.run import Result
+
+from .request import Request
+from .setting import rules
+from .tally import Tally
+
+
+def write(path: Path, request: Request, tally: Tally, shrunk: Result | None, *, complete: bool) -> None:
+    """Writes it; `shrunk` is the run of one of the broken seeds with the faults that are needed."""
+    data = summary(request, tally, shrunk, complete=complete)
+    try:
+        path.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise ArboledaError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def summary(request: Request, tally: Tally, shrunk: Result | None, *, complete: bool) -> dict[str, Any]:
+    rows = [
+        {**row, "broken": _broken(request, tally, seed, shrunk)} for seed, row in sorted(tally.rows.items())
+    ]
+    return {
+        "arboleda": __version__,
+        "plant": str(request.plant) if request.plant else None,
+        "cycles": request.cycles,
+        "level": request.faults,
+        "complete": complete,
+        "totals": {
+            "seeds": len(rows),
+            "broken": len(tally.broken),
+            "cycles": tally.cycles,
+            "seconds": round(tally.seconds, 3),
+            "checks": tally.checks,
+            "faults": dict(sorted(tally.faults.items())),
+            "outcomes": dict(sorted(tally.outcomes.items())),
+        },
+        "seeds": rows,
+    }
+
+
+def _broken(request: Request, tally: Tally, seed: int, shrunk: Result | None) -> dict[str, Any] | None:
+    found = tally.broken.get(seed)
+    if found is None:
+        return None
+    best = shrunk if shrunk and shrunk.seed == seed else found
+    assert best.broken is not None
+    return {
+        "invariant": best.broken.invariant,
+        "must_hold": rules().get(best.broken.invariant, ""),
+        "seen": best.broken.sentence,
+        "seconds": round(best.seconds, 3),
+        "minutes": best.minutes,
+        "injected": len(found.faults),
+        "shrunk": best is shrunk,
+        "faults": [asdict(fault) for fault in best.faults],
+        "replay": request.replay(seed),
+    }

@@ -1,0 +1,50 @@
+"""What the seeds that ended came to, for the screen and for a file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+from arboleda.simulator.run import Result
+
+from .setting import Setting
+
+
+@dataclass(kw_only=True)
+class Tally:
+    """Sums, a row per seed, and of seeds that broke an invariant all there is to know."""
+
+    setting: Setting
+    rows: dict[int, dict[str, Any]] = field(default_factory=dict)
+    broken: dict[int, Result] = field(default_factory=dict)
+    faults: Counter[str] = field(default_factory=Counter)
+    outcomes: Counter[str] = field(default_factory=Counter)
+    cycles: int = 0
+    checks: int = 0
+    seconds: float = 0.0
+
+    @property
+    def lowest(self) -> Result | None:
+        """The first seed that broke an invariant, in the order of seeds."""
+        return self.broken[min(self.broken)] if self.broken else None
+
+    def add(self, result: Result) -> None:
+        faults = Counter(fault.kind for fault in result.faults)
+        self.faults.update(faults)
+        self.outcomes.update(result.outcomes)
+        self.cycles += result.cycles
+        self.checks += result.checks.total()
+        self.seconds += result.seconds
+        self.rows[result.seed] = {
+            "seed": result.seed,
+            "plant": self.setting.plant(result.seed).name,
+            "digest": result.digest,
+            "cycles": result.cycles,
+            "seconds": round(result.seconds, 3),
+            "faults": dict(sorted(faults.items())),
+            "outcomes": dict(sorted(result.outcomes.items())),
+            "broken": None,
+        }
+        if result.broken:
+            self.broken[result.seed] = result

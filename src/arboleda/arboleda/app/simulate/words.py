@@ -1,0 +1,33 @@
+"""How numbers and faults are written for a person."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from arboleda.simulator.faults import Fault
+
+
+def counted(number: int, thing: str) -> str:
+    """`1 seed`, `1,200 seeds`."""
+    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+
+
+def seeds(done: Collection[int]) -> str:
+    """`20 seeds (1 to 20)`."""
+    which = f" ({min(done)} to {max(done)})" if len(done) > 1 else ""
+    return counted(len(done), "seed") + which
+
+
+def short(number: int) -> str:
+    """A large number for a narrow place: `812`, `34.2 k`, `5.61 M`."""
+    for unit, size in (("G", 10**9), ("M", 10**6), ("k", 10**3)):
+        if number >= size:
+            return f"{number / size:.3g} {unit}"
+    return str(number)
+
+
+def told(fault: Fault) -> str:
+    """What goes wrong, where and for how long; without its time."""
+    much = f"{fault.amount:g}" if fault.amount else ""
+    lasting = f"for {fault.seconds:.3f} s" if fault.seconds else ""
+    return "  ".join(part for part in (fault.kind, fault.target, fault.word, much, lasting) if part)

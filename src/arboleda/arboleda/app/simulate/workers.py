@@ -1,0 +1,111 @@
+"""A campaign that worker processes share; each simulation is in one thread of one of them."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from itertools import islice
+from multiprocessing import active_children, get_all_start_methods, get_context, parent_process
+from threading import Thread
+from types import TracebackType
+from typing import Any
+
+from arboleda.core.errors import ArboledaError
+from arboleda.simulator.run import Result
+
+from .campaign import Campaign
+from .setting import Setting
+
+AHEAD = 2  # seeds that are handed out to each worker
+TICK_S = 0.5
+
+
+def processors() -> int:
+    """How many this process may use."""
+    available = getattr(os, "sched_getaffinity", None)
+    return len(available(0)) if available else os.cpu_count() or 1
+
+
+class Workers(Campaign):
+    """Inside a `with` block there are `jobs` of them; whatever ends the block ends them.
+
+    Enter it before any thread is started: where the system can, workers are forked.
+    """
+
+    def __init__(self, *arguments: Any, jobs: int, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        context = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
+        self._others = frozenset(active_children())
+        self._passed_by = context.Value("Q", 0)  # minutes, of all workers
+        self._pool = ProcessPoolExecutor(jobs, context, _Worker.prepare, (self.setting, self._passed_by))
+        self._under_way: dict[Future[Result], int] = {}
+        self._jobs = jobs
+
+    def __enter__(self) -> Campaign:
+        self._hand_out(self._jobs * AHEAD)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._under_way:
+            for child in set(active_children()) - self._others:
+                child.terminate()
+        self._pool.shutdown(cancel_futures=True)
+
+    @property
+    def minutes(self) -> int:
+        return self._passed_by.get_obj().value  # without the lock, which a killed worker may have kept
+
+    def _run(self) -> Iterator[Result]:
+        while self._under_way:
+            ended, _ = wait(self._under_way, TICK_S, FIRST_COMPLETED)
+            self.tick()
+            for future in sorted(ended, key=self._under_way.__getitem__):
+                yield self._result(future)
+                self._hand_out(1)
+
+    def _result(self, future: Future[Result]) -> Result:
+        try:
+            result = future.result()
+        except BrokenProcessPool as error:
+            sentence = "a worker process was killed; fewer --jobs need less memory"
+            raise ArboledaError(sentence) from error
+        del self._under_way[future]
+        return result
+
+    def _hand_out(self, count: int) -> None:
+        for seed in islice(self.seeds, count):
+            self._under_way[self._pool.submit(_Worker.run, seed)] = seed
+
+
+class _Worker:
+    """What a worker process has, and does."""
+
+    setting: Setting
+    minutes: Any  # of all workers
+
+    @classmethod
+    def prepare(cls, setting: Setting, minutes: Any) -> None:
+        cls.setting, cls.minutes = setting, minutes
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who ends the workers
+        Thread(target=_end_with_parent, daemon=True).start()
+
+    @classmethod
+    def run(cls, seed: int) -> Result:
+        return cls.setting.run(seed, tick=cls.passed)
+
+    @classmethod
+    def passed(cls) -> None:
+        with cls.minutes.get_lock():
+            cls.minutes.value += 1
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
