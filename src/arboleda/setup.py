@@ -13,5 +13,8 @@ setup(
     ],
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
-    entry_points={"console_scripts": ["arboleda = arboleda.app.cli:main"]},
+    entry_points={
+        "console_scripts": ["arboleda = arboleda.app.cli:main"],
+        "pytest11": ["arboleda = arboleda.testing.plugin"],
+    },
 )

@@ -1,0 +1,97 @@
+"""Where a test asks for tasks and acts as an operator, and what the plant answers."""
+
+from __future__ import annotations
+
+from arboleda.core.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
+from arboleda.simulator.world import BY_HAND_S, World
+
+NO_ANSWER = "the plant did not answer"
+ASKED = "asked"  # a task that the plant has said nothing of yet
+ENDED = frozenset(
+    state.value for state in (TaskState.REFUSED, TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED)
+)
+
+
+class Handle:
+    """A task that a test asked for, as the plant has told of it; it changes while the simulation runs.
+
+    `state` is asked, refused, queued, running, done, failed or cancelled, `history` all it was in; `id` is
+    None until the plant takes the task; `reason` and `sentence` say why it failed, was refused or waits.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.id: str | None = None
+        self.state = ASKED
+        self.reason: str | None = None
+        self.sentence = ""
+        self.history: list[str] = []
+
+    def __repr__(self) -> str:
+        why = ": ".join(word for word in (self.reason, self.sentence) if word)
+        return f"<task {self.text!r} {self.state}{f' ({why})' if why else ''}>"
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more will happen with it."""
+        return self.state in ENDED
+
+    def follow(self, change: TaskChanged) -> None:
+        """Take in what the plant said of it."""
+        self.id = change.task or None
+        self.state = change.state.value
+        self.reason = change.reason.value if change.reason else None
+        self.sentence = change.sentence
+        if self.history[-1:] != [self.state]:
+            self.history.append(self.state)
+
+
+class Desk:
+    """Asks the plant of a world, and follows what comes of it."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._asked: dict[str, Handle] = {}
+        self._by_id: dict[str, list[Handle]] = {}
+        self._answers: list[OperatorAnswer] = []
+        world.watchers.append(self._look)
+
+    @property
+    def tasks(self) -> list[Handle]:
+        """Every task asked for so far."""
+        return list(self._asked.values())
+
+    def submit(self, text: str) -> Handle:
+        """Ask for a task and let the plant answer."""
+        handle = Handle(text)
+        request = f"test-{len(self._asked) + 1}"
+        self._asked[request] = handle
+        self._world.tell(TaskRequest(at=self._world.now, text=text, request=request))
+        self._world.settle()
+        return handle
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> str | None:
+        """Act as an operator; why the plant refused, None where it did as asked."""
+        if by_hand:
+            self._world.put_at_reference(scope)
+            self._world.advance(BY_HAND_S)
+        self._answers.clear()
+        self._world.request_verb(verb, scope, by_hand=by_hand)
+        self._world.settle()
+        mine = [each for each in self._answers if (each.verb, each.scope) == (verb, scope)]
+        return mine[0].refusal if mine else NO_ANSWER
+
+    def _look(self) -> None:
+        for message in self._world.moment.sent:
+            if isinstance(message, TaskChanged):
+                self._follow(message)
+            elif isinstance(message, OperatorAnswer):
+                self._answers.append(message)
+
+    def _follow(self, change: TaskChanged) -> None:
+        followers = self._by_id.setdefault(change.task, []) if change.task else []
+        asked = self._asked.get(change.request or "")
+        if asked is not None and asked not in followers:
+            followers.append(asked)
+        for handle in followers:
+            handle.follow(change)

@@ -1,0 +1,87 @@
+"""What a test can see of a cell and of a robot: as the plant believes, and as it is."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from arboleda.core import view
+from arboleda.core.model import Arm
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.mobile import MobileBody
+from arboleda.simulator.world import World
+
+MM_PER_M = 1000.0
+Joints = tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellLook:
+    """A cell as the plant's screens show it; `task` is the id of the task that runs."""
+
+    name: str
+    state: str
+    task: str | None
+    step: str | None
+    queue: tuple[str, ...]
+    held_by: str | None
+    waiting_for: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotLook:
+    """Where a robot is, and where the plant last heard that it is; joints in deg, prismatic ones in mm.
+
+    `joints`, `effector` and `holds` (a part) are None for a mobile robot, `node` for an arm. `online`,
+    `homed` and what is believed are as the plant heard, None where it heard nothing.
+    """
+
+    name: str
+    online: bool
+    homed: bool | None
+    joints: Joints | None = None
+    believed_joints: Joints | None = None
+    node: int | None = None
+    believed_node: int | None = None
+    effector: bool | None = None
+    holds: bool | None = None
+
+
+def cell(world: World, name: str) -> CellLook:
+    """The cell of that name."""
+    found = next(each for each in view.snapshot(world.plant)["cells"] if each["name"] == name)
+    return CellLook(
+        name=name,
+        state=found["state"],
+        task=found["task"]["id"] if found["task"] else None,
+        step=found["step"],
+        queue=tuple(found["queue"]),
+        held_by=found["held_by"],
+        waiting_for=found["waiting_for"],
+    )
+
+
+def robot(world: World, name: str) -> RobotLook:
+    """The robot of that name: its board's body beside the plant's belief."""
+    model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
+    heard = {"name": name, "online": belief.online, "homed": belief.homed}
+    body = world.boards[model.mqtt].body
+    if isinstance(model, Arm) and isinstance(body, ArmBody):
+        true = tuple(
+            joint.step * steps for joint, steps in zip(model.joints, body.true_position, strict=True)
+        )
+        return RobotLook(
+            **heard,
+            joints=_shown(model, true),
+            believed_joints=None if belief.q is None else _shown(model, belief.q),
+            effector=body.effector,
+            holds=body.holding,
+        )
+    assert isinstance(body, MobileBody)
+    return RobotLook(**heard, node=body.true_node, believed_node=belief.node)
+
+
+def _shown(arm: Arm, q: Joints) -> Joints:
+    """Joints as a plant file writes them."""
+    rows = zip(arm.joints, q, strict=True)
+    return tuple(math.degrees(value) if joint.unit == "rad" else value * MM_PER_M for joint, value in rows)

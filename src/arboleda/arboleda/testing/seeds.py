@@ -1,0 +1,44 @@
+"""One plant under many seeds: tasks, people and faults drawn from each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.core.model import PlantModel
+from arboleda.core.recipes import Recipes
+from arboleda.simulator.climate import Climate
+from arboleda.simulator.invariants import Invariant
+from arboleda.simulator.run import MINUTE_S, Plan, Result, Simulation
+from arboleda.simulator.shrink import explicit, shrink
+
+CYCLES = 20
+LEVEL = "normal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seeds:
+    """What is run with each seed: so many cycles of a plant, with faults of a level."""
+
+    model: PlantModel
+    cycles: int
+    level: str
+    recipes: Recipes
+    invariants: tuple[Invariant, ...]
+
+    def run(self, seed: int, *, keep: bool = False) -> Result:
+        """One seed from its first step to rest; `keep`: with its timeline."""
+        climate = Climate.draw(self.model, seed, self.level)
+        return self._simulation(seed, climate.faults, keep=keep).run(cycles=self.cycles)
+
+    def shrunk(self, broken: Result) -> Result:
+        """The same breach with as few faults as could be found, and its timeline."""
+
+        def attempt(plan: Plan, seconds: float, *, keep: bool = False) -> Result:
+            return self._simulation(broken.seed, plan, keep=keep).run(seconds=seconds)
+
+        found = shrink(broken, attempt)
+        again = attempt(explicit(found.faults), found.minutes * MINUTE_S, keep=True)
+        return again if again.broken else self.run(broken.seed, keep=True)
+
+    def _simulation(self, seed: int, plan: Plan, *, keep: bool = False) -> Simulation:
+        return Simulation(self.model, seed, plan, invariants=self.invariants, keep=keep, recipes=self.recipes)

@@ -1,0 +1,232 @@
+"""What a test drives: a plant with virtual boards, network and faults, in which every step is judged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.core import view
+from arboleda.core.context import Context
+from arboleda.core.messages import Verb
+from arboleda.core.model import PlantModel
+from arboleda.core.task import Order, Recipe
+from arboleda.simulator.climate import LEVELS
+from arboleda.simulator.faults import Fault
+from arboleda.simulator.invariants import INVARIANTS
+from arboleda.simulator.people import Attendant
+from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.simulator.watched import Broken, Watched
+from arboleda.simulator.world import World
+
+from . import asked, looks, seeds, wording
+from .desk import Desk, Handle
+from .words import Misuse, known
+
+AT_MOST_S = 600.0
+T = TypeVar("T")
+__tracebackhide__ = True  # a failed test shows where it stands, not how this file is written
+
+
+class Sim:
+    """One plant under virtual time; it starts with the first thing that is asked of it.
+
+    A broken invariant of the simulator is an AssertionError, wherever it shows; a word that means nothing
+    is a Misuse. Plant files are looked for in `folder` first.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
+        self._model: PlantModel | None = None
+        self._recipes: dict[Recipe, Callable[[Order, Context], Behaviour]] = {}
+        self._invariants = INVARIANTS
+        self._attendant: Attendant | None = None
+        self._asking = False  # a condition of the test is being asked: what it raises is the test's
+        self._told = False  # the error that ended the test has the timeline in it
+
+    def plant(self, plant: PlantModel | Path | str | None = None) -> PlantModel:
+        """Choose the plant by its file or as a model; None, and no choice at all, is the shipped plant."""
+        self._before_start("plant")
+        self._model = asked.plant(plant, self._folder)
+        return self._model
+
+    def recipe(self, name: str, build: Callable[[Order, Context], Behaviour]) -> None:
+        """Have `build(order, context)` make the tree of every task of this recipe."""
+        self._before_start("recipe")
+        self._recipes[Recipe(known("a recipe", name, [each.value for each in Recipe]))] = build
+
+    def without(self, *invariants: str) -> None:
+        """Do not judge by these invariants, where a recipe means something else than the shipped one."""
+        self._before_start("without")
+        names = {known("an invariant", name, [each.name for each in INVARIANTS]) for name in invariants}
+        self._invariants = tuple(each for each in self._invariants if each.name not in names)
+
+    def submit(self, text: str) -> Handle:
+        """Ask for a task; a refused one is a handle too."""
+        return self._do(lambda: self._desk.submit(text))
+
+    def operate(self, verb: Verb | str, scope: str = "", *, by_hand: bool = False) -> str | None:
+        """Act as an operator; why the plant refused, None where it did it."""
+        word = Verb(known("a verb", verb, [each.value for each in Verb]))
+        return self._do(lambda: self._desk.operate(word, scope, by_hand=by_hand))
+
+    def fault(
+        self,
+        kind: str,
+        target: str = "",
+        *,
+        at: float | None = None,
+        seconds: float | None = None,
+        amount: float | None = None,
+        word: str | None = None,
+        seed: int = 0,
+    ) -> Fault:
+        """Have something go wrong in `at` s (None: now), for `seconds` (None: until `rest`).
+
+        `kind` is one of `arboleda.simulator.faults.KINDS`, `target` a robot or what the kind befalls;
+        `amount` and `word` are drawn with `seed` where they are None.
+        """
+        if at is not None and at < 0:
+            raise Misuse(f"at is how many s from now a fault begins, 0 or more; is {at:g}")
+        fault = asked.fault(
+            self.world.model,
+            kind,
+            target,
+            at=self.now + (at or 0.0),
+            seconds=seconds,
+            amount=amount,
+            word=word,
+            seed=seed,
+        )
+        self._do(lambda: self._begin(fault) if at is None else self._watched.expect(fault))
+        return fault
+
+    def faults(self, faults: Iterable[Fault]) -> None:
+        """Have faults go wrong at their own times, in s since the start of the simulation."""
+        for fault in faults:
+            asked.must_fit(fault, self.world.model)
+            self._watched.expect(fault)
+
+    def run(
+        self,
+        seconds: float | None = None,
+        *,
+        until: Callable[[], object] | None = None,
+        at_most: float = AT_MOST_S,
+    ) -> None:
+        """Let so many s pass, or what it takes until `until()` is true; AssertionError after `at_most` s."""
+        if (seconds is None) == (until is None):
+            raise Misuse("run(seconds) lets time pass, run(until=...) waits: one of them is needed")
+        if seconds is not None and not 0 <= seconds < math.inf:
+            raise Misuse(f"time only passes: seconds is 0 or more, is {seconds:g}")
+        if until is None:
+            self._do(lambda: self.world.advance(seconds))
+        elif not self._do(lambda: self.world.advance(at_most, lambda: self._ask(until))):
+            self._told = True
+            raise AssertionError(wording.never(at_most, self._desk.tasks, self._watched))
+
+    def rest(self) -> None:
+        """End all faults, let an attendant get the cells going again, and judge that all comes to rest."""
+        if self._attendant is None:
+            self._attendant = Attendant(self.world, seed=0)
+        self._do(self._watched.come_to_rest)
+
+    def seeds(
+        self, count: int, *, first: int = 1, cycles: int = seeds.CYCLES, faults: str = seeds.LEVEL
+    ) -> None:
+        """Run this plant `count` times with tasks, people and faults drawn from seeds, each to its rest.
+
+        The first seed that breaks an invariant is an AssertionError, with as few faults as still break it;
+        `faults` is a level of `arboleda.simulator.climate.LEVELS`.
+        """
+        level = known("a level of faults", faults, LEVELS)
+        drawn = seeds.Seeds(
+            model=self._chosen,
+            cycles=cycles,
+            level=level,
+            recipes=self._recipes,
+            invariants=self._invariants,
+        )
+        for seed in range(first, first + count):
+            if (result := drawn.run(seed)).broken:
+                raise AssertionError(wording.seed(drawn.shrunk(result), drawn, len(result.faults)))
+
+    @property
+    def now(self) -> float:
+        """How long the simulation has run, s."""
+        return self._watched.seconds
+
+    @property
+    def world(self) -> World:
+        """Everything there is, for what has no word here; its names may change with any version."""
+        return self._watched.world
+
+    def snapshot(self) -> dict[str, Any]:
+        """What a screen would show now; positions in rad and m."""
+        return view.snapshot(self.world.plant)
+
+    def cell(self, name: str) -> looks.CellLook:
+        """A cell as it is now."""
+        cells = [cell.name for cell in self.world.model.cells]
+        return looks.cell(self.world, known("a cell of this plant", name, cells))
+
+    def robot(self, name: str) -> looks.RobotLook:
+        """A robot, by its name or its name on MQTT, as it is now and as the plant believes it to be."""
+        return looks.robot(self.world, asked.robot(name, self.world.model))
+
+    def timeline(self) -> list[str]:
+        """What happened, a line each with its time in s, oldest first."""
+        return self._watched.trace.lines
+
+    def last_words(self) -> list[str]:
+        """The end of the timeline, for a test that failed without telling it."""
+        lines = self.timeline() if self._started and not self._told else []
+        return wording.timeline(lines) if lines else []
+
+    def _before_start(self, what: str) -> None:
+        if self._started:
+            raise Misuse(f"sim.{what} comes before the simulation starts, so before submit, fault and run")
+
+    @property
+    def _started(self) -> bool:
+        return "_watched" in vars(self)
+
+    @cached_property
+    def _watched(self) -> Watched:
+        return Watched(self._chosen, invariants=self._invariants, keep=True, recipes=self._recipes)
+
+    @property
+    def _chosen(self) -> PlantModel:
+        return self._model or asked.plant(None, None)
+
+    @cached_property
+    def _desk(self) -> Desk:
+        return Desk(self.world)
+
+    def _begin(self, fault: Fault) -> None:
+        self._watched.begin(fault)
+        self.world.settle()
+
+    def _ask(self, until: Callable[[], object]) -> bool:
+        self._asking = True
+        came = bool(until())
+        self._asking = False
+        return came
+
+    def _do(self, act: Callable[[], T]) -> T:
+        """What `act` returns; what goes wrong in the simulation meanwhile is an AssertionError."""
+        self._asking = False
+        try:
+            return act()
+        except Broken as broken:
+            breach, cause = broken, None
+        except Exception as error:
+            if self._asking:
+                raise
+            breach, cause = Broken(NO_EXCEPTION, f"{type(error).__name__}: {error}"), error
+        self._told = True
+        raise AssertionError(wording.breach(breach, self._watched)) from cause
