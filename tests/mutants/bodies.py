@@ -1,0 +1,166 @@
+"""Mutants for what bodies truly do: zones, motion, grip and stop."""
+
+from __future__ import annotations
+
+from arboleda.core import evidence, recipes
+from arboleda.core.cell import CellRun
+from arboleda.core.context import Context
+from arboleda.core.dispatcher import Dispatcher
+from arboleda.core.model import Arm
+from arboleda.core.zones import Zones
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.board import Board
+
+from .mutant import SHARED, edit, mutant
+
+ZONES = (
+    mutant(
+        "one_robot_per_zone",
+        "Who waits for a zone gets it, whoever holds it.",
+        edit(Zones._grant, "taken = set(self._holders)", "taken = set()"),
+        seeds=SHARED,
+    ),
+    mutant(
+        "zone_released_only_outside",
+        "An arm gives its zones back without being seen outside.",
+        edit(
+            Context.leave_zones,
+            "if held and self._dispatcher.place(self.cell) is not None:",
+            "if held:",
+        ),
+        seeds=SHARED,
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "zone_entered_only_when_held",
+        "A leg's zones are taken one pose too late.",
+        edit(recipes._visit, "if leg.start == index and", "if leg.start + 1 == index and"),
+        seeds=SHARED,
+    ),
+)
+
+MOTION = (
+    mutant(
+        "no_unhomed_move",
+        "A board that boots takes its position for known.",
+        edit(Board.reboot, "homed=self._assume_homed", "homed=True"),
+    ),
+    mutant(
+        "no_move_after_a_boot_that_was_told",
+        "That a board without ids came back does not count as a boot of it.",
+        edit(evidence.displaced, "return rebooted(before, belief, report) or ", "return "),
+        seeds=SHARED,
+        weather={"reboot": 20.0, "brown_out": 10.0},
+    ),
+    mutant(
+        "nothing_moves_unasked",
+        "A board that boots homes by itself.",
+        edit(Board.reboot, "self.body.reset()", "self.body.reset(); self.body.home(now_us)"),
+    ),
+    mutant(
+        "arm_stays_within_limits",
+        "A board takes an absolute target for a way from where the arm is.",
+        edit(
+            ArmBody.start,
+            "self._steps(tuple(values))",
+            "tuple(map(sum, zip(self.position, self._steps(tuple(values)))))",
+        ),
+    ),
+    mutant(
+        "done_is_true",
+        "An arm counts as there when one of its joints is.",
+        edit(Arm.reached, "return all(", "return any("),
+        seeds=SHARED,
+        weather={"plant_stall": 20.0},
+    ),
+    mutant(
+        "tiny_moves_succeed",
+        "A move has the time of its way and not a moment more.",
+        edit(
+            Dispatcher._allowed_s,
+            "max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)",
+            "travel_s * timing.deadline_factor",
+        ),
+        weather="none",
+    ),
+)
+
+GRIP = (
+    mutant(
+        "effector_on_only_between_pick_and_place",
+        "The work at a pose is done before the arm goes there.",
+        edit(recipes._at, "[_move(context, pose), *work]", "[*work, _move(context, pose)]"),
+        weather="none",
+    ),
+    mutant(
+        "effector_off_only_where_legal",
+        "A recovery opens the effector where the arm is, instead of carrying the part back.",
+        edit(
+            recipes.recovery,
+            "*_at(context, cell.pickup, _effector(context, False))",
+            "_effector(context, False)",
+        ),
+    ),
+    mutant(
+        "no_part_dropped",
+        "A board that stops switches all its outputs off.",
+        edit(ArmBody.stop, "self._plan(now_us)", "self._plan(now_us); self.switch_effector(False)"),
+    ),
+    mutant(
+        "parts_conserved",
+        "An effector that opens keeps its part.",
+        edit(ArmBody.switch_effector, "self.holding and on", "self.holding"),
+        weather="none",
+    ),
+    mutant(
+        "station_gets_one_part",
+        "What is resumed begins anew, instead of where it was held.",
+        edit(
+            CellRun._again,
+            "for act in self.run.interrupted():\n        act.send()",
+            "self._look(self.run.begin(lambda: self._build(self.task.order, self.context)))",
+        ),
+        weather={"operator_hold": 30.0},
+    ),
+    mutant(
+        "one_pick_one_place",
+        "A storage task fetches its part twice.",
+        edit(
+            recipes.storage,
+            "(station, _let_go(context)),",
+            "(station, _let_go(context)), (cell.pickup, _grip(context, cell.pickup)),",
+        ),
+        weather="none",
+    ),
+    mutant(
+        "done_task_is_true",
+        "A task that failed and was recovered counts as done.",
+        edit(CellRun._ended, "if found is not None:", "if found is not None and not recovered:"),
+    ),
+)
+
+STOP = (
+    mutant(
+        "latched_board_stays_still",
+        "A board that is told to stop and latch only stops.",
+        edit(Board._stop, "self.latched = self.latched or latch", ""),
+        weather={"operator_stop": 10.0, "loss": 20.0, "partition": 10.0, "lost_queue": 20.0},
+    ),
+    mutant(
+        "stop_holds",
+        "A cell that was cleared resets itself.",
+        edit(
+            CellRun._transit,
+            "self.become(Cause.CLEARED)",
+            "self.become(Cause.CLEARED); self.become(Cause.RESET); self.become(Cause.READY)",
+        ),
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "speed_never_rises_after_stop",
+        "A stop leaves out the first axis.",
+        edit(ArmBody.stop, "for axis in self._axes:", "for axis in self._axes[1:]:"),
+    ),
+)
+
+BODIES = (*ZONES, *MOTION, *GRIP, *STOP)

@@ -1,0 +1,189 @@
+"""Mutants for tasks and cells, for liveness and for books."""
+
+from __future__ import annotations
+
+from arboleda.core import recipes
+from arboleda.core.cell import CellRun
+from arboleda.core.dispatcher import Dispatcher
+from arboleda.core.leaves import Dwell, TakeZones
+from arboleda.core.operator import Operator
+from arboleda.core.plant import Plant
+from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.wire import strict
+
+from .mutant import SHARED, edit, mutant
+
+BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
+COLLECT = "out, self.dispatcher.outbox = self.dispatcher.outbox, []"
+PATIENCE_S = 60.0  # enough for what comes to rest at all
+
+TASKS = (
+    mutant(
+        "each_task_ends_once",
+        "That a task ended is told twice.",
+        edit(CellRun._finish, "self._changed(task)", "self._changed(task); self._changed(task)"),
+        weather="none",
+    ),
+    mutant(
+        "ended_tasks_stay_ended",
+        "To cancel a task that has ended is not refused.",
+        edit(
+            Operator._cancel_task,
+            'raise Refused(f"task {id} has ended already ({task.state.value})")',
+            "return",
+        ),
+        weather={"operator_cancel": 30.0},
+    ),
+    mutant(
+        "only_legal_task_states",
+        "That a task starts is not told.",
+        edit(CellRun._start, "    self._changed(task)\n", ""),
+        weather="none",
+    ),
+    mutant(
+        "first_come_first_served",
+        "The task that came last is the next one.",
+        edit(CellRun.advance, "self.queue.popleft()", "self.queue.pop()"),
+        weather="none",
+    ),
+    mutant(
+        "cancelled_tasks_end_cancelled",
+        "A task that is held counts as failed when it is cancelled.",
+        edit(CellRun.cancel, "self._cancelling = True", "self._cancelling = self.state is CellState.EXECUTE"),
+        weather={"operator_hold": 20.0, "operator_cancel": 40.0},
+    ),
+    mutant(
+        "accepted_tasks_are_kept",
+        "A stop empties the queue and tells nobody.",
+        edit(CellRun.stop, "self.queue_paused = True", "self.queue_paused = True; self.queue.clear()"),
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "only_legal_cell_states",
+        "A stopped cell clears itself once it stands still.",
+        edit(
+            CellRun._aborted,
+            "self.become(Cause.HALTED)",
+            "self.become(Cause.HALTED); self.become(Cause.CLEAR)",
+        ),
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "rejected_input_changes_nothing",
+        "An operator's verb is in the journal before anybody knows whether it can be done.",
+        edit(
+            Operator.act,
+            "if request.verb is Verb.OVERRIDE:",
+            'self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=""))\n'
+            "    if request.verb is Verb.OVERRIDE:",
+        ),
+    ),
+    mutant(
+        "every_request_is_answered",
+        "An empty task text is passed over.",
+        edit(
+            Plant._on_task_request,
+            "self.dispatcher.outbox.append(_refused(",
+            "if request.text: self.dispatcher.outbox.append(_refused(",
+        ),
+        weather={"bad_task": 30.0},
+    ),
+    mutant(
+        "no_internal_failure",
+        "A path is cut where its robot stands, even where nobody knows that.",
+        edit(
+            recipes._follow,
+            "nodes[nodes.index(node) :] if node in nodes else nodes",
+            "nodes[nodes.index(node) :]",
+        ),
+        seeds=SHARED,
+        weather={"brown_out": 30.0},
+    ),
+    mutant(
+        "sentences_are_for_people",
+        "Who sends a bad task text is told the exception, not its sentence.",
+        edit(Plant._on_task_request, "str(refusal)", "repr(refusal)"),
+        weather={"bad_task": 30.0},
+    ),
+)
+
+LIVENESS = (
+    mutant(
+        "running_tree_has_waker",
+        "A dwell does not ask to be woken.",
+        edit(Dwell.initialise, "self.context.wake_at(self.until)", ""),
+        weather="none",
+    ),
+    mutant(
+        "time_stands_still_only_when_held",
+        "A cell that is stopped while it is held never gets its time back.",
+        edit(CellRun.stop, "self.context.go_on()", ""),
+        weather={"operator_hold": 5.0, "operator_stop": 5.0},
+    ),
+    mutant(
+        "no_tree_outlives_its_work",
+        "A stop leaves the tree where it was.",
+        edit(CellRun.interrupt, "self.run.drop()", ""),
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "no_starvation",
+        "An idle cell looks into its queue only when something else changed.",
+        edit(
+            CellRun.advance,
+            "if self.state is CellState.IDLE and self.queue",
+            "if self.dirty and self.state is CellState.IDLE and self.queue",
+        ),
+        weather="none",
+    ),
+    mutant(
+        "zone_requests_end",
+        "An arm waits for its zones twice as long as it may.",
+        edit(
+            TakeZones.initialise,
+            "self.zones = self.needed()",
+            "self.zones = self.needed()\n    self.until += self.seconds",
+        ),
+        seeds=SHARED,
+        weather={"brown_out": 20.0},
+    ),
+    mutant(
+        "at_rest_at_end",
+        "To clear a stop is not sent to the robot.",
+        edit(Dispatcher.unlatch, "self._stop(robot, StopMode.CLEAR)", ""),
+        weather={"operator_stop": 5.0},
+        rest_s=PATIENCE_S,
+    ),
+    mutant(
+        "nothing_waits_at_end",
+        "To resume an idle cell does not let its queue run.",
+        edit(
+            CellRun.resume,
+            "    self.queue_paused = False",
+            "        self.queue_paused = False",
+        ),
+        weather={"operator_stop": 5.0},
+        rest_s=PATIENCE_S,
+    ),
+)
+
+BOOKS = (
+    mutant(
+        "bounded_books",
+        "A step beats after it has collected what must go out.",
+        edit(
+            Plant.step,
+            f"{BEAT}\n    {COLLECT}",
+            f"{COLLECT}\n    {BEAT}",
+        ),
+        weather="none",
+    ),
+    mutant(
+        NO_EXCEPTION,
+        "A text is compared as if it was a number.",
+        edit(strict.integer, "if type(value) is not int:", "if value is None:"),
+        weather={"foreign_garbage": 30.0},
+    ),
+)
+
+CELLS = (*TASKS, *LIVENESS, *BOOKS)

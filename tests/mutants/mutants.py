@@ -1,0 +1,9 @@
+"""Every mutant: one for each invariant of the simulator."""
+
+from __future__ import annotations
+
+from .bodies import BODIES
+from .cells import CELLS
+from .protocol import PROTOCOL
+
+MUTANTS = (*BODIES, *PROTOCOL, *CELLS)

@@ -1,0 +1,117 @@
+"""Mutants for commands and for what goes over the wire."""
+
+from __future__ import annotations
+
+from arboleda.core import recipes
+from arboleda.core.belief import Belief
+from arboleda.core.dispatcher import Dispatcher
+from arboleda.core.leaves import Act
+from arboleda.core.ledger import Ledger
+from arboleda.sim.board import Board as VirtualBoard
+from arboleda.sim.receipts import Receipts
+from arboleda.wire import goals, strict
+from arboleda.wire.board import Board
+
+from .mutant import edit, mutant
+
+COMMANDS = (
+    mutant(
+        "no_command_to_unfit",
+        "A robot that is not homed takes any command, not only to home.",
+        edit(Dispatcher._obstacle_to, "isinstance(command, Home) and obstacle", "obstacle"),
+    ),
+    mutant(
+        "stops_are_cleared_by_operators",
+        "A robot that comes back is told whether it is stopped, and so cleared where it is not.",
+        edit(
+            Dispatcher.report,
+            "if returned and report.robot in self.latched:\n        self._stop(report.robot, StopMode.LATCH)",
+            "if returned:\n        self._stop(report.robot, StopMode(int(report.robot in self.latched)))",
+        ),
+    ),
+    mutant(
+        "one_motion_per_robot",
+        "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
+        edit(Dispatcher._obstacle_to, "if any(entry.is_motion for", "if any(False for"),
+        edit(recipes._settle, "not context.open_commands() and ", ""),
+    ),
+    mutant(
+        "only_legal_command_states",
+        "A command that is cancelled leaves the ledger at once.",
+        edit(Ledger.feed, "if not entry.open:", "if not entry.open or feed is Feed.CANCEL:"),
+    ),
+    mutant(
+        "no_deadline_overrun",
+        "A cancel gives a command more time, instead of the time of a halt.",
+        edit(Dispatcher.cancel, "entry.deadline = now +", "entry.deadline +="),
+    ),
+    mutant(
+        "retries_bounded",
+        "A step is tried once more than allowed.",
+        edit(Act.update, "self.tries < retry.times", "self.tries <= retry.times"),
+    ),
+    mutant(
+        "halted_moves_sent_halt",
+        "Halted is what stands still, instead of what may be moving.",
+        edit(Dispatcher._book, "not in KNOWN_STILL", "in KNOWN_STILL"),
+    ),
+)
+
+WIRE = (
+    mutant(
+        "executed_numbers_rise",
+        "A board compares the epoch of a command, and not its number.",
+        edit(
+            Receipts.objection,
+            "(goal.epoch, goal.seq) <= (self.epoch, last)",
+            "goal.epoch < self.epoch",
+        ),
+        weather={"foreign_old": 30.0},
+    ),
+    mutant(
+        "no_repeat_has_effect",
+        "A board believes what the broker retained.",
+        edit(VirtualBoard.receive, "if delivery.retain:", "if False:"),
+        weather={"foreign_retained": 20.0, "reboot": 10.0},
+    ),
+    mutant(
+        "wire_targets_legal",
+        "Joint targets go out as they are, not as motor steps.",
+        edit(goals._wire_joints, "robot.quantised(command.q)", "command.q"),
+        weather="none",
+    ),
+    mutant(
+        "nothing_retained_on_commands",
+        "What must arrive is retained.",
+        edit(Board._publication, "qos=qos)", "qos=qos, retain=qos > 0)"),
+        weather="none",
+    ),
+    mutant(
+        "payload_size",
+        "The whole buffer is sent, with its terminator, instead of what was written.",
+        edit(strict.write, "return raw", "return raw.ljust(LIMIT_BYTES + 1)"),
+        weather="none",
+    ),
+    mutant(
+        "published_joints_are_reported",
+        "Where a robot is on its way is not taken over.",
+        edit(
+            Belief.merge,
+            "if value is not None:",
+            'if value is not None and (name != "q" or report.state is not MotionState.MOVING):',
+        ),
+        weather="none",
+    ),
+    mutant(
+        "nothing_shown_before_heard",
+        "An arm counts as at its reference until it is heard.",
+        edit(
+            Belief.__init__,
+            "self.q: tuple[float, ...] | None = None",
+            "self.q = robot.reference if isinstance(robot, Arm) else None",
+        ),
+        weather={"plant_crash": 3.0},
+    ),
+)
+
+PROTOCOL = (*COMMANDS, *WIRE)

@@ -1,0 +1,55 @@
+"""Looks for a mutant seed by seed, and whether the same seed breaks what is shipped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from importlib.resources import as_file, files
+
+import pytest
+
+from arboleda.app import config
+from arboleda.core.model import PlantModel
+from arboleda.simulator import watched
+from arboleda.simulator.invariants import INVARIANTS, Invariant
+from arboleda.simulator.run import Simulation
+
+from .mutant import Mutant
+
+_whole: dict[tuple[object, ...], str | None] = {}  # many mutants are found in the same weather
+
+
+@cache
+def plants() -> tuple[PlantModel, PlantModel]:
+    """Those of even and of odd seeds, as `arboleda simulate` takes them."""
+    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
+        return config.load(shared), config.load()
+
+
+def found_at(mutant: Mutant) -> int | None:
+    """The first of its seeds at which its invariant, the only one that looks, finds the bug."""
+    with pytest.MonkeyPatch.context() as patch:
+        mutant.plant(patch)
+        return next((seed for seed in mutant.seeds if _alone(mutant, seed) == mutant.invariant), None)
+
+
+def breaks_unplanted(mutant: Mutant, seed: int) -> bool:
+    """Whether its invariant breaks at that seed without the bug, too."""
+    key = (seed, mutant.cycles, mutant.rest_s, str(mutant.weather))
+    if key not in _whole:
+        _whole[key] = _broken(mutant, seed, INVARIANTS)
+    return _whole[key] is not None and _alone(mutant, seed) == mutant.invariant
+
+
+def _alone(mutant: Mutant, seed: int) -> str | None:
+    return _broken(mutant, seed, [each for each in INVARIANTS if each.name == mutant.invariant])
+
+
+def _broken(mutant: Mutant, seed: int, invariants: Sequence[Invariant]) -> str | None:
+    """The name of the invariant that breaks first."""
+    model = plants()[seed % 2]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(watched, "REST_S", mutant.rest_s)
+        simulation = Simulation(model, seed, mutant.climate(model, seed).faults, invariants=invariants)
+        broken = simulation.run(cycles=mutant.cycles).broken
+    return broken.invariant if broken else None

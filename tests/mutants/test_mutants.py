@@ -1,0 +1,28 @@
+"""The invariants bite: for each one there is a bug that it finds, and that nothing else broke it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from arboleda.simulator.invariants import INVARIANTS
+from arboleda.simulator.run import NO_EXCEPTION
+
+from .mutant import Mutant
+from .mutants import MUTANTS
+from .search import breaks_unplanted, found_at
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.invariant)
+def test_a_bug_is_found_by_the_invariant_that_it_breaks(mutant: Mutant) -> None:
+    seed = found_at(mutant)
+    assert seed is not None, f"{mutant.invariant} does not find within 200 seeds: {mutant.bug}"
+    assert not breaks_unplanted(mutant, seed), (
+        f"{mutant.invariant} breaks at seed {seed} without the bug, too"
+    )
+
+
+def test_every_invariant_has_one_mutant() -> None:
+    names = Counter(mutant.invariant for mutant in MUTANTS)
+    assert names == Counter([*(each.name for each in INVARIANTS), NO_EXCEPTION])
