@@ -1,10 +1,11 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test install lint diagrams clean help
+.PHONY: run test campaign install lint diagrams clean help
 
 export PYTHON
 BIN := .venv/bin
 PYTEST_ARGS ?= -n 4 --dist worksteal
+CYCLES ?= 10
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
@@ -12,6 +13,10 @@ run: install  ## start the simulated plant with three tasks, and keep it up unti
 test:  ## run the whole test suite; PYTEST_ARGS="-m 'not system'" for the quick part
 	@scripts/install test
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=50 for a longer one
+	$(BIN)/arboleda simulate --seeds 1000 --cycles $(CYCLES) --json campaign.json
+	$(BIN)/python scripts/campaign campaign.json
 
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
 	@scripts/install
@@ -32,4 +37,4 @@ clean:  ## remove .venv and whatever builds and tests left behind
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-9s%s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s%s\n", $$1, $$2 }' Makefile

@@ -1,0 +1,45 @@
+"""What scripts/campaign makes of a summary."""
+
+from __future__ import annotations
+
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.simulator.faults import KINDS
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "campaign"
+
+
+@pytest.fixture
+def campaign() -> Any:
+    loader = SourceFileLoader("campaign", str(SCRIPT))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def summary(**faults: int) -> dict[str, Any]:
+    """A thousand seeds that held, the first with 100 faults of each kind besides `faults`."""
+    seeds = [{"seed": number, "broken": None, "faults": {}} for number in range(1000)]
+    return {"seeds": [{**seeds[0], "faults": {**dict.fromkeys(KINDS, 100), **faults}}, *seeds[1:]]}
+
+
+def test_a_campaign_that_held_with_every_kind_of_fault_is_enough(campaign: Any) -> None:
+    assert campaign.shortcomings(summary()) == []
+
+
+def test_a_kind_that_came_too_seldom_is_named(campaign: Any) -> None:
+    assert campaign.shortcomings(summary(reboot=99)) == ["reboot came 99 times, 100 are needed"]
+
+
+def test_a_broken_seed_and_missing_seeds_are_named(campaign: Any) -> None:
+    short = summary()
+    short["seeds"][3]["broken"] = {"invariant": "stop_holds"}
+    short["seeds"].pop()
+    assert campaign.shortcomings(short) == ["seed 3 breaks stop_holds", "999 seeds, 1000 are needed"]
