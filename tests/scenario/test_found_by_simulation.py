@@ -16,6 +16,7 @@ from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
 from arboleda.testing import Rig, Witness, faults, shipped
+from arboleda.wire.bridge import FromPlant
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -327,3 +328,15 @@ def test_no_task_starts_on_an_arm_that_may_hold_a_part(rig: Rig) -> None:
     assert rig.outcomes()["t-1000-2"].state is TaskState.QUEUED
     assert rig.plant.cells["sis_a"].state is CellState.HELD
     assert witness.false_successes == []
+
+
+def test_a_bridge_that_restarted_obeys_no_superseded_orchestrator(rig: Rig) -> None:
+    rig.stall("plant", 3.0)
+    rig.crash("bridge")
+    rig.wait(0.5)
+    order = FromPlant(at=rig.now, message=SetEffector(id="998-1", robot="ra1", on=True))
+    rig.broker.clients["bridge"].inbox.append(order)
+    rig.wait(1.0)
+    body = rig.boards["ra_1"].body
+    assert isinstance(body, ArmBody)
+    assert not body.effector

@@ -26,6 +26,7 @@ class Bench:
         self.model = shipped("sis_a", **declared)
         self.now = 100.0
         self.bridge = Bridge(self.model, epoch=EPOCH, now=self.now)
+        self._beaten = False
         self._told: dict[str, Telemetry] = {}
         self.start = self.step()
 
@@ -40,9 +41,13 @@ class Bench:
         return self.step(Connection(at=self.now, client="bridge", up=up))
 
     def order(self, *commands: Command) -> list[Message]:
+        """The plant's commands; one that says who it is has been heard beating before."""
+        if not self._beaten and any(command.id for command in commands):
+            self.heartbeat()
         return self.step(*(FromPlant(at=self.now, message=command) for command in commands))
 
     def heartbeat(self, epoch: int = 7) -> list[Message]:
+        self._beaten = True
         return self.step(FromPlant(at=self.now, message=Heartbeat(epoch=epoch)))
 
     def deliver(self, address: str, payload: bytes, *, retain: bool = False) -> list[Message]:

@@ -104,12 +104,21 @@ def test_the_same_command_id_leaves_once(linked) -> None:
 
 
 def test_a_superseded_plant_is_refused(linked, reports) -> None:
+    linked.heartbeat(8)
     linked.order(move(1, epoch=8))
     (report,) = reports(linked.order(move(2, epoch=7)))
     assert (report.rejected, report.refusal) == ("7-2", "old_epoch")
 
 
+def test_a_plant_is_refused_before_it_was_heard_beating(linked, reports) -> None:
+    """A bridge that restarted does not know yet which of two plants is superseded."""
+    linked.heartbeat(0)
+    (report,) = reports(linked.order(move(1, epoch=8)))
+    assert (report.rejected, report.refusal) == ("8-1", "old_epoch")
+
+
 def test_a_stop_is_obeyed_even_from_a_superseded_plant(linked, sent) -> None:
+    linked.heartbeat(8)
     linked.order(move(1, epoch=8))
     out = linked.order(Stop(id="7-2", robot="ra1", mode=StopMode.HALT))
     assert sent(out) == [("ra_1/paro", StopGoal(mode=StopMode.HALT, seq=2, epoch=EPOCH))]

@@ -129,19 +129,15 @@ class Bridge:
         ]
 
     def _fence(self, command: Command) -> str | None:
-        """The word that refuses a superseded plant; never a stop, nor an unlabelled command."""
+        """The word that refuses any plant but the one that beats; never a stop, nor an unlabelled command."""
         if not command.id:
             return None
         match = _ID.fullmatch(command.id)
         if match is None:
             return "formato"
-        epoch = int(match[1])
-        if epoch < self._plant_epoch and not (
-            isinstance(command, Stop) and command.mode is not StopMode.CLEAR
-        ):
-            return "old_epoch"
-        self._plant_epoch = max(self._plant_epoch, epoch)
-        return None
+        if isinstance(command, Stop) and command.mode is not StopMode.CLEAR:
+            return None
+        return None if int(match[1]) == self._plant_epoch else "old_epoch"
 
     def _relay(self, at: float, heartbeat: Heartbeat) -> list[Message]:
         if heartbeat.epoch < self._plant_epoch:
