@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.core.messages import StopMode
 from arboleda.core.model import MotionState
-from arboleda.wire.payloads import EffectorGoal, HomeGoal, JointsGoal, PathGoal
+from arboleda.wire.payloads import EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
 
 ARM, CART = "ra_1", "rm_sis_a"
@@ -95,3 +96,18 @@ def test_every_command_that_is_carried_out_is_told(bench, arm):
     go(bench)
     go(bench)
     assert [goal.seq for goal in told] == [1], "the second one came twice"
+
+
+def test_a_stop_that_is_told_again_does_not_drive_the_arm_further(bench, arm):
+    def way(stops):
+        bench.reboot(ARM)
+        bench.send(ARM, Channel.HOME, HomeGoal(seq=1, epoch=50))
+        bench.run(5)
+        bench.send(ARM, Channel.JOINTS, JointsGoal(q=(90.0, 0.0, 0.0), seq=2, epoch=50))
+        bench.run(0.05)
+        for number in range(stops):
+            bench.send(ARM, Channel.STOP, StopGoal(mode=StopMode.HALT, seq=3 + number, epoch=50))
+        bench.run(5)
+        return arm.body.position
+
+    assert way(stops=5) == way(stops=1)

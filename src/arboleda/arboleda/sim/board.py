@@ -194,9 +194,9 @@ class Board:
             self.latched = False
 
     def _stop(self, *, latch: bool) -> None:
-        self._job = None
+        job, self._job = self._job, None
         self.latched = self.latched or latch
-        if self.body.moving:
+        if self.body.moving and job is not None:  # told again, a ramp on its way down would begin anew
             self.body.stop(self._now_us)
 
     @property
