@@ -185,9 +185,9 @@ class Dispatcher:
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
-        self.under_way.hear(report)
+        self.under_way.hear(report, now)
         if belief.online:
-            self._say_again(belief)
+            self._say_again(belief, now)
         self._settle_grip(belief)
         if returned and report.robot in self.latched:
             self._stop(report.robot, StopMode.LATCH)
@@ -221,14 +221,14 @@ class Dispatcher:
         self.outbox.append(command)
         self.under_way.left(command)
 
-    def _say_again(self, belief: Belief) -> None:
+    def _say_again(self, belief: Belief, now: float) -> None:
         """A robot that is heard may have missed a clear, or the last command of all."""
         name = belief.robot.name
         if name in self.unheard_clears:
             self.unheard_clears.discard(name)
             if belief.state is MotionState.STOP_LATCHED:
                 self._stop(name, StopMode.CLEAR)
-        elif self.under_way.is_overdue(name) and not self.ledger.of_robot(name):
+        elif self.under_way.is_overdue(name, now) and not self.ledger.of_robot(name):
             self._stop(name, StopMode.HALT)
 
     def _told(self, belief: Belief) -> tuple[object, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .messages import Command, Report
 from .model import Cell, Evidence, PlantModel
 
-PATIENCE = 10  # reports, a second of them, in which an arm that hears us names our last command
+PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last command
 
 
 class UnderWay:
@@ -18,7 +18,7 @@ class UnderWay:
     def __init__(self, model: PlantModel) -> None:
         self._watched = frozenset(cell.arm.name for cell in model.cells if _names_commands(cell))
         self._last: dict[str, str] = {}
-        self._heard: dict[str, int] = {}
+        self._heard_since: dict[str, float] = {}  # since it left
 
     def __contains__(self, robot: str) -> bool:
         return robot in self._last
@@ -27,20 +27,20 @@ class UnderWay:
         """A command leaves for its robot."""
         if command.robot in self._watched:
             self._last[command.robot] = command.id
-            self._heard[command.robot] = 0
+            self._heard_since.pop(command.robot, None)
 
-    def hear(self, report: Report) -> None:
+    def hear(self, report: Report, now: float) -> None:
         """A robot reports, and may name the last command."""
         last = self._last.get(report.robot)
         if last is None:
             return
-        self._heard[report.robot] += 1
+        self._heard_since.setdefault(report.robot, now)
         if last in (report.accepted, report.done, report.rejected):
             del self._last[report.robot]
 
-    def is_overdue(self, robot: str) -> bool:
+    def is_overdue(self, robot: str, now: float) -> bool:
         """Whether the last command must have been lost."""
-        return robot in self._last and self._heard[robot] >= PATIENCE
+        return robot in self._last and now >= self._heard_since.get(robot, now) + PATIENCE_S
 
 
 def _names_commands(cell: Cell) -> bool:
