@@ -23,7 +23,6 @@ class Customers:
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
         self._dice = Dice(seed, "customers")
-        self._waiting = dict.fromkeys((cell.name for cell in world.model.cells), 0)
         self._started: set[str] = set()
         self._gone = False
         self.cycles = 0

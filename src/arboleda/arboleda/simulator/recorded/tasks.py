@@ -6,9 +6,11 @@ from collections import OrderedDict
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from arboleda.core.intake import HISTORY
 from arboleda.core.messages import TaskChanged, TaskState
 
-KEPT = 500  # ended tasks that are remembered: fewer than the plant itself remembers
+SURE = 500  # accepted tasks back to which the plant remembers every one
+KEPT = HISTORY  # ended tasks that are remembered: the plant may remember as many
 OPEN = frozenset({TaskState.QUEUED, TaskState.RUNNING})
 
 
@@ -65,20 +67,25 @@ class Tasks:
     def known(self, id: str) -> KnownTask | None:
         """The task of this id, unless the plant may have forgotten it and taken the id anew."""
         task = self.open.get(id) or self.ended.get(id)
-        return task if task is not None and task.number > self._accepted - KEPT else self.open.get(id)
+        return task if task is not None and task.number > self._accepted - SURE else self.open.get(id)
 
     def take(self, said: TaskChanged, now: float, *, asked_again: bool) -> None:
         """The plant says what became of a task; `asked_again`: it may only answer a request."""
         if said.state is TaskState.REFUSED or said.cell is None:
             self.refused += 1
             return
-        task = self.known(said.task)
+        task = self.known(said.task) or self._answered(said, asked_again=asked_again)
         before = task.state if task else None
         answer = asked_again and before is said.state
         first = next(iter(self.queues[said.cell]), None)
         self.changes.append(Change(said, before, answer, first, bool(task and task.cancelled)))
         if not answer:
             self._follow(said, task, now)
+
+    def _answered(self, said: TaskChanged, *, asked_again: bool) -> KnownTask | None:
+        """An old task that the plant turns out to remember still, as it answers with how that one ended."""
+        task = self.ended.get(said.task) if asked_again else None
+        return task if task is not None and task.state is said.state else None
 
     def _follow(self, said: TaskChanged, task: KnownTask | None, now: float) -> None:
         if task is None or said.state is TaskState.QUEUED:

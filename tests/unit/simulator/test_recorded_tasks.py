@@ -1,0 +1,40 @@
+"""What the record knows of tasks that ended long ago."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.simulator.recorded.tasks import SURE, Tasks
+
+
+def say(tasks: Tasks, id: str, state: TaskState, *, asked_again: bool = False) -> None:
+    said = TaskChanged(task=id, text="sis_a 0B 7", cell="sis_a", state=state)
+    tasks.take(said, 0.0, asked_again=asked_again)
+
+
+@pytest.fixture
+def tasks() -> Tasks:
+    """One task that ended before more others than the record is sure about."""
+    tasks = Tasks(["sis_a"])
+    for number in range(SURE + 100):
+        for state in (TaskState.QUEUED, TaskState.RUNNING, TaskState.DONE):
+            say(tasks, f"lot{number}", state)
+    tasks.clear_news()
+    return tasks
+
+
+def test_an_old_task_that_is_asked_for_again_is_answered_with_how_it_ended(tasks: Tasks) -> None:
+    say(tasks, "lot0", TaskState.DONE, asked_again=True)
+    assert [(change.before, change.answer) for change in tasks.changes] == [(TaskState.DONE, True)]
+
+
+def test_an_old_task_that_ends_once_more_is_no_answer(tasks: Tasks) -> None:
+    say(tasks, "lot0", TaskState.DONE)
+    say(tasks, "lot1", TaskState.FAILED, asked_again=True)
+    assert [change.answer for change in tasks.changes] == [False, False]
+
+
+def test_an_old_id_that_the_plant_has_forgotten_may_be_a_new_task(tasks: Tasks) -> None:
+    say(tasks, "lot0", TaskState.QUEUED, asked_again=True)
+    assert [(change.before, change.answer) for change in tasks.changes] == [(None, False)]
