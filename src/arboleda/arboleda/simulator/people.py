@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import TaskChanged, TaskState, Verb
@@ -15,16 +17,20 @@ ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
 
 
 class Customers:
-    """Bring every cell its next task soon after another one left its queue, until they `go`.
+    """Bring every cell its next task soon after one of theirs left its queue, until they `go`.
 
-    `cycles` counts the tasks that started and ended.
+    They know their own tasks by the tokens of their requests. `cycles` counts the tasks, whoever asked for
+    them, that started and ended.
     """
 
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
         self._dice = Dice(seed, "customers")
+        self._asked: dict[str, Cell] = {}  # by token
+        self._waiting: set[str] = set()  # their own tasks that are in a queue
         self._started: set[str] = set()
         self._gone = False
+        self._tokens = count(1)
         self.cycles = 0
         self.outcomes: dict[str, int] = {}
         world.watchers.append(self._look)
@@ -39,18 +45,26 @@ class Customers:
     def _look(self) -> None:
         for message in self._world.moment.sent:
             if isinstance(message, TaskChanged):
-                self._follow(message)
+                if message.request is None:
+                    self._follow(message)
+                elif message.request in self._asked:
+                    self._answered(message, self._asked.pop(message.request))
+
+    def _answered(self, answer: TaskChanged, cell: Cell) -> None:
+        if answer.state is TaskState.QUEUED:
+            self._waiting.add(answer.task)
+        else:
+            self._come(cell)
 
     def _follow(self, change: TaskChanged) -> None:
-        if change.state is TaskState.QUEUED or change.cell is None:
-            return
+        if change.task in self._waiting and change.cell is not None:
+            self._waiting.discard(change.task)
+            self._come(self._world.model.cell(change.cell))
         if change.state is TaskState.RUNNING:
             self._started.add(change.task)
         elif change.task in self._started:
             self._started.discard(change.task)
             self._count(change)
-            return
-        self._come(self._world.model.cell(change.cell))
 
     def _count(self, change: TaskChanged) -> None:
         self.cycles += 1
@@ -62,7 +76,9 @@ class Customers:
 
     def _ask(self, cell: Cell) -> None:
         if not self._gone:
-            self._world.request_task(self._text(cell))
+            token = f"customer {next(self._tokens)}"
+            self._asked[token] = cell
+            self._world.request_task(self._text(cell), token)
 
     def _text(self, cell: Cell) -> str:
         if self._dice.chance(0.2):

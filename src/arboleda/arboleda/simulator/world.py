@@ -112,9 +112,9 @@ class World:
         self.start_bridge()
         self.settle()
 
-    def request_task(self, text: str) -> None:
-        """Somebody asks for a task; the plant takes it in at its next step."""
-        self.tell(TaskRequest(at=self.now, text=text, request=text))
+    def request_task(self, text: str, token: str | None = None) -> None:
+        """Somebody asks for a task; the plant takes it in at its next step, and answers with the token."""
+        self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token))
 
     def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
         """An operator acts; one who says that a robot is homed by hand has put it at its reference before."""
