@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from arboleda.core.messages import FollowPath, OperatorRequest, Verb
+from arboleda.core.model import Evidence
+from arboleda.simulator.invariants.invariant import Look
+from arboleda.simulator.invariants.motion import no_move_after_a_boot_that_was_told
 from arboleda.simulator.people import WAITING, Customers
+from arboleda.simulator.record import Record
+from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
+
+MOBILE = "rm_sis_a"
 
 
 def waiting(world: World) -> int:
@@ -42,3 +50,38 @@ def test_customers_count_what_others_asked_for():
     world.request_task("sis_a palletizing")
     world.advance(20.0)
     assert (customers.cycles, customers.outcomes) == (1, {"done": 1})
+
+
+def test_a_robot_that_boots_while_it_is_put_right_is_put_right_once_more():
+    world = World(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    look = Look(world=world, truth=Truth(world), record=Record(world))
+    driven: list[FollowPath] = []
+    wrong: list[str] = []
+    world.watchers.append(look.truth.look)
+    world.watchers.append(lambda: driven.extend(e for e in world.moment.sent if isinstance(e, FollowPath)))
+    world.watchers.append(lambda: wrong.extend(no_move_after_a_boot_that_was_told.rule(look)))
+    for act in (world.crash, world.home_by_hand, world.crash):
+        world.advance(0.5)
+        act(MOBILE)
+    world.advance(2.0)
+    world.request_task("sis_a 0B 7")
+    world.advance(1.0)
+    assert driven
+    assert wrong == []
+
+
+def test_nobody_says_that_a_robot_is_homed_while_it_moves():
+    world = World(shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True))
+    told: list[OperatorRequest] = []
+    world.watchers.append(
+        lambda: told.extend(e for e in world.moment.asked if isinstance(e, OperatorRequest))
+    )
+    world.advance(1.0)
+    world.home_by_hand(MOBILE)
+    world.request_task("sis_a 0B 7")
+    world.advance(3.0)
+    assert told == []
+    world.advance(30.0)
+    world.home_by_hand(MOBILE)
+    world.advance(1.1)
+    assert [(event.verb, event.by_hand) for event in told] == [(Verb.HOME, True)]

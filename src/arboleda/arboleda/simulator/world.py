@@ -123,8 +123,7 @@ class World:
     def home_by_hand(self, scope: str) -> None:
         """Somebody puts the still robots of a scope at their reference, then tells the plant so."""
         self.put_at_reference(scope)
-        declared = OperatorRequest(at=self.now + BY_HAND_S, verb=Verb.HOME, scope=scope, by_hand=True)
-        self.at(declared.at, self.tell, declared)
+        self.at(self.now + BY_HAND_S, self._declare_homed, scope)
 
     def put_at_reference(self, scope: str) -> None:
         """Somebody moves the still robots of a scope by hand to where their counters begin."""
@@ -373,6 +372,12 @@ class World:
             kept.pop(fact.name, None)
         else:
             kept[fact.name] = fact.value
+
+    def _declare_homed(self, scope: str) -> None:
+        """Nobody says so of a robot that moves; one that booted meanwhile is put right once more."""
+        if not any(self.boards[name].body.moving for name in self._boards_of(scope)):
+            self.put_at_reference(scope)
+            self.request_verb(Verb.HOME, scope, by_hand=True)
 
     def _boards_of(self, scope: str) -> list[str]:
         """The boards of a robot, a cell or the plant."""
