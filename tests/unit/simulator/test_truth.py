@@ -12,6 +12,8 @@ from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
 from arboleda.simulator.world import World
 from arboleda.testing import shipped
+from arboleda.wire.payloads import JointsGoal
+from arboleda.wire.units import to_wire
 
 ARM, MOBILE = "ra_1", "rm_sis_a"
 
@@ -104,6 +106,21 @@ def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
     stage.until(lambda: stage.arm.here == {"pick-up"})
     assert stage.arm.true[1] == stage.arm.intended[1] - 2
     assert stage.arm.stands_at(stage.arm.cell.pickup.q)
+
+
+@pytest.mark.parametrize(("beside", "here"), [(2, {"pick-up"}), (4, set())])
+def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
+    model = shipped("sis_a")
+    (cell,) = model.cells
+    joints, q = cell.arm.joints, cell.pickup.q
+    tolerance = (3 * joints[0].step, *cell.arm.tolerances[1:])
+    stage = Stage(replace(model, cells=(replace(cell, arm=replace(cell.arm, tolerance=tolerance)),)))
+    goal = (q[0] + beside * joints[0].step, *q[1:])
+    degrees = tuple(to_wire(joint, value) for joint, value in zip(joints, goal, strict=True))
+    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=degrees, seq=None, epoch=None))
+    stage.world.wake(ARM)
+    stage.world.advance(5.0)
+    assert (stage.arm.moving, stage.arm.here) == (False, here)
 
 
 def test_a_move_sweeps_the_zones_of_both_ends_and_those_between():

@@ -21,9 +21,9 @@ class ArmTruth(RobotTruth):
     """Positions are in motor steps per joint.
 
     `true` is where the axes are, `lost` how many steps each lost since it was last put right. Poses, zones
-    and stations have no extent here, so an arm that lost steps counts as where it would be without that:
-    `here` names the poses where it stands still in this sense, `stood` where it stood in this step if it has
-    moved on, `zones` where it is or may have swept.
+    and stations have no extent here, so an arm that lost steps counts as where it would be without that, and
+    one within its tolerance of a pose as at it: `here` names the poses where it stands still in this sense,
+    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept.
     """
 
     SIGNS = ("body.next_change_us", "boot_id", "body.effector", "body.holding")
@@ -45,6 +45,9 @@ class ArmTruth(RobotTruth):
             self._enter(pose)
         reference = (0,) * len(robot.joints)  # where homing leads; like home it lies outside all zones
         self._spots.setdefault(reference, frozenset({cell.home.name}))
+        self._is_coarse = any(
+            within >= joint.step for joint, within in zip(robot.joints, robot.tolerances, strict=True)
+        )
         self._between = NOWHERE
         self._zones_between: dict[frozenset[str], frozenset[str]] = {}
         self._ramp_us = 1e6 * RAMP_SLACK * max(j.speed / j.acceleration for j in robot.joints) + 1e5
@@ -58,9 +61,7 @@ class ArmTruth(RobotTruth):
 
     def stands_at(self, q: tuple[float, ...]) -> bool:
         """Whether it stands within its tolerance of the motor step nearest to `q`."""
-        rows = zip(self.arm.joints, self.intended, self._steps(q), self.arm.tolerances, strict=True)
-        near = all(abs(here - there) * joint.step <= within for joint, here, there, within in rows)
-        return near and self.stands
+        return self.stands and self._is_near(self.intended, self._steps(q))
 
     @property
     def stands(self) -> bool:
@@ -127,15 +128,25 @@ class ArmTruth(RobotTruth):
     def _locate(self, was_moving: bool = False) -> None:
         place = self.intended
         was_here, was_bound_for = self.here, self.goal
-        self.here = self._names.get(place, NOWHERE) if self.stands else NOWHERE
+        self.here = self._found(self._names, place) if self.stands else NOWHERE
         self.stood = self.here if self.stands else was_here
         if was_moving and not self.stands and self._arrived:
             self.stood = was_bound_for
         target = tuple(map(add, self.body.targets, self._shift)) if self.moving else place
-        self.goal = self._names.get(target, NOWHERE)
-        spot = self._spots.get(target, NOWHERE)
+        self.goal = self._found(self._names, target)
+        spot = self._found(self._spots, target)
         self._between = self._between | spot if self.moving or not spot else spot
         self.zones = self._zones_of(self._between)
+
+    def _found(self, book: dict[Steps, frozenset[str]], place: Steps) -> frozenset[str]:
+        """What a book has for a place, or for those within the arm's tolerance of it."""
+        if place in book or not self._is_coarse:
+            return book.get(place, NOWHERE)
+        return NOWHERE.union(*(names for there, names in book.items() if self._is_near(place, there)))
+
+    def _is_near(self, here: Steps, there: Steps) -> bool:
+        rows = zip(self.arm.joints, here, there, self.arm.tolerances, strict=True)
+        return all(abs(a - b) * joint.step <= within for joint, a, b, within in rows)
 
     def _zones_of(self, poses: frozenset[str]) -> frozenset[str]:
         """The zones of these poses and of the moves between them."""
