@@ -12,7 +12,7 @@ import pytest
 from arboleda.core import belief, cell, context, dispatcher, leaves, ledger, operator, plant, recipes
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import TABLE, Feed, State
-from arboleda.core.messages import Fact, OperatorRequest, StopMode, TaskState, Verb
+from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, StopMode, TaskState, Verb
 from arboleda.core.model import Arm, PlantModel, Retry
 from arboleda.core.task import Recipe
 from arboleda.sim.board import Board
@@ -600,6 +600,17 @@ def zoned() -> PlantModel:
         fixed = replace(each.palletizing, pick=pickup)
         cells.append(replace(each, pickup=pickup, palletizing=fixed, zone_wait_s=3.0))
     return replace(model, cells=tuple(cells), zones=("table",))
+
+
+def test_no_starvation__of_an_arm_that_may_still_be_told_something():
+    watch = Watch(zoned())
+    watch.world.to_bridge.troubles.append(lambda each: (0.0,) if isinstance(each, Heartbeat) else ())
+    watch.verb(Verb.RELEASE, "ra1", wait_s=7)
+    watch.task("sis_a palletizing", wait_s=3)
+    watch.world.to_bridge.troubles.clear()
+    watch.wait(30)
+    watch.end()
+    assert watch.found == {}
 
 
 def test_zone_requests_end(monkeypatch, bites):

@@ -67,13 +67,16 @@ def _ready(look: Look, cell: KnownCell) -> bool:
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:
-    """Whether the arm of a cell with shared zones is seen at a pose outside of them."""
-    arm, q = cell.cell.arm, look.record.robots[cell.cell.arm.name].q
+    """Whether the arm of a cell with shared zones is seen at a pose outside of them, and stays there."""
+    arm, known = cell.cell.arm, look.record.robots[cell.cell.arm.name]
     if not cell.cell.crossings and not any(pose.zones for pose in cell.cell.poses):
         return True
+    # until it names what it was told last, that may still be on its way and set it in motion
+    if arm.evidence is Evidence.IDS and arm.has_stop and known.unnamed is not None:
+        return False
     free = [pose for pose in cell.cell.poses if not pose.zones]
     points = [point for pose in free for point in (pose.q, pose.above) if point is not None]
-    return q is not None and any(arm.reached(q, arm.quantised(point)) for point in points)
+    return known.q is not None and any(arm.reached(known.q, arm.quantised(point)) for point in points)
 
 
 @invariant(When.WAITING)

@@ -85,6 +85,7 @@ class Commands:
         """The plant sent a command."""
         self.new.append(sent)
         command = sent.command
+        known.unnamed = command.id
         if isinstance(command, Stop):
             known.halts += command.mode is not StopMode.CLEAR
         elif not isinstance(command, SetEffector):

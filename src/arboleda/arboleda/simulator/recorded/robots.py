@@ -50,6 +50,7 @@ class KnownRobot:
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
         self.displaced = False  # it cannot report its homing, and has booted
+        self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
     def hear(self, report: Report) -> None:
         """Take over what it says now."""
@@ -67,6 +68,8 @@ class KnownRobot:
             self.state = report.state
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
+        if self.unnamed in (report.accepted, report.done, report.rejected):
+            self.unnamed = None
 
     def _hear_boot(self, report: Report) -> None:
         changed = self.boot is not None and self.boot != report.boot_id
