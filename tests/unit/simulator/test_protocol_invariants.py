@@ -13,7 +13,7 @@ from arboleda.core import belief, cell, context, dispatcher, leaves, ledger, ope
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import TABLE, Feed, State
 from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, StopMode, TaskState, Verb
-from arboleda.core.model import Arm, PlantModel, Retry
+from arboleda.core.model import Arm, Evidence, PlantModel, Retry
 from arboleda.core.task import Recipe
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
@@ -588,6 +588,17 @@ def test_no_starvation(monkeypatch, bites):
     watch = Watch()
     watch.task()
     bites(watch)
+
+
+@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
+def test_no_starvation__of_a_cell_whose_effector_is_being_opened(evidence):
+    watch = Watch(shipped("sis_a", evidence=evidence, assume_homed=evidence is Evidence.JOINTS))
+    watch.world.to_bridge.troubles.append(lambda each: (0.1,))
+    watch.wait(1)
+    watch.verb(Verb.RELEASE, "ra1")
+    watch.task(wait_s=20)
+    assert watch.found == {}
+    assert [task.state for task in watch.record.tasks.ended.values()] == [TaskState.DONE]
 
 
 def zoned() -> PlantModel:
