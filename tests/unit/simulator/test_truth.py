@@ -175,6 +175,14 @@ def test_a_part_that_falls_is_on_the_floor(stage, how, cause):
     assert (stage.places[-1], causes[-1]) == ("floor", cause)
 
 
+def test_a_task_that_is_asked_for_again_does_not_begin_again(stage):
+    stage.ask("sis_a palletizing #lot7")
+    stage.until(lambda: stage.truth.cells["sis_a"].picks == 1)
+    stage.ask("sis_a palletizing #lot7")
+    stage.until(lambda: bool(stage.truth.ended))
+    assert (stage.truth.ended[0].picks, stage.truth.ended[0].missing) == (1, None)
+
+
 def test_what_a_task_that_is_called_done_did_not_do_is_named(stage):
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.here == {"pick-up"})

@@ -226,6 +226,8 @@ class Truth:
         cell = self.cells.get(change.cell or "")
         if cell is None:
             return
+        if change.state is TaskState.RUNNING and change.task == cell.task:
+            return  # somebody asked for it again
         if change.state is TaskState.RUNNING:
             cell.begin(change.task, self._order(change.text), self.world.now)
             self.begun.append(cell)
