@@ -9,8 +9,8 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Home, Journal, SetEffector, TaskState, Verb
-from arboleda.core.model import PlantModel
+from arboleda.core.messages import FollowPath, Home, Journal, SetEffector, TaskState, Verb
+from arboleda.core.model import Evidence, PlantModel, Retry
 from arboleda.sim.arm import ArmBody
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
@@ -340,3 +340,21 @@ def test_a_bridge_that_restarted_obeys_no_superseded_orchestrator(rig: Rig) -> N
     body = rig.boards["ra_1"].body
     assert isinstance(body, ArmBody)
     assert not body.effector
+
+
+def test_a_robot_that_still_drives_an_earlier_path_gets_no_other_one() -> None:
+    """At `joints` the end of the one would be taken for that of the other."""
+    model = shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True)
+    cells = tuple(replace(cell, retry=Retry(times=1, backoff_s=0.5)) for cell in model.cells)
+    rig = Rig(replace(model, cells=cells))
+    rig.wait(0.5)
+    task = rig.submit("sis_a 0B 7").task
+    rig.wait(1.0)
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/paro"
+    rig.crash("bridge")
+    rig.wait(1.0)
+    assert rig.boards["rm_sis_a"].body.moving
+    assert len(sent(rig, FollowPath)) == 1
+    rig.wait(20.0)
+    assert rig.outcomes()[task].state is TaskState.FAILED
+    assert rig.plant.cells["sis_a"].state is CellState.IDLE

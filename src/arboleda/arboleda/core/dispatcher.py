@@ -243,13 +243,20 @@ class Dispatcher:
         if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
             return None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
-        if moving and self.beliefs[robot].supervised:
+        if moving and self._shows_its_own_end(command):
             return None  # its last code may be older than the end of its last move, which was proven
         opening = isinstance(command, SetEffector) and not command.on
         if opening and obstacle and obstacle.reason is Reason.STOPPED:
             other = self.beliefs[robot].obstacle()  # a latch hides what else is wrong
             return other if other and other.reason is not Reason.STOPPED else None
         return obstacle
+
+    def _shows_its_own_end(self, command: Command) -> bool:
+        """Whether the end of an earlier move cannot be taken for that of this command."""
+        evidence_level = self.beliefs[command.robot].robot.evidence
+        if evidence_level is Evidence.JOINTS:
+            return isinstance(command, SetEffector)
+        return evidence_level is Evidence.IDS
 
     def _grip(self, arm: str, grip: Grip) -> None:
         if self.grips.set(arm, grip):
