@@ -108,19 +108,45 @@ def test_an_arm_that_lost_a_few_steps_counts_as_where_it_would_be(stage):
     assert stage.arm.stands_at(stage.arm.cell.pickup.q)
 
 
-@pytest.mark.parametrize(("beside", "here"), [(2, {"pick-up"}), (4, set())])
-def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
-    model = shipped("sis_a")
-    (cell,) = model.cells
-    joints, q = cell.arm.joints, cell.pickup.q
-    tolerance = (3 * joints[0].step, *cell.arm.tolerances[1:])
-    stage = Stage(replace(model, cells=(replace(cell, arm=replace(cell.arm, tolerance=tolerance)),)))
-    goal = (q[0] + beside * joints[0].step, *q[1:])
+def drive_beside(stage: Stage, steps: int) -> None:
+    """Have ra1 stand so many steps of its first joint beside its pick-up, by its own count."""
+    joints, (first, *others) = stage.arm.arm.joints, stage.arm.cell.pickup.q
+    goal = (first + steps * joints[0].step, *others)
     degrees = tuple(to_wire(joint, value) for joint, value in zip(joints, goal, strict=True))
     stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=degrees, seq=None, epoch=None))
     stage.world.wake(ARM)
     stage.world.advance(5.0)
-    assert (stage.arm.moving, stage.arm.here) == (False, here)
+    assert not stage.arm.moving
+
+
+@pytest.mark.parametrize(("beside", "here"), [(2, {"pick-up"}), (4, set())])
+def test_an_arm_stands_at_a_pose_within_its_tolerance(beside, here):
+    model = shipped("sis_a")
+    (cell,) = model.cells
+    tolerance = (3 * cell.arm.joints[0].step, *cell.arm.tolerances[1:])
+    stage = Stage(replace(model, cells=(replace(cell, arm=replace(cell.arm, tolerance=tolerance)),)))
+    drive_beside(stage, beside)
+    assert stage.arm.here == here
+
+
+def test_a_part_is_gripped_where_the_axes_truly_are(stage):
+    lay_there = []
+    stage.world.watchers.append(lambda: lay_there.extend(p.lay_there for p in stage.truth.parts.passages))
+    stage.body.lose_steps(0, 5)
+    drive_beside(stage, -5)
+    stage.body.switch_effector(True)
+    stage.world.advance(0.2)
+    assert (stage.arm.here, stage.arm.holding, lay_there) == (set(), True, [True])
+
+
+def test_a_part_is_gripped_where_an_arm_stood_that_has_moved_on_in_the_same_step(stage):
+    drive_beside(stage, 0)
+    stage.body.switch_effector(True)
+    stage.body.start(round(stage.world.now * 1e6), JointsGoal(q=(0.0, 0.0, 0.0), seq=None, epoch=None))
+    stage.body.advance(round(stage.world.now * 1e6) + 100_000)
+    stage.truth.look()
+    assert not stage.arm.reaches
+    assert [passage.lay_there for passage in stage.truth.parts.passages] == [True]
 
 
 def test_a_move_sweeps_the_zones_of_both_ends_and_those_between():

@@ -59,6 +59,11 @@ class ArmTruth(RobotTruth):
         """The names of all poses that are where `q` is."""
         return self._names.get(self._steps(q), NOWHERE)
 
+    @property
+    def reaches(self) -> frozenset[str]:
+        """The names of the poses where its axes truly are, with all the steps that they lost."""
+        return self._names.get(self.true, NOWHERE)
+
     def stands_at(self, q: tuple[float, ...]) -> bool:
         """Whether it stands within its tolerance of the motor step nearest to `q`."""
         return self.stands and self._is_near(self.intended, self._steps(q))

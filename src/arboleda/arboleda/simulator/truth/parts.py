@@ -77,11 +77,12 @@ class Parts:
             del self.stations[key]
 
     def _grip(self, cell: CellTruth, arm: ArmTruth) -> None:
-        name, key = arm.robot.name, (cell.cell.name, _pick_like(arm.stood, cell, arm))
+        poses = arm.stood | arm.reaches  # by now it may have moved on
+        name, key = arm.robot.name, (cell.cell.name, _pick_like(poses, cell, arm))
         part = self.returned.pop(key, None) or Part(number=next(self._numbers), cell=cell.cell.name)
         part.counts = cell.switch is not None and cell.switch.on
         self.held[name] = part
-        lay_there = arm.on and self._at_a_pick(arm.stood, cell, arm)
+        lay_there = arm.on and self._at_a_pick(poses, cell, arm)
         passage = Passage(part=part, arm=name, cause=GRIPPED, place=EFFECTOR, lay_there=lay_there)
         self.passages.append(passage)
 
