@@ -1,1 +1,1 @@
-"""What the robots are made of: links, limits, speeds and motor steps, in `robots/*.yaml`."""
+"""What the robots are made of: numbers in `robots/*.yaml`, drawn as URDF by `urdf/*.xacro`."""

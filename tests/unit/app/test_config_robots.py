@@ -12,15 +12,16 @@ from arboleda.app.plant_file.document import Document
 from arboleda.app.plant_file.robot_models import arm_models, mobile_models
 
 NAMES = ("scara", "cr10a", "mobile")
+GROUPS = ("sizes_mm", "colors_rgba")  # mappings with one source for all that is in them
 
 
 def numbers(value: object, key: str) -> set[str]:
-    """The keys that hold numbers, at any depth."""
-    if isinstance(value, dict):
+    """The keys that hold numbers, at any depth; a group counts as one."""
+    if isinstance(value, dict) and key not in GROUPS:
         return set().union(*(numbers(each, name) for name, each in value.items()))
     if isinstance(value, list):
         return set().union(*(numbers(each, key) for each in value))
-    return {key} if isinstance(value, int | float) else set()
+    return {key} if key in GROUPS or isinstance(value, int | float) else set()
 
 
 @pytest.mark.parametrize("name", NAMES)

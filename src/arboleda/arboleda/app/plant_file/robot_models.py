@@ -17,7 +17,9 @@ from .document import Document, Place, choice
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0, le=1)]
 Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Color = Annotated[list[Share], Field(min_length=4, max_length=4)]
 Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
 
@@ -51,24 +53,40 @@ class Shape(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
 
-class ArmFile(Shape):
-    """`kind: arm`; `links_m`, `link_masses_kg` and `sources` are for the drawing and the reader."""
+class RobotFile(Shape):
+    """What each robot has: a name, joints, and what its drawing and its reader need."""
 
     model: str
-    kind: Literal["arm"]
     joints: list[Any]
     sources: dict[str, str]
+    sizes_mm: dict[str, list[Positive]] = {}
+    colors_rgba: dict[str, Color] = {}
+
+
+class ArmFile(RobotFile):
+    """`kind: arm`; `links_m` and `link_masses_kg` are for the drawing."""
+
+    kind: Literal["arm"]
     links_m: list[Positive] = []
     link_masses_kg: list[Positive] = []
 
 
-class MobileFile(Shape):
-    """`kind: mobile`."""
+class MobileFile(RobotFile):
+    """`kind: mobile`; its joints and its mass are for the drawing."""
 
-    model: str
     kind: Literal["mobile"]
     speed_mm_s: Positive
-    sources: dict[str, str]
+    mass_kg: Positive
+
+
+class SlideFile(Shape):
+    """One joint of a mobile robot, as its drawing needs it."""
+
+    name: str
+    type: Literal["prismatic"]
+    axis: Triple
+    limits_mm: Pair
+    effort_n: Positive
 
 
 class JointFile(Shape):
@@ -86,6 +104,8 @@ class JointFile(Shape):
     speed_mm_s: Positive = 0.0
     acceleration_deg_s2: Positive = 0.0
     acceleration_mm_s2: Positive = 0.0
+    effort_n_m: Positive = 0.0
+    effort_n: Positive = 0.0
     axis: Triple = []
     origin_xyz_m: Triple = []
     origin_rpy_rad: Triple = []
@@ -123,6 +143,8 @@ def _arm(document: Document) -> ArmModel:
 
 def _mobile(document: Document) -> MobileModel:
     shape = document.read(MobileFile)
+    for index in range(len(shape.joints) if shape else 0):
+        document.read(SlideFile, ("joints", index))
     document.finish()
     return MobileModel(name=document.value(("model",)), speed=millimetres(shape.speed_mm_s if shape else 0.0))
 

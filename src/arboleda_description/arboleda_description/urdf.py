@@ -1,0 +1,44 @@
+"""Robot models as URDF: `urdf/*.urdf.xacro`, processed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from importlib.resources import as_file, files
+from typing import NamedTuple
+from xml.parsers.expat import ExpatError
+
+ENDING = ".urdf.xacro"
+
+
+class Limits(NamedTuple):
+    """What a joint may do: position in rad or m, speed in rad/s or m/s."""
+
+    lower: float
+    upper: float
+    velocity: float
+
+
+def models() -> tuple[str, ...]:
+    """The models that can be rendered."""
+    names = (entry.name for entry in files("arboleda_description").joinpath("urdf").iterdir())
+    return tuple(sorted(name.removesuffix(ENDING) for name in names if name.endswith(ENDING)))
+
+
+def render(model: str, *, prefix: str, limits: Mapping[str, Limits] | None = None) -> str:
+    """The URDF of a model; `limits` by joint name without prefix replace the model's own.
+
+    ModuleNotFoundError without the xacro library; ValueError where the model has no usable urdf/*.xacro.
+    """
+    import xacro  # only who draws needs it
+
+    if model not in models():
+        raise ValueError(f"there is no urdf/{model}{ENDING}; there are {', '.join(models())}")
+    arguments = {"prefix": prefix, "limits": json.dumps(limits or {})}
+    with as_file(files("arboleda_description")) as folder:
+        try:
+            document = xacro.process_file(str(folder / "urdf" / (model + ENDING)), mappings=arguments)
+        except (xacro.XacroException, ExpatError) as error:
+            why = " ".join(str(error).split())
+            raise ValueError(f"urdf/{model}{ENDING} cannot be processed: {why}") from error
+    return '<?xml version="1.0"?>\n' + document.documentElement.toprettyxml(indent="  ")
