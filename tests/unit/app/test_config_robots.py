@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from importlib.resources import files
+from pathlib import Path
 
 import pytest
 import yaml
 
 from arboleda.app.plant_file.document import Document
-from arboleda.app.plant_file.robot_models import arm_models, mobile_models
+from arboleda.app.plant_file.robot_models import ArmFile, JointFile, MobileFile, arm_models, mobile_models
 
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "robot-models.md").read_text("utf-8")
 NAMES = ("scara", "cr10a", "mobile")
 GROUPS = ("sizes_mm", "colors_rgba")  # mappings with one source for all that is in them
 
@@ -73,3 +76,10 @@ def test_the_cr10a_keeps_the_origins_and_masses_of_its_maker() -> None:
     ]
     joints = document.value(("joints",))
     assert [(joint["origin_xyz_m"], joint["origin_rpy_rad"]) for joint in joints] == expected
+
+
+def test_the_page_on_robot_models_lists_every_key_and_no_other() -> None:
+    rows = re.findall(r"^\| (`.+?) \|", PAGE.partition("## Keys")[2].partition("## Add")[0], re.MULTILINE)
+    listed = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
+    known = {key for shape in (ArmFile, MobileFile, JointFile) for key in shape.model_fields}
+    assert listed == known

@@ -30,6 +30,7 @@ from .parts.broker import address
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
+from .urdf import robot_urdf
 from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
@@ -207,6 +208,24 @@ def tree(
         text=recipe.value, cell=name, recipe=recipe, path=where.paths[0], station=where.stations[-1]
     )
     print(unicode_tree(recipes.build(order, Plant(model, epoch=0, now=0.0).cells[name].context)), end="")
+
+
+@cli.command()
+def urdf(
+    robot: Annotated[
+        str, typer.Argument(metavar="ROBOT", help="A robot of the plant, e.g. ra1 or rm_sis_a.")
+    ],
+    plant: PlantFile = None,
+) -> None:
+    """Print a robot of the plant as URDF.
+
+    To keep it: `arboleda urdf ra1 > ra1.urdf`. Joints have the names of /joint_states, limits and speeds are
+    those of the plant file. The root link is base_link of an arm and grid_link of a mobile robot; where it
+    stands is not part of it.
+
+    Exit status: 0 printed, 1 the xacro library is missing, 2 bad input.
+    """
+    print(robot_urdf(config.load(plant), robot), end="")
 
 
 def _version(wanted: bool) -> None:

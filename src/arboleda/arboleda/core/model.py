@@ -172,6 +172,7 @@ class Arm(Robot):
 class Mobile(Robot):
     """A mobile robot on a grid; `speed` in m/s."""
 
+    model: str
     grid: Grid
     speed: float
 

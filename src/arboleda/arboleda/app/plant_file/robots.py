@@ -68,6 +68,7 @@ def mobile(document: Document, place: Place) -> Mobile | None:
         document.problem((*place, "speed_mm_s"), f"must be at most {fastest}, is {shape.speed_mm_s:g}")
     return Mobile(
         **_common(shape),
+        model=model.name,
         grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
         speed=speed,
         timeout_s=shape.timeout_s,

@@ -1,0 +1,55 @@
+"""The robots of a plant as URDF: each with its prefix, its limits and its speeds."""
+
+from __future__ import annotations
+
+from arboleda.core.errors import ConfigError, StartError
+from arboleda.core.model import Arm, Mobile, PlantModel
+from arboleda_description.urdf import Limits, render
+
+from .plant_file.document import nearest, shown
+
+NO_XACRO = (
+    "a URDF is made with the library xacro, which is not installed here; type `pip install xacro`, "
+    "or `sudo apt install ros-$ROS_DISTRO-xacro` where ROS 2 is"
+)
+
+
+def robot_urdf(plant: PlantModel, name: str) -> str:
+    """The URDF of a robot, from `root_link` outwards.
+
+    ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
+    """
+    robot = _named(plant, name)
+    try:
+        return render(robot.model, prefix=prefix(robot), limits=limits(robot))
+    except ModuleNotFoundError as error:
+        raise StartError(NO_XACRO) from error
+    except ValueError as error:
+        raise StartError(f"the model {robot.model} of {name} cannot be drawn: {error}") from error
+
+
+def prefix(robot: Arm | Mobile) -> str:
+    """What the names of its links and joints begin with, as in its `joint_states`."""
+    return f"{robot.twin if isinstance(robot, Arm) else robot.name}_"
+
+
+def root_link(robot: Arm | Mobile) -> str:
+    """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
+    return prefix(robot) + ("base_link" if isinstance(robot, Arm) else "grid_link")
+
+
+def limits(robot: Arm | Mobile) -> dict[str, Limits]:
+    """By joint name without prefix, in SI units; a mobile's joints end where its grid does."""
+    if isinstance(robot, Arm):
+        return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
+    far = robot.grid.position(robot.grid.size - 1)
+    return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
+
+
+def _named(plant: PlantModel, name: str) -> Arm | Mobile:
+    for cell in plant.cells:
+        for robot in (cell.arm, cell.mobile):
+            if robot.name == name:
+                return robot
+    known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
+    raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))

@@ -1,0 +1,28 @@
+"""A plant whose file narrows the limits and speeds of the shipped robots, and widens the grids."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import config
+from arboleda.core.model import PlantModel
+
+CHANGES = {
+    "twin: r1": "twin: r1\n      limits: {q1_deg: [-90, 80], q3_mm: [0, 60]}\n      speeds: {q2_deg_s: 30}",
+    "twin: r3": "twin: r3\n      limits: {q2_deg: [-100, 100]}\n      speeds: {q1_deg_s: 20}",
+    "yaw_deg: 180}": "yaw_deg: 30, pitch_mm: 350}\n      speed_mm_s: 50",
+}
+
+
+@pytest.fixture(scope="session")
+def narrowed(tmp_path_factory: pytest.TempPathFactory) -> PlantModel:
+    text = files("arboleda").joinpath("plants", "plant.yaml").read_text(encoding="utf-8")
+    for old, new in CHANGES.items():
+        assert old in text
+        text = text.replace(old, new)
+    file: Path = tmp_path_factory.mktemp("plant") / "narrowed.yaml"
+    file.write_text(text, encoding="utf-8")
+    return config.load(file)
