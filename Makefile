@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test campaign install lint diagrams clean help
+.PHONY: run test ros-test campaign install lint diagrams clean help
 
 export PYTHON
 BIN := .venv/bin
@@ -13,6 +13,10 @@ run: install  ## start the simulated plant with three tasks, and keep it up unti
 test:  ## run the whole test suite; PYTEST_ARGS="-m 'not system'" for the quick part
 	@scripts/install test
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
+	@scripts/install colcon
+	@.colcon/venv/bin/python scripts/ros-test
 
 campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=50 for a longer one
 	$(BIN)/arboleda simulate --seeds 1000 --cycles $(CYCLES) --json campaign.json
@@ -37,4 +41,4 @@ clean:  ## remove .venv and whatever builds and tests left behind
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s%s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s%s\n", $$1, $$2 }' Makefile

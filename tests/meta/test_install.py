@@ -11,20 +11,29 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-def install(folder: Path, python: str, **environ: str) -> subprocess.CompletedProcess[str]:
-    """Run the script in a copy of the project where `python3` is the given shell script, without uv."""
+def install(
+    folder: Path, python: str, *words: str, tools: tuple[str, ...] = (), **environ: str
+) -> subprocess.CompletedProcess[str]:
+    """Run the script in a copy of the project where `python3` is the given shell script, without uv or c++.
+
+    Programs named in `tools` are there, but do nothing.
+    """
     (folder / "scripts").mkdir()
-    shutil.copy(ROOT / "scripts/install", folder / "scripts")
+    for name in ("install", "ros-prefix"):
+        shutil.copy(ROOT / "scripts" / name, folder / "scripts")
     for name in ("pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, folder)
-    tools = folder / "tools"
-    tools.mkdir()
+    path = folder / "tools"
+    path.mkdir()
     for name in ("sh", "dirname", "cat", "cksum"):
-        (tools / name).symlink_to(str(shutil.which(name)))
-    (tools / "python3").write_text(f"#!/bin/sh\n{python}\n")
-    (tools / "python3").chmod(0o755)
-    env = {"PATH": str(tools), **environ}
-    return subprocess.run([folder / "scripts/install"], env=env, capture_output=True, text=True, check=False)
+        (path / name).symlink_to(str(shutil.which(name)))
+    for name, script in {"python3": python, **dict.fromkeys(tools, "")}.items():
+        (path / name).write_text(f"#!/bin/sh\n{script}\n")
+        (path / name).chmod(0o755)
+    command = [folder / "scripts/install", *words]
+    return subprocess.run(
+        command, env={"PATH": str(path), **environ}, capture_output=True, text=True, check=False
+    )
 
 
 def python(version: str, *, lacks: str = "nothing") -> str:
@@ -61,4 +70,18 @@ def test_a_sourced_ros_of_another_python_gets_one_sentence(tmp_path: Path) -> No
     result = install(tmp_path, python("3.11", lacks="rclpy"), ROS_DISTRO="jazzy")
     assert result.returncode == 1
     assert "ROS 2 jazzy is sourced, but Python 3.11" in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_building_messages_without_a_compiler_gets_the_line_to_type(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11"), "colcon")
+    assert result.returncode == 1
+    assert result.stderr.endswith("on Debian or Ubuntu type: sudo apt install g++\n")
+    assert result.stderr.count("\n") == 1
+
+
+def test_building_messages_without_pythons_headers_gets_the_line_to_type(tmp_path: Path) -> None:
+    result = install(tmp_path, python("3.11"), "colcon", tools=("c++",))
+    assert result.returncode == 1
+    assert result.stderr.endswith("on Debian or Ubuntu type: sudo apt install python3.11-dev\n")
     assert result.stderr.count("\n") == 1
