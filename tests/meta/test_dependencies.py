@@ -1,0 +1,42 @@
+"""Both entrances bring the same libraries: pip by pyproject.toml; ROS 2 by rosdep keys, the rest by pip too."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
+
+
+def without_comments(name: str) -> list[str]:
+    lines = (ROOT / name).read_text(encoding="utf-8").splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def asked_of_pip() -> list[str]:
+    """The dependencies of pyproject.toml, each with its bounds."""
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    block = re.search(r"^dependencies = \[\n(.*?)^\]$", text, re.MULTILINE | re.DOTALL)
+    assert block
+    return re.findall(r'^ *"([^";]+)', block[1], re.MULTILINE)
+
+
+def key(dependency: str) -> str:
+    """The rosdep key of a library, without `python3-`."""
+    name = re.split(r"[<>=]", dependency)[0].lower()
+    return {"pyyaml": "yaml"}.get(name, name)
+
+
+def test_the_requirements_beside_ros_2_have_the_bounds_of_pyproject() -> None:
+    requirements = without_comments("requirements-ros.txt")
+    assert requirements
+    assert set(requirements) <= set(asked_of_pip())
+
+
+def test_each_library_comes_by_one_way_beside_ros_2() -> None:
+    packages = [path.read_text(encoding="utf-8") for path in ROOT.glob("src/*/package.xml")]
+    keys = {found for text in packages for found in KEY.findall(text)}
+    by_pip = set(without_comments("requirements-ros.txt"))
+    ways = {name: (key(name) in keys) + (name in by_pip) for name in asked_of_pip()}
+    assert ways == dict.fromkeys(ways, 1)
