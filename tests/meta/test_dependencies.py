@@ -1,4 +1,4 @@
-"""Both entrances bring the same libraries: pip by pyproject.toml; ROS 2 by rosdep keys, the rest by pip too."""
+"""Both entrances bring the same libraries: pip by pyproject.toml; ROS 2 by rosdep keys, pip for the rest."""
 
 from __future__ import annotations
 
