@@ -34,6 +34,16 @@ def parse(text: str, plant: PlantModel) -> Order:
     return _storage(cell, words[1], words[2], task_id)
 
 
+def compose(
+    *, text: str = "", cell: str = "", recipe: str = "", path: str = "", station: str = "", id: str = ""
+) -> str:
+    """The text that filled-in fields spell, for `parse` to judge; without a recipe it is storage."""
+    stored = recipe.strip().lower() in ("", Recipe.STORAGE.value)
+    number = id.strip() and f"#{id.strip().removeprefix('#')}"
+    words = [text, cell, "" if stored else recipe, path, station, number]
+    return " ".join(word.strip() for word in words if word.strip())
+
+
 def _storage(cell: Cell, path_word: str, station_word: str, task_id: str | None) -> Order:
     code = _known(path_word, _path_codes(cell))
     if code is None:

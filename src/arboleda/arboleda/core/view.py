@@ -65,6 +65,15 @@ def step_of(tree: Behaviour | None) -> str | None:
     return f"{phase}: {step.name}" if phase == recipes.RECOVERY else step.name
 
 
+def progress_of(tree: Behaviour | None) -> float | None:
+    """The share of the work's steps that are done, 0 to 1; None where no work runs, a recovery alone too."""
+    phases = tree.children if tree is not None else ()
+    main = next((phase for phase in phases if phase.name == recipes.MAIN), None)
+    if main is None or not main.children:
+        return None
+    return sum(step.status is Status.SUCCESS for step in main.children) / len(main.children)
+
+
 def _recent(plant: Plant) -> list[Task]:
     """Every open task, and the RECENT ones that ended last to be accepted."""
     tasks = list(plant.intake.tasks.values())
@@ -81,6 +90,7 @@ def _cell(cell: CellRun, now: float) -> dict[str, Any]:
         "mobile": cell.cell.mobile.name,
         "task": _task(cell.task, now) if cell.task else None,
         "step": step_of(cell.tree),
+        "progress": progress_of(cell.tree),
         "queue": [task.id for task in cell.queue],
         "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
