@@ -70,7 +70,7 @@ def levels(rig: Rig) -> dict[str, int]:
 def test_every_robot_and_cell_has_a_level() -> None:
     rig = Rig(shipped("sis_a", "sis_b"))
     rig.wait(0.5)
-    robots = {name: OK for name in rig.model.robots}
+    robots = dict.fromkeys(rig.model.robots, OK)
     assert levels(rig) == {**robots, "sis_a": OK, "sis_b": OK}
     assert rig.operate(Verb.STOP, "sis_a") is None
     rig.wait(1.0)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arboleda.adapters.mqtt import Credentials
 from arboleda.adapters.store import Store
@@ -22,9 +22,11 @@ from .parts.broker import MQTT_PORT, OtherBroker, OwnBroker, address
 from .parts.devices import DevicesPart
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
-from .parts.web import WebPart
 from .rate import at_rate
 from .state import StateDir, default_state
+
+if TYPE_CHECKING:  # its libraries are needed only where this part is
+    from .parts.web import WebPart
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
 STORE = "plant.sqlite"
@@ -53,12 +55,8 @@ class App:
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
         self._store = Store(self._state.path / STORE)
-        self._broker = _broker(model, options, own="broker" in parts)
-        self._web = (
-            WebPart(self.snapshot, self._find, self.submit, self.operate, self._state.announce)
-            if "web" in parts
-            else None
-        )
+        self._broker = _broker(model, options, set(parts))
+        self._web = self._web_part() if "web" in parts else None
         self._link = options.link
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
@@ -146,6 +144,11 @@ class App:
             raise ArboledaError("there is no orchestrator in this process")
         return self.orchestrator
 
+    def _web_part(self) -> WebPart:
+        from .parts.web import WebPart
+
+        return WebPart(self.snapshot, self._find, self.submit, self.operate, self._state.announce)
+
     def _build(self, parts: set[str]) -> None:
         now, bridge = int(time.time()), None
         virtual, scout = "devices" in parts, "broker" not in parts
@@ -222,10 +225,12 @@ def _refuse_ros_robots(model: PlantModel) -> None:
 def _nothing() -> None: ...
 
 
-def _broker(model: PlantModel, options: Options, *, own: bool) -> OwnBroker | OtherBroker:
+def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker | OtherBroker:
+    own = "broker" in parts
     if own and model.mqtt_version != MQTT_311:
         raise StartError("the plant's own broker speaks MQTT 3.1.1 only; name another one with --broker")
     if not own:
         return OtherBroker(address(options.broker or f"127.0.0.1:{MQTT_PORT}"), options.credentials)
     boards = frozenset(robot.mqtt for robot in model.robots.values())
-    return OwnBroker(options.broker_host, options.broker_users, boards)
+    found_by_port = options.broker_users is not None or "bridge" not in parts
+    return OwnBroker(options.broker_host, options.broker_users, boards, found_by_port=found_by_port)

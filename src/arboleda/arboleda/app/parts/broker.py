@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from arboleda.adapters.broker import EmbeddedBroker
+from typing import TYPE_CHECKING
+
 from arboleda.adapters.mqtt import Address, Credentials
 from arboleda.core.errors import StartError
+
+if TYPE_CHECKING:  # its library is needed only where this broker starts
+    from arboleda.adapters.broker import EmbeddedBroker
 
 MQTT_PORT = 1883
 
@@ -21,21 +25,24 @@ class OtherBroker:
 
 
 class OwnBroker:
-    """The embedded broker."""
+    """The embedded broker; `found_by_port` where clients outside this process must find it."""
 
-    def __init__(self, host: str, users: dict[str, str] | None, boards: frozenset[str]) -> None:
+    def __init__(
+        self, host: str, users: dict[str, str] | None, boards: frozenset[str], *, found_by_port: bool
+    ) -> None:
         self.address = Address(host=host, port=MQTT_PORT)
         self.credentials: Credentials | None = None
         self._users = users
         self._boards = boards
+        self._found_by_port = found_by_port
         self._broker: EmbeddedBroker | None = None
 
     def start(self) -> None:
-        """Take port 1883; where it is taken, any free one, unless boards outside must find it."""
+        """Take port 1883; where it is taken, any free one, unless others must find it."""
         try:
             self._listen(MQTT_PORT)
         except StartError:
-            if self._users is not None:
+            if self._found_by_port:
                 raise
             self._listen(0)
 
@@ -44,6 +51,8 @@ class OwnBroker:
             self._broker.stop()
 
     def _listen(self, port: int) -> None:
+        from arboleda.adapters.broker import EmbeddedBroker
+
         host = self.address.host
         broker = EmbeddedBroker(host, port, users=self._users, boards=self._boards)
         self.address = broker.start()
