@@ -9,7 +9,10 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import httpx
 import pytest
+
+from arboleda.app.state import find_running
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 
@@ -66,11 +69,27 @@ def test_a_node_ends_cleanly_on_a_signal(start: Start, name: str, number: signal
 
 @pytest.mark.parametrize(
     ("parameter", "word"),
-    [("plant:=/not/there.yaml", "/not/there.yaml"), ("rate:=fast", "rate"), ("broker:=nowhere:x", "nowhere")],
-    ids=["plant", "rate", "broker"],
+    [
+        ("plant:=/not/there.yaml", "/not/there.yaml"),
+        ("rate:=fast", "a number is needed"),
+        ("rate:=true", "a number is needed"),
+        ("broker:=nowhere:x", "nowhere"),
+        ("broker:=embedded", "only virtual_devices"),
+    ],
+    ids=["plant", "rate", "truth as a rate", "broker", "embedded"],
 )
 def test_a_bad_parameter_is_one_sentence(start: Start, parameter: str, word: str) -> None:
     node = start("mqtt_bridge", parameter)
     said, _ = node.communicate(timeout=WAIT_S)
     assert node.returncode == 1, said
     assert word in said and "Traceback" not in said
+
+
+def test_the_dashboard_is_in_the_process_of_the_orchestrator(start: Start, tmp_path: Path) -> None:
+    start("orchestrator", "dashboard:=true")
+    until = time.monotonic() + WAIT_S
+    while (running := find_running(tmp_path)) is None or running.port is None:
+        assert time.monotonic() < until, "no HTTP API was announced"
+        time.sleep(0.05)
+    plant = httpx.get(f"http://127.0.0.1:{running.port}/api/plant").json()
+    assert [cell["name"] for cell in plant["cells"]] == ["sis_a", "sis_b", "sis_c"]

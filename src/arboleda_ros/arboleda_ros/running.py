@@ -1,0 +1,127 @@
+"""One ROS 2 node: builds its part of the plant and runs it until SIGINT or SIGTERM."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
+
+from arboleda.app.build import App, Options, build
+from arboleda.app.config import load
+from arboleda.core.errors import ArboledaError, StartError
+
+from . import missing
+from .link import Link, connect
+
+Value = str | float | bool
+EMBEDDED = "embedded"
+
+_PARAMETERS: dict[str, tuple[Value, str]] = {
+    "plant": ("", "plant file; empty: the shipped plant"),
+    "broker": ("", "MQTT broker as HOST:PORT; empty: 127.0.0.1:1883; virtual_devices: or 'embedded'"),
+    "rate": (1.0, "speed of the virtual devices, 1 is real"),
+    "state_dir": ("", "where the plant keeps its state; empty: $XDG_STATE_HOME/arboleda/<plant name>"),
+}
+_DASHBOARD: dict[str, tuple[Value, str]] = {
+    "dashboard": (False, "serve the HTTP API on a free port of this machine"),
+}
+_PARTS = {"orchestrator": "orchestrator", "mqtt_bridge": "bridge", "virtual_devices": "devices"}
+_KINDS = {float: "a number", str: "a text", bool: "true or false"}
+
+
+def run(name: str) -> int:
+    """Run the node `name` until a signal; 0 at a clean end, 1 where it cannot start."""
+    logging.basicConfig(level=logging.INFO, format="[%(levelname)s] [%(name)s]: %(message)s")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _interrupt)
+    try:
+        return _run(name)
+    except KeyboardInterrupt:
+        return 0
+    except ArboledaError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+
+
+def _run(name: str) -> int:
+    link = connect(args=sys.argv)
+    try:
+        app = _app(link, name)
+        try:
+            app.start()
+            for note in app.notes:
+                logging.info(note)
+            app.wait()
+        finally:
+            app.stop()
+    finally:
+        link.close()
+    return 0
+
+
+def _app(link: Link, name: str) -> App:
+    values = _parameters(link.node(name), name)
+    model = load(Path(values["plant"]) if values["plant"] else None)
+    parts = {_PARTS[name]}
+    if values["broker"] == EMBEDDED:
+        parts.add(_embedded(name))
+    if values.get("dashboard") and _has_web():
+        parts.add("web")
+    options = Options(
+        link=link,
+        broker=None if "broker" in parts else values["broker"] or None,
+        rate=values["rate"],
+        state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
+    )
+    return build(model, parts, options)
+
+
+def _embedded(name: str) -> str:
+    """The part that is the plant's own broker; only boards that are simulated may bring it."""
+    if name != "virtual_devices":
+        raise StartError(
+            "the parameter broker is 'embedded', which only virtual_devices can be; "
+            "start that with broker:=embedded and this with broker:=127.0.0.1:1883"
+        )
+    return "broker"
+
+
+def _has_web() -> bool:
+    """Whether the libraries of the HTTP API are there; a line in the log where they are not."""
+    try:
+        import arboleda.app.parts.web  # noqa: F401
+    except ImportError as error:
+        logging.warning("the dashboard is off: %s", missing.sentence(error))
+        return False
+    return True
+
+
+def _parameters(node: Node, name: str) -> dict[str, Any]:
+    """The node's parameters, read-only once it runs; StartError for a value of a wrong type."""
+    offered = {**_PARAMETERS, **(_DASHBOARD if name == "orchestrator" else {})}
+    for key, (default, description) in offered.items():
+        about = ParameterDescriptor(description=description, read_only=True, dynamic_typing=True)
+        node.declare_parameter(key, default, about)
+    return {key: _typed(key, node.get_parameter(key).value, default) for key, (default, _) in offered.items()}
+
+
+def _typed(key: str, value: Any, default: Value) -> Value:
+    wanted = type(default)
+    if type(value) is int and wanted is float:
+        return float(value)
+    if type(value) is not wanted:
+        raise StartError(f"the parameter {key} is {value!r}; {_KINDS[wanted]} is needed")
+    return value
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Ends the wait; a second signal must not break the clean end."""
+    for each in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_IGN)
+    raise KeyboardInterrupt
