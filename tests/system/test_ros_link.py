@@ -337,7 +337,7 @@ def test_answers_to_others_are_passed_over(links):
 
 
 def test_a_plant_that_does_not_answer_is_said_to_and_keeps_the_topics(links, monkeypatch):
-    monkeypatch.setattr("arboleda_ros.verbs.ANSWER_S", 0.1)
+    monkeypatch.setattr("arboleda_ros.asking.ANSWER_S", 0.1)
     side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
     call = operator.call("/plant/stop")
     eventually(call.done)
@@ -350,11 +350,11 @@ def test_a_plant_that_does_not_answer_is_said_to_and_keeps_the_topics(links, mon
 
 def test_a_verb_that_fails_inside_is_answered_too(links, caplog):
     side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
-    side.port._verbs._ask = lambda request: 1 / 0
+    side.port._asker._post = lambda request: 1 / 0
     call = operator.call("/plant/hold")
     eventually(call.done)
     assert (call.result().success, call.result().message) == (False, "internal error")
-    assert "the service plant/hold failed" in caplog.text
+    assert "hold plant failed" in caplog.text
 
 
 def test_a_late_listener_still_sees_the_task_status_and_the_view(links):

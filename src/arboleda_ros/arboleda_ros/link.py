@@ -21,10 +21,13 @@ from arboleda.wire.bridge import FromPlant
 
 from .bridge import BridgePort
 from .orchestrator import OrchestratorPort
+from .port import Port
 
 LOG = logging.getLogger("arboleda.ros")
 
 _SPIN_S = 1.0
+_FLUSH_S = 1.0
+_HOPS = 4  # a task that makes a task that makes a task, and one more where the executor takes the last first
 
 
 def connect(*, args: Sequence[str] = (), lan: bool = False) -> Link:
@@ -56,6 +59,7 @@ class Link:
         self._context = context
         self._executor = _executor(context)
         self._nodes: dict[str, Node] = {}
+        self._ports: list[Port] = []
         self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
         self._closing = False
         atexit.register(self.close)  # a thread still in rclpy aborts the process at its exit
@@ -70,13 +74,17 @@ class Link:
         self, model: PlantModel, on_event: Callable[[Event], None], clock: Callable[[], float]
     ) -> OrchestratorPort:
         """The plant's port; nothing arrives before `start`."""
-        return OrchestratorPort(self.node("orchestrator"), model, on_event, clock)
+        port = OrchestratorPort(self.node("orchestrator"), model, on_event, clock)
+        self._ports.append(port)
+        return port
 
     def bridge(
         self, model: PlantModel, on_event: Callable[[FromPlant], None], clock: Callable[[], float]
     ) -> BridgePort:
         """The bridge's port; nothing arrives before `start`."""
-        return BridgePort(self.node("mqtt_bridge"), model, on_event, clock)
+        port = BridgePort(self.node("mqtt_bridge"), model, on_event, clock)
+        self._ports.append(port)
+        return port
 
     def start(self) -> None:
         """Begin to deliver; a second call does nothing."""
@@ -89,15 +97,28 @@ class Link:
         """Stop delivering, join the thread and leave ROS 2; a second call does nothing."""
         if self._closing:
             return
+        for port in self._ports:
+            port.close()
+        self._flush()
         self._closing = True
         atexit.unregister(self.close)
         if self._thread.is_alive():
             self._executor.create_task(_nothing)  # ends the spin_once that waits; wake() does not
             self._thread.join()
         self._executor.shutdown()
+        for port in self._ports:
+            port.destroy()
         for node in self._nodes.values():
             node.destroy_node()
         self._context.try_shutdown()
+
+    def _flush(self) -> None:
+        """Let the executor do what it was given, and what comes of that."""
+        for _ in range(_HOPS if self._thread.is_alive() else 0):
+            done = threading.Event()
+            self._executor.create_task(done.set)
+            if not done.wait(_FLUSH_S):
+                return
 
     def _spin(self) -> None:
         # EventsExecutor.spin() of the wheels delivers nothing, spin_once does

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
+from arboleda.core import view
 from arboleda.core.errors import ArboledaError, PayloadError
 from arboleda.core.messages import (
     Command,
@@ -27,9 +29,15 @@ from arboleda.core.messages import (
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
 
 from . import convert, qos, statuses
+from .asking import Asker
 from .port import Port
 from .verbs import VerbServices
 
+if TYPE_CHECKING:  # it is there only where arboleda_interfaces is built
+    from .typed.offer import Offer
+
+LOG = logging.getLogger("arboleda.ros")
+TYPES = "arboleda_interfaces"
 Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
 
 
@@ -59,7 +67,9 @@ class OrchestratorPort(Port):
         self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
         self._view = self._speak(String, "plant/view", qos.VIEW)
         self._listen(String, "task_request", self._on_request, qos.COMMAND)
-        self._verbs = VerbServices(node, on_event, clock)
+        self._asker = Asker(on_event, clock)
+        self._verbs = VerbServices(node, self._asker)
+        self._offer = self._offered([cell.name for cell in model.cells])
         for robot in model.robots.values():
             self._hear(robot)
 
@@ -70,19 +80,48 @@ class OrchestratorPort(Port):
         elif isinstance(message, SystemStart):
             self._start.publish(UInt8(data=1))
         elif isinstance(message, TaskChanged):
-            self._task_status.publish(String(data=_task_line(message)))
+            self._task_changed(message)
         elif isinstance(message, OperatorAnswer):
-            self._verbs.answered(message)
+            self._asker.answered(message)
         elif isinstance(message, Command):
             self._command(message)
 
-    def publish_view(self, view: Mapping[str, Any]) -> None:
+    def publish_view(self, snapshot: Mapping[str, Any]) -> None:
         """Publish the snapshot; plain data that JSON can carry."""
-        self._view.publish(String(data=json.dumps(view, ensure_ascii=False)))
+        self._view.publish(String(data=json.dumps(snapshot, ensure_ascii=False)))
+        if self._offer is not None:
+            self._offer.show(snapshot)
 
     def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> None:
         """Publish one status per robot and cell; the port's own status goes out by itself."""
         self._publish_diagnostics([statuses.diagnostic(*each) for each in plain])
+
+    def close(self) -> None:
+        if self._offer is not None:
+            self._offer.close()
+
+    def destroy(self) -> None:
+        if self._offer is not None:
+            self._offer.destroy()
+
+    def _offered(self, cells: Iterable[str]) -> Offer | None:
+        """What is offered in our own types; None, with a line in the log, where they are not built."""
+        try:
+            from .typed.offer import Offer
+        except ModuleNotFoundError as error:
+            if (error.name or "").partition(".")[0] != TYPES:
+                raise
+            LOG.info(
+                "%s is not built here: no action plant/execute_task, no typed services and topics", TYPES
+            )
+            return None
+        return Offer(self._node, self._speak, cells, self._asker)
+
+    def _task_changed(self, change: TaskChanged) -> None:
+        self._task_status.publish(String(data=json.dumps(view.change(change), ensure_ascii=False)))
+        self._asker.answered(change)
+        if self._offer is not None:
+            self._offer.changed(change)
 
     def _command(self, command: Command) -> None:
         publisher = self._commands[command.robot, type(command)]
@@ -123,15 +162,3 @@ class OrchestratorPort(Port):
 
 def _piece_report(at: float, robot: Robot, message: Bool) -> Report:
     return Report(at=at, robot=robot.name, piece=message.data)
-
-
-def _task_line(change: TaskChanged) -> str:
-    line = {
-        "id": change.task,
-        "text": change.text,
-        "cell": change.cell,
-        "state": change.state.value,
-        "reason": change.reason.value if change.reason else None,
-        "sentence": change.sentence,
-    }
-    return json.dumps(line, ensure_ascii=False)

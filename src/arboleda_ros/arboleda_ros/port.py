@@ -78,6 +78,12 @@ class Port:
                 "or give this plant a ROS_DOMAIN_ID of its own"
             )
 
+    def close(self) -> None:
+        """End what others still wait for; the executor runs on until they are told."""
+
+    def destroy(self) -> None:
+        """Give back what does not end with the node; nothing is delivered any more."""
+
     def health(self) -> PortHealth:
         """The health now; a node that joined topics of this port's own is logged once."""
         topics: dict[str, list[str]] = {}

@@ -1,0 +1,79 @@
+"""Questions to the plant whose answer a ROS 2 service waits for."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotInTime
+from typing import Any
+from uuid import uuid4
+
+from arboleda.core.errors import ArboledaError
+from arboleda.core.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
+
+LOG = logging.getLogger("arboleda.ros")
+ANSWER_S = 1.0
+Question = OperatorRequest | TaskRequest
+Answer = OperatorAnswer | TaskChanged
+
+
+class NoAnswer(ArboledaError):
+    """The plant did not answer in time; what was asked may still be done."""
+
+
+class Asker:
+    """`post` gives the plant a request; its answer comes back by `answered`, from any thread.
+
+    The executor waits for it, at most ANSWER_S: the EventsExecutor of the wheels cannot await a coroutine.
+    The plant answers in its own thread, in its next step.
+    """
+
+    def __init__(self, post: Callable[[Question], None], clock: Callable[[], float]) -> None:
+        self._post = post
+        self._clock = clock
+        self._waiting: dict[str, Future[Any]] = {}
+
+    def refusal(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
+        """Have an operator's verb done; why it was not, None where it was."""
+        try:
+            answer = self._ask(
+                lambda token: OperatorRequest(
+                    at=self._clock(), verb=verb, scope=scope, by_hand=by_hand, request=token
+                )
+            )
+        except NoAnswer as error:
+            return str(error)
+        except Exception:  # a caller must not wait for an answer that never comes
+            LOG.exception("%s %s failed", verb.value, scope or "plant")
+            return "internal error"
+        return answer.refusal
+
+    def submit(self, text: str) -> TaskChanged:
+        """Ask for a task; what became of it first, refused too, or NoAnswer."""
+        return self._ask(lambda token: TaskRequest(at=self._clock(), text=text, request=token))
+
+    def submit_later(self, text: str, token: str) -> None:
+        """Ask for a task; the TaskChanged that answers carries the token."""
+        self._post(TaskRequest(at=self._clock(), text=text, request=token))
+
+    def cancel_later(self, task: str) -> None:
+        """Ask for a task to be cancelled; its changes tell what came of it."""
+        self._post(OperatorRequest(at=self._clock(), verb=Verb.CANCEL, scope=task))
+
+    def answered(self, answer: Answer) -> None:
+        """Take in an answer of the plant, to whomever it is."""
+        waiting = self._waiting.pop(answer.request or "", None)
+        if waiting is not None:
+            waiting.set_result(answer)
+
+    def _ask(self, question: Callable[[str], Question]) -> Any:
+        token, answer = uuid4().hex, Future[Any]()
+        self._waiting[token] = answer
+        try:
+            self._post(question(token))
+            return answer.result(ANSWER_S)
+        except NotInTime:
+            raise NoAnswer("the plant did not answer in time; see its state before asking again") from None
+        finally:
+            self._waiting.pop(token, None)

@@ -1,0 +1,1 @@
+"""What the orchestrator offers where arboleda_interfaces is built; only this package imports it."""

@@ -1,0 +1,183 @@
+"""Action `plant/execute_task`: a goal follows its task to the end."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from arboleda_interfaces.action import ExecuteTask
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+
+from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
+
+from ..asking import Asker
+from . import values
+
+LOG = logging.getLogger("arboleda.ros")
+_OPEN = (TaskState.QUEUED, TaskState.RUNNING)
+
+
+@dataclass(kw_only=True)
+class _Goal:
+    """A goal that has not ended; `task` is None until the plant has answered."""
+
+    handle: ServerGoalHandle
+    task: str | None = None
+    cancelling: bool = False  # asked for before there was a task to cancel
+    step: str = ""
+    progress: float = 0.0
+
+
+class _Server(ActionServer):
+    """An action server that leaves the work to others: `execute()` alone only marks a goal as executing."""
+
+    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Any) -> None:
+        """Run the callback, where there is one: it ends the goal and returns the result."""
+        if execute_callback is not None:
+            super().notify_execute(goal_handle, execute_callback)
+
+
+class ExecuteTaskAction:
+    """Goals are told what the plant says of their tasks; nothing waits, nothing polls.
+
+    Goals live on the executor's thread: `changed` and `show`, which the plant's thread calls, and `close`
+    leave their news there. A goal whose client is gone goes on as its task does.
+    """
+
+    def __init__(self, node: Node, asker: Asker) -> None:
+        self._node = node
+        self._asker = asker
+        self._goals: dict[str, _Goal] = {}
+        self._news: deque[Callable[[], None]] = deque()
+        self._closed = False
+        self._server = _Server(
+            node,
+            ExecuteTask,
+            "plant/execute_task",
+            _without_callback,
+            goal_callback=lambda _request: GoalResponse.REJECT if self._closed else GoalResponse.ACCEPT,
+            handle_accepted_callback=self._accepted,
+            cancel_callback=self._cancel,
+        )
+
+    def changed(self, change: TaskChanged) -> None:
+        """A task has changed."""
+        if self._goals:
+            self._tell(partial(self._follow, change))
+
+    def show(self, view: Mapping[str, Any]) -> None:
+        """What the cells do now."""
+        if self._goals:
+            busy = [cell for cell in view["cells"] if cell["task"]]
+            doing = {cell["task"]["id"]: (cell["step"], cell["progress"]) for cell in busy}
+            self._tell(partial(self._feed_back, doing))
+
+    def close(self) -> None:
+        """The plant has ended: no new goal is taken, and those that are open are aborted."""
+        self._closed = True
+        self._tell(self._give_up)
+
+    def destroy(self) -> None:
+        """Take the action from the graph; rclpy leaves it there when its node is destroyed."""
+        self._server.destroy()
+
+    def _tell(self, news: Callable[[], None]) -> None:
+        self._news.append(news)
+        executor = self._node.executor
+        if executor is not None:
+            executor.create_task(self._hear)
+
+    def _hear(self) -> None:
+        while self._news:  # in order, which an executor does not promise for its tasks
+            self._news.popleft()()
+
+    def _accepted(self, handle: ServerGoalHandle) -> None:
+        """A goal is a request for its task; a refusal is its result, as a rejected goal has no sentence."""
+        token = _token(handle)
+        self._goals[token] = _Goal(handle=handle)
+        self._asker.submit_later(values.text_of(handle.request), token)
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        goal = self._goals.get(_token(handle))
+        if goal is None:
+            return CancelResponse.REJECT
+        if goal.task is None:
+            goal.cancelling = True
+            return CancelResponse.ACCEPT
+        refusal = self._asker.refusal(Verb.CANCEL, goal.task)
+        if refusal is not None:
+            LOG.info("a client's cancel of #%s was refused: %s", goal.task, refusal)
+        return CancelResponse.ACCEPT if refusal is None else CancelResponse.REJECT
+
+    def _follow(self, change: TaskChanged) -> None:
+        asked = self._goals.get(change.request or "")
+        if asked is not None:
+            asked.task = change.task
+        for token, goal in list(self._goals.items()):
+            if goal.task == change.task:
+                self._advance(token, goal, change)
+
+    def _advance(self, token: str, goal: _Goal, change: TaskChanged) -> None:
+        if change.state not in _OPEN:
+            self._end(token, change)
+            return
+        if change.state is TaskState.RUNNING and goal.handle.status == GoalStatus.STATUS_ACCEPTED:
+            goal.handle.execute()
+        if goal.cancelling:
+            goal.cancelling = False
+            self._asker.cancel_later(change.task)
+
+    def _feed_back(self, doing: Mapping[str, tuple[str | None, float | None]]) -> None:
+        for goal in self._goals.values():
+            step, progress = doing.get(goal.task or "", (goal.step, None))
+            told = (step or "", goal.progress if progress is None else progress)
+            if told != (goal.step, goal.progress):
+                goal.step, goal.progress = told
+                goal.handle.publish_feedback(ExecuteTask.Feedback(step=goal.step, progress=goal.progress))
+
+    def _end(self, token: str, change: TaskChanged) -> None:
+        handle = self._goals.pop(token).handle
+        if handle.status == GoalStatus.STATUS_ACCEPTED:
+            handle.execute()  # no goal ends that was never executing
+        self._server.notify_execute(handle, partial(_ended, change))
+
+    def _give_up(self) -> None:
+        for token, goal in list(self._goals.items()):
+            self._end(
+                token,
+                TaskChanged(
+                    task=goal.task or "",
+                    text=values.text_of(goal.handle.request),
+                    cell=None,
+                    state=TaskState.FAILED,
+                    reason=Reason.INTERRUPTED,
+                    sentence="the plant has ended before this task did",
+                ),
+            )
+
+
+def _ended(change: TaskChanged, handle: ServerGoalHandle) -> ExecuteTask.Result:
+    """End the goal as its task did; `canceled` is only what a client asked for."""
+    if change.state is TaskState.DONE:
+        handle.succeed()
+    elif change.state is TaskState.CANCELLED and handle.is_cancel_requested:
+        handle.canceled()
+    else:
+        handle.abort()
+    reason = change.reason.value if change.reason else ""
+    return ExecuteTask.Result(outcome=change.state.value, reason=reason, sentence=change.sentence)
+
+
+def _without_callback(_handle: ServerGoalHandle) -> ExecuteTask.Result:
+    raise AssertionError("goals are ended by what the plant says of their tasks")
+
+
+def _token(handle: ServerGoalHandle) -> str:
+    return bytes(handle.goal_id.uuid).hex()

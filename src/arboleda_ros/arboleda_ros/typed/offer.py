@@ -1,0 +1,37 @@
+"""All that the orchestrator offers in the types of arboleda_interfaces, as one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rclpy.node import Node
+
+from arboleda.core.messages import TaskChanged
+
+from ..asking import Asker
+from .execute_task import ExecuteTaskAction
+from .services import Services
+from .topics import Speak, Topics
+
+
+class Offer:
+    """Told what the plant does, by the plant's thread; `close` and `destroy` as a port's."""
+
+    def __init__(self, node: Node, speak: Speak, cells: Iterable[str], asker: Asker) -> None:
+        self._action = ExecuteTaskAction(node, asker)
+        self._services = Services(node, asker)
+        self._topics = Topics(node, speak, cells)
+
+    def changed(self, change: TaskChanged) -> None:
+        self._action.changed(change)
+
+    def show(self, view: Mapping[str, Any]) -> None:
+        self._topics.show(view)
+        self._action.show(view)
+
+    def close(self) -> None:
+        self._action.close()
+
+    def destroy(self) -> None:
+        self._action.destroy()

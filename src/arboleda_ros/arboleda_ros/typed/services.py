@@ -1,0 +1,51 @@
+"""Services `plant/submit_task` and `plant/cell_command`."""
+
+from __future__ import annotations
+
+import logging
+
+from arboleda_interfaces.msg import Task
+from arboleda_interfaces.srv import CellCommand, SubmitTask
+from rclpy.node import Node
+
+from arboleda.core import view
+from arboleda.core.messages import TaskState, Verb
+
+from ..asking import Asker, NoAnswer
+from . import values
+
+LOG = logging.getLogger("arboleda.ros")
+_VERBS = {verb.value: verb for verb in Verb}
+
+
+class Services:
+    """Each call is answered within asking.ANSWER_S, with a sentence where it is refused."""
+
+    def __init__(self, node: Node, asker: Asker) -> None:
+        self._asker = asker
+        node.create_service(SubmitTask, "plant/submit_task", self._submit)
+        node.create_service(CellCommand, "plant/cell_command", self._command)
+
+    def _submit(self, request: SubmitTask.Request, response: SubmitTask.Response) -> SubmitTask.Response:
+        text = values.text_of(request)
+        try:
+            answer = self._asker.submit(text)
+        except NoAnswer as error:
+            response.task = Task(text=text, sentence=str(error))
+            return response
+        response.accepted = answer.state is not TaskState.REFUSED
+        response.task = values.task_message(view.change(answer))
+        return response
+
+    def _command(self, request: CellCommand.Request, response: CellCommand.Response) -> CellCommand.Response:
+        refusal = self._refusal(request)
+        response.success, response.message = refusal is None, refusal or ""
+        return response
+
+    def _refusal(self, request: CellCommand.Request) -> str | None:
+        verb = _VERBS.get(request.verb.strip().lower())
+        if verb is None:
+            return f"{request.verb[:40]!a} is no verb; there are {', '.join(_VERBS)}"
+        if request.by_hand and verb is not Verb.HOME:
+            return f"by_hand is for home only, not for {verb.value}"
+        return self._asker.refusal(verb, request.scope, by_hand=request.by_hand)

@@ -1,0 +1,23 @@
+"""Between the plant's plain data and the messages of arboleda_interfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from arboleda_interfaces.msg import Task
+
+from arboleda.core import text
+
+_TASK = ("id", "text", "cell", "state", "reason", "sentence")
+_ASKED = ("text", "cell", "recipe", "path", "station", "id")
+
+
+def task_message(plain: Mapping[str, Any]) -> Task:
+    """A task as the view shows it, or a change of one; what is not known is empty."""
+    return Task(**{key: plain[key] or "" for key in _TASK})
+
+
+def text_of(asked: Any) -> str:
+    """The task text that a goal or a request spells."""
+    return text.compose(**{key: getattr(asked, key) for key in _ASKED})
