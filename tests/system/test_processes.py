@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from arboleda.core.model import Evidence
+from arboleda.core.view import ERROR, OK, STALE
 
 from .conftest import Chain
 
@@ -43,6 +44,86 @@ def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
     parts.submit("sis_b 0A 4")
     change = parts.outcome("sis_b 0A 4")
     assert change["state"] == "done", change["sentence"]
+
+
+def diagnosed(parts: Chain, name: str) -> Callable[[], tuple[int, str] | None]:
+    """What `/diagnostics` says last of something: level and sentence."""
+    from diagnostic_msgs.msg import DiagnosticArray
+
+    if "/diagnostics" not in parts.observer.heard:
+        parts.observer.listen(DiagnosticArray, "/diagnostics")
+
+    def last() -> tuple[int, str] | None:
+        for message in reversed(parts.observer.heard["/diagnostics"]):
+            for status in message.status:
+                if status.name == f"arboleda: {name}":
+                    return status.level[0], status.message
+        return None
+
+    return last
+
+
+def verb(parts: Chain, name: str) -> tuple[bool, str]:
+    """What came of the operator's verb for the whole plant."""
+    from std_srvs.srv import Trigger
+
+    client = parts.observer.node.create_client(Trigger, f"/plant/{name}")
+    parts.observer.wait(client.service_is_ready, f"there is no service /plant/{name}")
+    call = client.call_async(Trigger.Request())
+    parts.observer.wait(call.done, f"{name} was not answered")
+    return call.result().success, call.result().message
+
+
+def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
+    chain: Callable[[Evidence], Chain],
+) -> None:
+    parts = chain(Evidence.IDS)
+    arm, mqtt = diagnosed(parts, "ra1"), diagnosed(parts, "mqtt_bridge on MQTT")
+    parts.observer.wait(lambda: arm() == (OK, "ready"), "ra1 is not ready")
+    assert mqtt() == (OK, f"connected to the MQTT broker at {parts.address}")
+    parts.submit("sis_a palletizing")
+    parts.wait_for_step("sis_a", "move to station 8")
+    parts.bridge.kill()
+    parts.observer.wait(lambda: arm() == (STALE, "ra1 is offline"), "ra1 is not stale")
+    assert not parts.robot("ra1")["online"]
+    parts.start("mqtt_bridge")
+    change = parts.outcome("sis_a palletizing")
+    assert (change["state"], change["reason"]) == ("failed", "link_lost")
+    parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "idle")
+    assert parts.robot("ra1")["effector"] is False, "the part was not brought back"
+    parts.observer.wait(lambda: arm() == (OK, "ready"), "ra1 is not ready again")
+    parts.submit("sis_a 2C 0")
+    assert parts.outcome("sis_a 2C 0")["state"] == "done"
+
+
+def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
+    chain: Callable[[Evidence], Chain],
+) -> None:
+    parts = chain(Evidence.IDS)
+    parts.submit("sis_a palletizing")
+    parts.wait_for_step("sis_a", "move to station 8")
+    parts.bridge.kill()
+    change = parts.outcome("sis_a palletizing")
+    assert (change["state"], change["reason"]) == ("failed", "link_lost")
+    parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
+    assert "ra1 is offline" in parts.cell("sis_a")["held_by"]
+    parts.start("mqtt_bridge")
+    parts.wait_for_robot("ra1", lambda robot: not robot["obstacle"])
+    arm = parts.robot("ra1")
+    assert (arm["effector"], arm["state"]) == (True, 0), "it stands still and keeps its part"
+    assert parts.cell("sis_a")["state"] == "held", "only an operator lets it move"
+    assert verb(parts, "retry") == (True, "")
+    parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "idle")
+    assert parts.robot("ra1")["effector"] is False, "the part was not brought back"
+
+
+def test_a_broker_that_is_gone_is_an_error_of_the_link(chain: Callable[[Evidence], Chain]) -> None:
+    parts = chain(Evidence.IDS)
+    mqtt = diagnosed(parts, "mqtt_bridge on MQTT")
+    parts.observer.wait(lambda: mqtt() and mqtt()[0] == OK, "the bridge does not reach its broker")
+    parts.broker.kill()
+    gone = (ERROR, f"not connected to the MQTT broker at {parts.address}")
+    parts.observer.wait(lambda: mqtt() == gone, "the loss is not told")
 
 
 @LEVELS

@@ -392,6 +392,25 @@ def test_notices_reach_other_nodes(links):
     assert (status.message, status.values[0].key, status.values[0].value) == ("silent", "node", "4")
 
 
+def test_the_bridge_tells_of_its_broker_at_once_and_again(links):
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links(), "tool")
+    heard = tool.hear(DiagnosticArray, "/diagnostics")
+    eventually(side.port._diagnostics.get_subscription_count)
+
+    def told() -> list:
+        rows = [status for message in heard for status in message.status]
+        return [(row.level, row.message) for row in rows if row.name == "arboleda: mqtt_bridge on MQTT"]
+
+    down, up = (
+        (b"\x02", "not connected to the MQTT broker at x:1"),
+        (b"\x00", "connected to the MQTT broker at x:1"),
+    )
+    side.port.mqtt_link(False, "x:1")
+    eventually(lambda: told() and told()[0] == down)
+    side.port.mqtt_link(True, "x:1")
+    eventually(lambda: told()[-2:] == [up, up])
+
+
 def test_a_command_that_no_bridge_hears_is_not_sent(links):
     side = Side(links(), "orchestrator", PLANT)
     with pytest.raises(NoBridge, match="/ra1/joint_goals_q"):

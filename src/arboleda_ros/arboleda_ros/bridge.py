@@ -16,6 +16,7 @@ from std_msgs.msg import Bool, UInt8, UInt32
 from arboleda.core.messages import Command, Heartbeat, Report
 from arboleda.core.model import Arm, Link, PlantModel, Robot
 from arboleda.wire.bridge import FromPlant
+from arboleda.wire.status import ERROR, OK
 
 from . import convert, qos, statuses
 from .port import Port
@@ -40,6 +41,7 @@ class BridgePort(Port):
     ) -> None:
         super().__init__(node, clock)
         self._on_event = on_event
+        self._mqtt: DiagnosticStatus | None = None
         robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
         for robot in robots:
             self._obey(robot)
@@ -60,6 +62,17 @@ class BridgePort(Port):
             voice.joints.publish(joints)
         if voice.piece is not None and report.piece is not None:
             voice.piece.publish(Bool(data=report.piece))
+
+    def mqtt_link(self, up: bool, broker: str) -> None:
+        """The bridge has reached or lost its broker; `/diagnostics` says so at once, then with the rest."""
+        name = f"arboleda: {self._node.get_name()} on MQTT"
+        level, words = (OK, "connected to") if up else (ERROR, "not connected to")
+        sentence = f"{words} the MQTT broker at {broker}"
+        self._mqtt = statuses.diagnostic(name, "mqtt", level, sentence, {"broker": broker})
+        self._publish_diagnostics([self._mqtt])
+
+    def _links(self) -> list[DiagnosticStatus]:
+        return [self._mqtt] if self._mqtt is not None else []
 
     def _obey(self, robot: Robot) -> None:
         for kind in convert.commands_of(robot):

@@ -101,13 +101,18 @@ class Port:
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._diagnostics.publish(message)
 
+    def _links(self) -> list[DiagnosticStatus]:
+        """What `/diagnostics` says of further links of this node."""
+        return []
+
     def _tell_health(self) -> None:
         health = self.health()
         level = ERROR if health.errors else WARN if health.warnings or health.failures else OK
         sentence = "; ".join(health.errors + health.warnings) or "ready"
         counts = {"refused": str(health.refused), "failures": str(health.failures)}
         name = f"arboleda: {self._node.get_name()} on ROS 2"
-        self._publish_diagnostics([statuses.diagnostic(name, "ros", level, sentence, counts)])
+        here = statuses.diagnostic(name, "ros", level, sentence, counts)
+        self._publish_diagnostics([here, *self._links()])
 
     def _listen(self, kind: type, topic: str, handle: Callable[[Any], None], profile: QoSProfile) -> None:
         events = qos.subscription_events(lambda policy: self._incompatible(topic, "publisher", policy))
@@ -153,8 +158,10 @@ class Port:
             f"a {what} of another node on {self._absolute(topic)} has an incompatible {policy}; "
             "nothing passes between it and this plant"
         )
-        self._warnings[sentence] = None
-        self._log_once(sentence, logging.WARNING)
+        if sentence not in self._warnings:
+            self._warnings[sentence] = None
+            self._log_once(sentence, logging.WARNING)
+            self._tell_health()
 
     def _others(self, topic: str) -> list[str]:
         names = [_full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]

@@ -184,7 +184,8 @@ class App:
                 bridge.connect(plant.loop.post)
             return
         if bridge is not None:
-            bridge.connect(link.bridge(self.model, bridge.loop.post, time.monotonic).send)
+            port = link.bridge(self.model, bridge.loop.post, time.monotonic)
+            bridge.connect(port.send, port.mqtt_link)
         if plant is not None:
             plant.connect_ros(link.orchestrator(self.model, plant.loop.post, time.monotonic))
         self._parts.insert(1, RosPart(link))

@@ -12,7 +12,7 @@ from arboleda.adapters.mqtt import MqttClient
 from arboleda.core.messages import Command, Heartbeat, Notice, Report
 from arboleda.core.model import PlantModel
 from arboleda.wire.bridge import Bridge, FromPlant
-from arboleda.wire.transport import Publication
+from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..loop import Loop
 from .part import BrokerAddress, Crash, not_sent
@@ -35,12 +35,17 @@ class BridgePart:
         self._lock = threading.Lock()
         self._ended = False
         self._report: Callable[[Report], None] = lambda report: None
+        self._tell_link: Callable[[bool, str], None] = _nobody
         self.loop: Loop[Any, Any] = Loop(
             "bridge", self._bridge, self._send, on_crash=crash, on_send_error=not_sent
         )
 
-    def connect(self, report: Callable[[Report], None]) -> None:
+    def connect(
+        self, report: Callable[[Report], None], tell_link: Callable[[bool, str], None] | None = None
+    ) -> None:
+        """Who gets the reports, and who is told whether the broker is reached, and its address."""
         self._report = report
+        self._tell_link = tell_link or _nobody
 
     def send(self, message: Command | Notice) -> None:
         """The plant's port where plant and bridge share a process."""
@@ -61,10 +66,11 @@ class BridgePart:
                 f"arboleda_bridge_{uuid4().hex[:8]}",
                 self._broker.address,
                 subscriptions=self._bridge.subscriptions,
-                on_event=self.loop.post,
+                on_event=self._heard,
                 credentials=self._broker.credentials,
                 version=self._version,
             )
+            self._tell_link(False, str(self._broker.address))
             self._client.start()
 
     def stop(self) -> None:
@@ -74,8 +80,16 @@ class BridgePart:
         if self._client is not None:
             self._client.close()
 
+    def _heard(self, event: Delivery | Connection) -> None:
+        if isinstance(event, Connection):
+            self._tell_link(event.up, str(self._broker.address))
+        self.loop.post(event)
+
     def _send(self, message: Publication | Report) -> None:
         if isinstance(message, Report):
             self._report(message)
         elif self._client is not None:
             self._client.publish(message)
+
+
+def _nobody(up: bool, broker: str) -> None: ...

@@ -1,0 +1,103 @@
+"""The bridge alone, for people with an orchestrator of their own: plain topics are its whole interface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("rclpy", "mosquitto")]
+
+JOINTS = ["r1_brazo_joint", "r1_antebrazo_joint", "r1_efector_joint"]
+
+
+class Foreigner:
+    """Publishes goals without labels or heartbeat and waits for what the robots report."""
+
+    def __init__(self, observer: Any) -> None:
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import Float32MultiArray, UInt8
+
+        self._observer = observer
+        observer.listen(UInt8, "/ra1/motion_state", "/rm_sis_a/motion_state")
+        observer.listen(JointState, "/r1/joint_states", "/rm_sis_a/joint_states")
+        arrays = ("/ra1/joint_goals_q", "/rm_sis_a/path_cmd")
+        words = ("/ra1/effector_cmd", "/ra1/stop_cmd", "/ra1/home_cmd")
+        self._publishers = {topic: observer.publisher(Float32MultiArray, topic) for topic in arrays}
+        self._publishers |= {topic: observer.publisher(UInt8, topic) for topic in words}
+
+    def say(self, topic: str, data: Any) -> None:
+        publisher = self._publishers[topic]
+        publisher.publish(publisher.msg_type(data=data))
+
+    def states(self, robot: str) -> list[int]:
+        return [message.data for message in self._observer.heard[f"/{robot}/motion_state"]]
+
+    def place(self, twin: str) -> list[float]:
+        """The measured joints now."""
+        return list(self._observer.heard[f"/{twin}/joint_states"][-1].position)
+
+    def still(self, twin: str) -> list[float]:
+        """The measured joints, once two later reports agree."""
+        heard = self._observer.heard[f"/{twin}/joint_states"]
+        seen = len(heard)
+
+        def agree() -> bool:
+            return len(heard) > seen + 1 and heard[-1].position == heard[-2].position
+
+        self._observer.wait(agree, f"{twin} does not come to rest")
+        return self.place(twin)
+
+    def wait_for_state(self, robot: str, state: int) -> None:
+        self._observer.wait(
+            lambda: self.states(robot)[-1:] == [state], f"{robot} never said {state}: {self.states(robot)}"
+        )
+
+    def wait_for_place(self, twin: str, *wanted: float) -> None:
+        def there() -> bool:
+            return bool(self._observer.heard[f"/{twin}/joint_states"]) and self.place(twin) == pytest.approx(
+                list(wanted), abs=0.02
+            )
+
+        self._observer.wait(there, f"{twin} never came to {wanted}")
+
+
+@pytest.fixture
+def foreigner(
+    node: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, observer: Any
+) -> Foreigner:
+    mosquitto(free_port)
+    node("virtual_devices", broker=f"127.0.0.1:{free_port}", rate="3")
+    node("mqtt_bridge", broker=f"127.0.0.1:{free_port}")
+    made = Foreigner(observer)
+    made.wait_for_state("ra1", 0)
+    made.wait_for_state("rm_sis_a", 0)
+    return made
+
+
+def test_plain_goals_drive_an_arm_and_a_mobile(foreigner: Foreigner, observer: Any) -> None:
+    foreigner.say("/rm_sis_a/path_cmd", [0.0, 3.0, 4.0])
+    foreigner.wait_for_place("rm_sis_a", 0.2, 0.2)
+    foreigner.wait_for_state("rm_sis_a", 0)
+    foreigner.say("/ra1/joint_goals_q", [0.5, -0.25, 0.05])
+    foreigner.wait_for_place("r1", 0.5, -0.25, 0.05)
+    foreigner.wait_for_state("ra1", 0)
+    assert 1 in foreigner.states("ra1") and 1 in foreigner.states("rm_sis_a")
+    assert observer.heard["/r1/joint_states"][-1].name == JOINTS
+
+
+def test_a_plain_stop_latches_and_a_clear_lets_go(foreigner: Foreigner) -> None:
+    foreigner.say("/ra1/joint_goals_q", [2.0, 2.0, 0.05])
+    foreigner.wait_for_state("ra1", 1)
+    foreigner.say("/ra1/stop_cmd", 1)
+    foreigner.wait_for_state("ra1", 4)
+    stopped = foreigner.still("r1")
+    assert stopped[0] < 1.9
+    foreigner.say("/ra1/joint_goals_q", [0.0, 0.0, 0.0])
+    foreigner.say("/ra1/stop_cmd", 0)
+    foreigner.wait_for_state("ra1", 0)
+    assert foreigner.still("r1") == stopped, "a goal was obeyed under the latch"
+    foreigner.say("/ra1/home_cmd", 1)
+    foreigner.wait_for_state("ra1", 1)
+    foreigner.wait_for_place("r1", 0.0, 0.0, 0.0)
