@@ -30,6 +30,8 @@ def main(name: str) -> int:
         from .running import run
 
         return run(name)
+    except KeyboardInterrupt:
+        return 0
     except ImportError as error:
         print(f"{name}: {sentence(error)}", file=sys.stderr)
         return 1

@@ -36,14 +36,12 @@ _KINDS = {float: "a number", str: "a text", bool: "true or false"}
 
 
 def run(name: str) -> int:
-    """Run the node `name` until a signal; 0 at a clean end, 1 where it cannot start."""
+    """Run the node `name` until a signal raises KeyboardInterrupt; 1 where it cannot start."""
     logging.basicConfig(level=logging.INFO, format="[%(levelname)s] [%(name)s]: %(message)s")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _interrupt)
     try:
         return _run(name)
-    except KeyboardInterrupt:
-        return 0
     except ArboledaError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 1

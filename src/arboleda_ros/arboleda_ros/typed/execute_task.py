@@ -5,13 +5,11 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from action_msgs.msg import GoalStatus
 from arboleda_interfaces.action import ExecuteTask
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
@@ -19,29 +17,10 @@ from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
 
 from ..asking import Asker
 from . import values
+from .goals import Goal, GoalServer
 
 LOG = logging.getLogger("arboleda.ros")
 _OPEN = (TaskState.QUEUED, TaskState.RUNNING)
-
-
-@dataclass(kw_only=True)
-class _Goal:
-    """A goal that has not ended; `task` is None until the plant has answered."""
-
-    handle: ServerGoalHandle
-    task: str | None = None
-    cancelling: bool = False  # asked for before there was a task to cancel
-    step: str = ""
-    progress: float = 0.0
-
-
-class _Server(ActionServer):
-    """An action server that leaves the work to others: `execute()` alone only marks a goal as executing."""
-
-    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Any) -> None:
-        """Run the callback, where there is one: it ends the goal and returns the result."""
-        if execute_callback is not None:
-            super().notify_execute(goal_handle, execute_callback)
 
 
 class ExecuteTaskAction:
@@ -54,10 +33,10 @@ class ExecuteTaskAction:
     def __init__(self, node: Node, asker: Asker) -> None:
         self._node = node
         self._asker = asker
-        self._goals: dict[str, _Goal] = {}
+        self._goals: dict[str, Goal] = {}
         self._news: deque[Callable[[], None]] = deque()
         self._closed = False
-        self._server = _Server(
+        self._server = GoalServer(
             node,
             ExecuteTask,
             "plant/execute_task",
@@ -101,7 +80,7 @@ class ExecuteTaskAction:
     def _accepted(self, handle: ServerGoalHandle) -> None:
         """A goal is a request for its task; a refusal is its result, as a rejected goal has no sentence."""
         token = _token(handle)
-        self._goals[token] = _Goal(handle=handle)
+        self._goals[token] = Goal(handle=handle)
         self._asker.submit_later(values.text_of(handle.request), token)
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
@@ -124,29 +103,23 @@ class ExecuteTaskAction:
             if goal.task == change.task:
                 self._advance(token, goal, change)
 
-    def _advance(self, token: str, goal: _Goal, change: TaskChanged) -> None:
+    def _advance(self, token: str, goal: Goal, change: TaskChanged) -> None:
         if change.state not in _OPEN:
             self._end(token, change)
             return
-        if change.state is TaskState.RUNNING and goal.handle.status == GoalStatus.STATUS_ACCEPTED:
-            goal.handle.execute()
+        if change.state is TaskState.RUNNING:
+            goal.begin()
         if goal.cancelling:
             goal.cancelling = False
             self._asker.cancel_later(change.task)
 
     def _feed_back(self, doing: Mapping[str, tuple[str | None, float | None]]) -> None:
         for goal in self._goals.values():
-            step, progress = doing.get(goal.task or "", (goal.step, None))
-            told = (step or "", goal.progress if progress is None else progress)
-            if told != (goal.step, goal.progress):
-                goal.step, goal.progress = told
-                goal.handle.publish_feedback(ExecuteTask.Feedback(step=goal.step, progress=goal.progress))
+            if goal.task in doing:
+                goal.feed_back(*doing[goal.task])
 
     def _end(self, token: str, change: TaskChanged) -> None:
-        handle = self._goals.pop(token).handle
-        if handle.status == GoalStatus.STATUS_ACCEPTED:
-            handle.execute()  # no goal ends that was never executing
-        self._server.notify_execute(handle, partial(_ended, change))
+        self._server.end(self._goals.pop(token), change)
 
     def _give_up(self) -> None:
         for token, goal in list(self._goals.items()):
@@ -161,18 +134,6 @@ class ExecuteTaskAction:
                     sentence="the plant has ended before this task did",
                 ),
             )
-
-
-def _ended(change: TaskChanged, handle: ServerGoalHandle) -> ExecuteTask.Result:
-    """End the goal as its task did; `canceled` is only what a client asked for."""
-    if change.state is TaskState.DONE:
-        handle.succeed()
-    elif change.state is TaskState.CANCELLED and handle.is_cancel_requested:
-        handle.canceled()
-    else:
-        handle.abort()
-    reason = change.reason.value if change.reason else ""
-    return ExecuteTask.Result(outcome=change.state.value, reason=reason, sentence=change.sentence)
 
 
 def _without_callback(_handle: ServerGoalHandle) -> ExecuteTask.Result:
