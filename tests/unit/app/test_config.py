@@ -104,6 +104,12 @@ def test_the_example_by_hand_listens_to_typed_motion_states() -> None:
     assert plant.cell("sis_a").palletizing.place.name == "station 8"
 
 
+def test_a_robot_may_be_only_drawn(tmp_path: Path) -> None:
+    file = tmp_path / "drawn.yaml"
+    file.write_text((EXAMPLES / "by_hand.yaml").read_text().replace("link: ros", "link: none"))
+    assert {robot.link for robot in config.load(file).robots.values()} == {Link.NONE}
+
+
 def test_the_example_joints_has_numbered_stations_with_an_approach() -> None:
     plant = config.load(EXAMPLES / "joints.yaml")
     cell = plant.cell("sis_a")

@@ -282,12 +282,13 @@ def test_faults_may_be_written_in_yaml(arboleda: Arboleda, tmp_path: Path) -> No
     assert "FAULT      reboot ra_1" in arboleda("--faults", file, "--trace").said
 
 
-def test_robots_on_ros_get_virtual_boards(arboleda: Arboleda, plant: Path) -> None:
-    plant.write_text(PLANT.replace("link: mqtt", "link: ros"))
+@pytest.mark.parametrize("link", ["ros", "none"])
+def test_robots_without_a_board_get_virtual_ones(arboleda: Arboleda, plant: Path, link: str) -> None:
+    plant.write_text(PLANT.replace("link: mqtt", f"link: {link}"))
     ended = arboleda("--seeds", 1)
     assert ended.status == 0
     assert ended.said.startswith(
-        "declared link: ros, simulated as if each had a virtual board on MQTT: ra1, rm_sis_a\n"
+        f"declared link: {link}, simulated as if each had a virtual board on MQTT: ra1, rm_sis_a\n"
     )
 
 

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.core.errors import TextError
+from arboleda.core.model import Link
 from arboleda.core.task import Order, Recipe
 from arboleda.core.text import compose, parse
 from arboleda.testing import shipped
@@ -59,6 +62,20 @@ def test_a_wrong_text_is_refused_naming_word_and_choice(text: str, names: list[s
         parse(text, SHIPPED)
     for name in names:
         assert name in str(refusal.value)
+
+
+DRAWN = replace(SHIPPED.cell("sis_a"), mobile=replace(SHIPPED.cell("sis_a").mobile, link=Link.NONE))
+
+
+def test_a_task_that_needs_a_robot_which_is_only_drawn_is_refused() -> None:
+    with pytest.raises(TextError, match=r"^rm_sis_a is only drawn \(link: none\), so sis_a cannot do this"):
+        parse("sis_a 0B 7", replace(SHIPPED, cells=(DRAWN,)))
+
+
+def test_palletizing_needs_no_mobile_robot_that_is_more_than_drawn() -> None:
+    assert parse("sis_a palletizing", replace(SHIPPED, cells=(DRAWN,))).recipe is Recipe.PALLETIZING
+    with pytest.raises(TextError, match=r"^ra1 is only drawn"):
+        parse("sis_a palletizing", shipped(link=Link.NONE))
 
 
 WORDS = st.one_of(

@@ -90,7 +90,7 @@ class Belief:
 
     @property
     def online(self) -> bool:
-        if self.state is MotionState.NO_LINK or self.stale:
+        if self.robot.link is Link.NONE or self.state is MotionState.NO_LINK or self.stale:
             return False
         return self.heard_at is not None or not self.supervised
 
@@ -128,6 +128,8 @@ class Belief:
     @property
     def trouble(self) -> Trouble | None:
         """What an obstacle is made of, without the robot's name."""
+        if self.robot.link is Link.NONE:
+            return DRAWN
         if not self.online:
             return OFFLINE if self.heard_at is not None else UNHEARD
         if not self.answered:
@@ -137,6 +139,7 @@ class Belief:
 
 
 Trouble = tuple[Reason, str]
+DRAWN = (Reason.LINK_LOST, "is only drawn (link: none)")
 OFFLINE = (Reason.LINK_LOST, "is offline")
 UNHEARD = (Reason.LINK_LOST, "was not heard yet")
 UNANSWERED = (Reason.LINK_LOST, "has a bridge that does not hear this plant yet")

@@ -237,7 +237,7 @@ class CellRun:
         return only_grip and not self.context.holding()
 
     def _unready(self) -> str | None:
-        found = [self.context.obstacle(robot.name) for robot in self.cell.robots]
+        found = [self.context.obstacle(robot.name) for robot in self.cell.reached]
         found += [self.context.astray(), self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)
 
@@ -252,7 +252,7 @@ class CellRun:
         for act in self.run.interrupted():
             if act.entry is not None and act.entry.state is State.FAILED:
                 return act.entry.failure
-        found = (self.context.obstacle(robot.name) for robot in self.cell.robots)
+        found = (self.context.obstacle(robot.name) for robot in self.cell.reached)
         return next((failure for failure in found if failure), None)
 
     def _again(self, cause: Cause) -> None:

@@ -26,7 +26,7 @@ from .messages import (
     Stop,
     StopMode,
 )
-from .model import Arm, Cell, Evidence, Mobile, MotionState, PlantModel, Pose
+from .model import Arm, Cell, Evidence, Link, Mobile, MotionState, PlantModel, Pose
 from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
@@ -170,9 +170,9 @@ class Dispatcher:
         return next(found, None)
 
     def report(self, report: Report, now: float) -> None:
-        """Merge a report and book what it proves; reports of unknown robots are ignored."""
+        """Merge a report and book what it proves; reports of unknown or only drawn robots are ignored."""
         belief = self.beliefs.get(report.robot)
-        if belief is None:
+        if belief is None or belief.robot.link is Link.NONE:
             return
         before, told = Before.of(belief), self._told(belief)
         returned = _returned(belief, report)
@@ -218,6 +218,8 @@ class Dispatcher:
         self._leave(Stop(id=self._new_id(), robot=robot, mode=mode))
 
     def _leave(self, command: Command) -> None:
+        if self.model.robots[command.robot].link is Link.NONE:
+            return
         self.outbox.append(command)
         self.under_way.left(command)
 

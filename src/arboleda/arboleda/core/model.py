@@ -18,10 +18,11 @@ class Evidence(str, Enum):
 
 
 class Link(str, Enum):
-    """How a robot is reached: MQTT through the bridge, or directly on ROS 2 topics."""
+    """How a robot is reached: MQTT through the bridge, directly on ROS 2 topics, or not: it is only drawn."""
 
     MQTT = "mqtt"
     ROS = "ros"
+    NONE = "none"
 
 
 class MotionState(int, Enum):
@@ -249,6 +250,11 @@ class Cell:
     @property
     def robots(self) -> tuple[Robot, ...]:
         return (self.arm, self.mobile)
+
+    @property
+    def reached(self) -> tuple[Robot, ...]:
+        """Its robots without those that are only drawn."""
+        return tuple(robot for robot in self.robots if robot.link is not Link.NONE)
 
     @cached_property
     def zones(self) -> frozenset[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from .errors import TextError
-from .model import Cell, PlantModel
+from .model import Cell, Link, PlantModel, Robot
 from .task import Order, Recipe
 
 LONGEST = 200
@@ -25,6 +25,7 @@ def parse(text: str, plant: PlantModel) -> Order:
         raise TextError(f"the task text is empty; {form}")
     if len(words) == 2 and words[1].lower() == Recipe.PALLETIZING.value:
         cell = _cell(words[0], plant, arms=True)
+        _check_reached(cell, cell.arm)
         return Order(text=f"{cell.name} palletizing", cell=cell.name, recipe=Recipe.PALLETIZING, id=task_id)
     cell = _cell(words[0], plant, arms=len(words) == 2)
     if len(words) == 2 and _known(words[1], _path_codes(cell)) is None:
@@ -51,6 +52,7 @@ def _storage(cell: Cell, path_word: str, station_word: str, task_id: str | None)
     stations = [str(number) for number in range(len(cell.stations))]
     if station_word not in stations:
         raise TextError(_unknown("station", station_word, stations, cell.name))
+    _check_reached(cell, *cell.robots)
     return Order(
         text=f"{cell.name} {code} {station_word}",
         cell=cell.name,
@@ -59,6 +61,14 @@ def _storage(cell: Cell, path_word: str, station_word: str, task_id: str | None)
         path=cell.path(code),
         station=cell.stations[int(station_word)],
     )
+
+
+def _check_reached(cell: Cell, *robots: Robot) -> None:
+    """TextError where the task needs a robot that is only drawn: it would never end."""
+    for robot in robots:
+        if robot.link is Link.NONE:
+            sentence = f"{robot.name} is only drawn (link: none), so {cell.name} cannot do this"
+            raise TextError(f"{sentence}; in the plant file, link: mqtt or link: ros reach a robot")
 
 
 def _split_id(words: list[str]) -> tuple[list[str], str | None]:

@@ -93,9 +93,10 @@ class Request:
     def notes(self) -> list[str]:
         """What a person should know about what is simulated."""
         robots = [robot for plant in self.plants for robot in plant.robots.values()]
-        names = ", ".join(robot.name for robot in robots if robot.link is Link.ROS)
+        names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
         instead = "simulated as if each had a virtual board on MQTT"
-        return [f"declared link: ros, {instead}: {names}"] if names else []
+        others = [link for link in (Link.ROS, Link.NONE) if names[link]]
+        return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
 
     def replay(self, seed: int) -> str:
         """The command that runs one seed again, step by step."""
