@@ -47,6 +47,11 @@ def run(name: str) -> int:
         return 1
 
 
+def offered(name: str) -> dict[str, tuple[Value, str]]:
+    """The parameters of the node `name`: each with its default and what it is."""
+    return {**_PARAMETERS, **(_DASHBOARD if name == "orchestrator" else {})}
+
+
 def _run(name: str) -> int:
     link = connect(args=sys.argv)
     try:
@@ -102,11 +107,11 @@ def _has_web() -> bool:
 
 def _parameters(node: Node, name: str) -> dict[str, Any]:
     """The node's parameters, read-only once it runs; StartError for a value of a wrong type."""
-    offered = {**_PARAMETERS, **(_DASHBOARD if name == "orchestrator" else {})}
-    for key, (default, description) in offered.items():
+    known = offered(name)
+    for key, (default, description) in known.items():
         about = ParameterDescriptor(description=description, read_only=True, dynamic_typing=True)
         node.declare_parameter(key, default, about)
-    return {key: _typed(key, node.get_parameter(key).value, default) for key, (default, _) in offered.items()}
+    return {key: _typed(key, node.get_parameter(key).value, default) for key, (default, _) in known.items()}
 
 
 def _typed(key: str, value: Any, default: Value) -> Value:

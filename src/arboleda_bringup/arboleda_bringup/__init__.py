@@ -1,0 +1,1 @@
+"""What `ros2 launch arboleda_bringup plant.launch.py` starts."""

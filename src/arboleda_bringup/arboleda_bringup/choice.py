@@ -1,0 +1,66 @@
+"""What the arguments of a launch ask for, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from arboleda.app.parts.broker import MQTT_PORT, address
+from arboleda.app.rate import check_rate
+from arboleda.core.errors import StartError
+
+from .arguments import EMBEDDED
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """The arguments as values; an empty text stands for the node's own default."""
+
+    plant: str
+    sim: bool
+    broker: str
+    orchestrator: bool
+    dashboard: bool
+    rviz: bool
+    state_dir: str
+    rate: float
+
+    @property
+    def broker_address(self) -> str:
+        """Where the bridge finds the broker, as HOST:PORT."""
+        return f"127.0.0.1:{MQTT_PORT}" if self.broker == EMBEDDED else self.broker
+
+
+def read(texts: Mapping[str, str]) -> Choice:
+    """The choice of these launch arguments by name; StartError where they do not go together."""
+    choice = Choice(
+        plant=texts["plant"],
+        sim=texts["sim"] == "true",
+        broker=texts["broker"],
+        orchestrator=texts["orchestrator"] == "true",
+        dashboard=texts["dashboard"] == "true",
+        rviz=texts["rviz"] == "true",
+        state_dir=texts["state_dir"],
+        rate=_rate(texts["rate"]),
+    )
+    _check_broker(choice)
+    if choice.rate != 1 and not choice.sim:
+        raise StartError("rate is for virtual boards (sim:=true); real ones have the speed they have")
+    return choice
+
+
+def _rate(text: str) -> float:
+    try:
+        return check_rate(float(text))
+    except ValueError:
+        raise StartError(f"'{text}' is not a rate; allowed: 0.1 to 100") from None
+
+
+def _check_broker(choice: Choice) -> None:
+    if choice.broker != EMBEDDED:
+        address(choice.broker)
+    elif not choice.sim:
+        raise StartError(
+            "broker:=embedded is for virtual boards (sim:=true); with sim:=false name the broker of "
+            "the real ones: broker:=HOST:PORT"
+        )

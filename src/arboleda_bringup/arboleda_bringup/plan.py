@@ -1,0 +1,30 @@
+"""From the arguments of a launch to what it starts: reads the plant file and the robots' descriptions."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from arboleda.app.config import load
+from arboleda.app.urdf import robot_urdf
+from arboleda_ros.link import limit_discovery
+
+from .choice import read
+from .row import Plan
+from .table import table
+
+
+def plan(texts: Mapping[str, str], share: str) -> Plan:
+    """What these arguments ask for; ArboledaError where they or the plant file are wrong.
+
+    All nodes of the launch must be on the same network, so they get what limits them to this machine.
+    """
+    choice = read(texts)
+    plant = load(Path(choice.plant) if choice.plant else None)
+    rows = table(plant, choice, urdf=partial(robot_urdf, plant), share=share)
+    limited = dict(os.environ)
+    note = limit_discovery(limited, lan=False)
+    added = {name: value for name, value in limited.items() if name not in os.environ}
+    return Plan(rows=rows, environment=added, notes=[note] if note else [])

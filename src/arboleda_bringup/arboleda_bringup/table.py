@@ -1,0 +1,72 @@
+"""Which nodes a launch starts: one plain row for each, made from the plant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from arboleda.app.urdf import root_link
+from arboleda.core.model import Arm, Link, Mobile, PlantModel
+
+from .choice import Choice
+from .row import Row, Value
+
+WORLD = "world"
+RVIZ_CONFIG = "rviz/plant.rviz"  # in the share folder of this package
+
+
+def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], share: str) -> list[Row]:
+    """The nodes of a plant; `urdf` describes a robot by its name, `share` is this package's folder."""
+    robots = [robot for cell in plant.cells for robot in (cell.arm, cell.mobile)]
+    rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))]
+    rows += _plant(choice)
+    if choice.rviz:
+        rows.append(Row(package="rviz2", executable="rviz2", arguments=("-d", f"{share}/{RVIZ_CONFIG}")))
+    return rows
+
+
+def namespace(robot: Arm | Mobile) -> str:
+    """Where a robot's joint states and description are: under the twin of an arm, the name of a mobile."""
+    return robot.twin if isinstance(robot, Arm) else robot.name
+
+
+def _shown(robot: Arm | Mobile, urdf: str) -> list[Row]:
+    """What draws a robot; its joints are published here only where nobody else does."""
+    described = {"robot_description": urdf}
+    rows = [_named("robot_state_publisher", robot, parameters=described), _placed(robot)]
+    if robot.link is Link.NONE:
+        rows.append(_named("joint_state_publisher", robot))
+    return rows
+
+
+def _named(package: str, robot: Arm | Mobile, **more: Any) -> Row:
+    """The executable of the same name as its package, in the robot's namespace."""
+    return Row(package=package, executable=package, namespace=namespace(robot), **more)
+
+
+def _placed(robot: Arm | Mobile) -> Row:
+    place = robot.base if isinstance(robot, Arm) else robot.grid.origin
+    x, y, yaw = (str(value) for value in (place.x, place.y, place.yaw))
+    frames = ("--frame-id", WORLD, "--child-frame-id", root_link(robot))
+    return Row(
+        package="tf2_ros",
+        executable="static_transform_publisher",
+        namespace=namespace(robot),
+        arguments=("--x", x, "--y", y, "--z", "0.0", "--yaw", yaw, *frames),
+    )
+
+
+def _plant(choice: Choice) -> list[Row]:
+    """The executables of arboleda_ros, as the plant is put together with these arguments."""
+    rows = []
+    if choice.sim:
+        rows.append(_part("virtual_devices", choice, broker=choice.broker))
+    rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address))
+    if choice.orchestrator:
+        rows.append(_part("orchestrator", choice, dashboard=choice.dashboard))
+    return rows
+
+
+def _part(executable: str, choice: Choice, **more: Value) -> Row:
+    common = {"plant": choice.plant, "state_dir": choice.state_dir, "rate": choice.rate}
+    return Row(package="arboleda_ros", executable=executable, parameters={**common, **more}, required=True)
