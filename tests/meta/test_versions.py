@@ -27,5 +27,5 @@ def test_every_package_names_the_version_of_pyproject() -> None:
     ]
     files.append(ROOT / "src/arboleda/arboleda/__init__.py")
     versions = {str(path.relative_to(ROOT)): version_in(path) for path in files}
-    assert len(versions) >= 8
+    assert len(versions) >= 10
     assert set(versions.values()) == {version_in(ROOT / "pyproject.toml")}, versions

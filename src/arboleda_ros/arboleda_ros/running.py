@@ -14,6 +14,7 @@ from rclpy.node import Node
 
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
+from arboleda.app.parts.broker import login
 from arboleda.core.errors import ArboledaError, StartError
 
 from . import missing
@@ -79,6 +80,7 @@ def _app(link: Link, name: str) -> App:
     options = Options(
         link=link,
         broker=None if "broker" in parts else values["broker"] or None,
+        credentials=login(),
         rate=values["rate"],
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
     )

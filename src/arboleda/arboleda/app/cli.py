@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from dataclasses import replace
 from enum import Enum
@@ -16,7 +15,6 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda import __version__
-from arboleda.adapters.mqtt import Credentials
 from arboleda.core import recipes, text
 from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
 from arboleda.core.model import PlantModel
@@ -26,7 +24,7 @@ from arboleda.core.task import Order, Recipe
 from . import config, session, verbs
 from .build import PARTS, Options, build
 from .client import Refused
-from .parts.broker import address
+from .parts.broker import PASSWORD, USER, address, login
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
@@ -34,10 +32,6 @@ from .urdf import robot_urdf
 from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
-USER, PASSWORD = (
-    "ARBOLEDA_MQTT_USER",
-    "ARBOLEDA_MQTT_PASSWORD",
-)  # not options: anybody can read a command line
 
 cli = typer.Typer(
     help="Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2.",
@@ -266,13 +260,11 @@ def _options(
         )
     if (host is None) != (users is None):
         raise typer.BadParameter("--broker-host and --broker-users go together: who may log in, and where")
-    user = os.environ.get(USER)
-    credentials = Credentials(user=user, password=os.environ.get(PASSWORD, "")) if user else None
     return Options(
         broker=broker,
         broker_host=host or "127.0.0.1",
         broker_users=config.broker_users(users) if users else None,
-        credentials=credentials,
+        credentials=login(),
         rate=rate,
         state_dir=state,
     )

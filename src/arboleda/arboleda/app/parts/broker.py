@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 from arboleda.adapters.mqtt import Address, Credentials
@@ -11,6 +12,13 @@ if TYPE_CHECKING:  # its library is needed only where this broker starts
     from arboleda.adapters.broker import EmbeddedBroker
 
 MQTT_PORT = 1883
+USER, PASSWORD = "ARBOLEDA_MQTT_USER", "ARBOLEDA_MQTT_PASSWORD"  # anybody can read a command line
+
+
+def login() -> Credentials | None:
+    """Who this process is for a broker that asks, from the environment; None where it names no user."""
+    user = os.environ.get(USER)
+    return Credentials(user=user, password=os.environ.get(PASSWORD, "")) if user else None
 
 
 class OtherBroker:
