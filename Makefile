@@ -29,7 +29,7 @@ lint:  ## check style, format and the import rules
 	@scripts/install test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/lint-imports
+	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core
 	@scripts/install
