@@ -64,12 +64,18 @@ class Foreigner:
 
 
 @pytest.fixture
-def foreigner(
-    node: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, observer: Any
-) -> Foreigner:
-    mosquitto(free_port)
+def broker(mosquitto: Callable[[int], Any], free_port: int) -> Any:
+    return mosquitto(free_port)
+
+
+@pytest.fixture
+def bridge(node: Callable[..., Any], broker: Any, free_port: int) -> Any:
     node("virtual_devices", broker=f"127.0.0.1:{free_port}", rate="3")
-    node("mqtt_bridge", broker=f"127.0.0.1:{free_port}")
+    return node("mqtt_bridge", broker=f"127.0.0.1:{free_port}")
+
+
+@pytest.fixture
+def foreigner(bridge: Any, observer: Any) -> Foreigner:
     made = Foreigner(observer)
     made.wait_for_state("ra1", 0)
     made.wait_for_state("rm_sis_a", 0)
@@ -101,3 +107,10 @@ def test_a_plain_stop_latches_and_a_clear_lets_go(foreigner: Foreigner) -> None:
     foreigner.say("/ra1/home_cmd", 1)
     foreigner.wait_for_state("ra1", 1)
     foreigner.wait_for_place("r1", 0.0, 0.0, 0.0)
+
+
+def test_a_bridge_that_is_ended_halts_what_moves(foreigner: Foreigner, bridge: Any, broker: Any) -> None:
+    foreigner.say("/ra1/joint_goals_q", [2.0, 2.0, 0.05])
+    foreigner.wait_for_state("ra1", 1)
+    bridge.interrupt()
+    broker.wait_for("'ra_1/paro'")

@@ -6,6 +6,7 @@ import pytest
 
 from arboleda.core.messages import Command, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import MotionState
+from arboleda.wire.bridge import Leaving
 from arboleda.wire.payloads import EffectorGoal, StopGoal
 
 EPOCH = 1_000
@@ -54,6 +55,17 @@ def test_clear_lets_goals_through_again(stopped, sent) -> None:
         ("ra_1/paro", StopGoal(mode=StopMode.CLEAR, seq=2, epoch=EPOCH))
     ]
     assert len(sent(stopped.order(Home(id="7-1", robot="ra1")))) == 2
+
+
+def test_a_bridge_that_leaves_halts_what_moves(linked, sent) -> None:
+    linked.order(MoveJoints(id="7-1", robot="ra1", q=(0.5, 0.0, 0.0)))
+    halt = [("ra_1/paro", StopGoal(mode=StopMode.HALT, seq=2, epoch=EPOCH))]
+    assert sent(linked.step(Leaving(at=linked.now))) == halt
+    assert sent(linked.step(Leaving(at=linked.now))) == []
+
+
+def test_a_bridge_that_leaves_says_nothing_to_boards_at_rest(linked, sent) -> None:
+    assert sent(linked.step(Leaving(at=linked.now))) == []
 
 
 def test_a_halt_latches_nothing(linked, sent) -> None:

@@ -78,6 +78,12 @@ class Board:
             return []
         return [self._report(at, state=None if self.link.up else MotionState.NO_LINK)]
 
+    def halt(self, at: float) -> list[Message]:
+        """End the motion that is open, unless it was told to end."""
+        if self._motion is None or self._motion.stopping or not self.robot.has_stop:
+            return []
+        return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.HALT))
+
     def hear_plant(self, at: float, epoch: int) -> list[Message]:
         """A heartbeat: a plant that was not heard before is told so, with what the board said last."""
         if epoch == self._plant:

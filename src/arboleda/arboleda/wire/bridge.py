@@ -31,7 +31,14 @@ class FromPlant:
     message: Command | Heartbeat
 
 
-Event = FromPlant | Delivery | Connection
+@dataclass(frozen=True, kw_only=True)
+class Leaving:
+    """The bridge is about to end; nobody will hear what its boards report."""
+
+    at: float
+
+
+Event = FromPlant | Delivery | Connection | Leaving
 
 
 class Bridge:
@@ -94,6 +101,8 @@ class Bridge:
         if isinstance(event, Connection):
             changed = [board.connection(event.at, event.up) for board in self._boards.values()]
             return [message for messages in changed for message in messages]
+        if isinstance(event, Leaving):
+            return [message for board in self._boards.values() for message in board.halt(event.at)]
         if isinstance(event.message, Heartbeat):
             return self._relay(event.at, event.message)
         return self._command(event.at, event.message)

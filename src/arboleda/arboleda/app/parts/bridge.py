@@ -11,7 +11,7 @@ from uuid import uuid4
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.core.messages import Command, Heartbeat, Notice, Report
 from arboleda.core.model import PlantModel
-from arboleda.wire.bridge import Bridge, FromPlant
+from arboleda.wire.bridge import Bridge, FromPlant, Leaving
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..loop import Loop
@@ -74,6 +74,8 @@ class BridgePart:
             self._client.start()
 
     def stop(self) -> None:
+        """Halt what still moves, then leave; the plant may be another process that has ended already."""
+        self.loop.post(Leaving(at=time.monotonic()))
         self.loop.stop()
         with self._lock:
             self._ended = True
