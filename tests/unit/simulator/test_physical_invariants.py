@@ -20,7 +20,7 @@ from arboleda.core.zones import Zones
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.invariants.grip import GRIP
-from arboleda.simulator.invariants.invariant import Look, occasions
+from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.invariants.motion import MOTION
 from arboleda.simulator.invariants.stop import STOP
 from arboleda.simulator.invariants.zones import ZONES
@@ -78,11 +78,8 @@ class Watch:
 
     def _check(self) -> None:
         self.truth.look()
-        occasion = set(occasions(self._look))
-        for each in INVARIANTS:
-            if each.when in occasion:
-                for sentence in each.rule(self._look):
-                    self.found.setdefault(each.name, []).append(sentence)
+        for name, sentence in Judges(INVARIANTS).after_a_step(self._look):
+            self.found.setdefault(name, []).append(sentence)
 
 
 def zoned() -> PlantModel:

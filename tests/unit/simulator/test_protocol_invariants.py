@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.books import BOOKS
 from arboleda.simulator.invariants.commands import COMMANDS
-from arboleda.simulator.invariants.invariant import Look, When, occasions
+from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.invariants.liveness import LIVENESS
 from arboleda.simulator.invariants.tasks import TASKS
 from arboleda.simulator.invariants.wire import WIRE
@@ -61,17 +61,15 @@ class Watch:
 
     def end(self) -> None:
         """Look at what must hold once everything is at rest."""
-        self._apply(When.END)
+        self._note(Judges(INVARIANTS).at_the_end(self._look))
 
     def _check(self) -> None:
         self._look.record.look()
-        for when in occasions(self._look):
-            self._apply(when)
+        self._note(Judges(INVARIANTS).after_a_step(self._look))
 
-    def _apply(self, when: When) -> None:
-        for each in INVARIANTS:
-            for sentence in each.rule(self._look) if each.when is when else ():
-                self.found.setdefault(each.name, []).append(sentence)
+    def _note(self, breaches: Iterable[tuple[str, str]]) -> None:
+        for name, sentence in breaches:
+            self.found.setdefault(name, []).append(sentence)
 
 
 @pytest.fixture

@@ -41,6 +41,7 @@ class Record:
 
     `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `news`: whether
     something changed in it besides what robots report, or it is time to look at everything again.
+    `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
     `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
     until then. `answers` and `transitions` (cell, state before, state after) are of this step;
     `differences` are what a step changed in which everything asked was refused and nothing was heard.
@@ -63,7 +64,7 @@ class Record:
         self.differences: list[str] = []
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
         self.idle: list[KnownCell] = []  # with tasks in the queue
-        self.stepped = self.news = self.born = False
+        self.stepped = self.news = self.born = self.told = False
         self._cells = tuple(self.cells.values())
         self._look_again_at = 0.0
         self._has_news = False
@@ -79,6 +80,8 @@ class Record:
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
         moment, plant = self.world.moment, self.world.plant
+        if self._has_news:
+            self._clear_news()
         if moment.delivered or moment.executed:
             self._look_at_boards()
         if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
@@ -139,8 +142,6 @@ class Record:
         moment = self.world.moment
         self.stepped = True
         self.born = self._is_new(plant)
-        if self._has_news:
-            self._clear_news()
         if self.born:
             self._begin(plant)
         if moment.heard:
@@ -160,7 +161,7 @@ class Record:
         self.answers.clear()
         self.transitions.clear()
         self.differences.clear()
-        self._has_news = False
+        self._has_news = self.told = False
 
     def _compare(self, plant: Plant) -> None:
         """Take over what the plant's books say after this step."""
@@ -175,6 +176,7 @@ class Record:
         if changed:
             self.idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
+        self.told = bool(self.tasks.changes or self.tasks.refused or self.answers or self.transitions)
         if self.news or plant.now >= self._look_again_at:
             self._look_into_trees(plant.now)
 
@@ -186,7 +188,7 @@ class Record:
             known = robots.get(report.robot)
             if known is None:
                 continue
-            if asked or known.robot.home_at_start:
+            if asked or (known.robot.home_at_start and self.world.moment.sent):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
             known.hear(report)
             if report.rejected is not None:

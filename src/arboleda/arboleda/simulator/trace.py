@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import fields
+from functools import cache
 from hashlib import blake2b
 from typing import Any
 
@@ -42,14 +43,12 @@ class Trace:
 
     def look(self) -> None:
         """Take in what happened in this step."""
-        moment, feed = self._world.moment, self._hash.update
-        feed(self._world.now.hex().encode())
-        for client, publication in moment.published:
-            feed(f"{client}>{publication.topic}{publication.retain}".encode() + publication.payload)
-        for message in moment.sent:
-            feed(repr(message).encode())
-        for event in moment.asked:
-            feed(repr(event).encode())
+        moment = self._world.moment
+        words = [self._world.now.hex().encode()]
+        for client, said in moment.published:
+            words += (_head(client, said.topic, said.retain), said.payload)
+        words += [repr(message).encode() for message in (*moment.sent, *moment.asked)]
+        self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():
                 self.note(line)
@@ -73,6 +72,11 @@ class Trace:
         ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
         return [*asked, *sent, *said, *done]
+
+
+@cache
+def _head(client: str, topic: str, retain: bool) -> bytes:
+    return f"{client}>{topic}{retain}".encode()
 
 
 def _asked(event: Any) -> str:

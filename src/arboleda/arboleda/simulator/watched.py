@@ -11,7 +11,7 @@ from arboleda.core.recipes import Recipes
 
 from .faults import KINDS, Fault
 from .invariants import INVARIANTS, Invariant
-from .invariants.invariant import Look, When, occasions
+from .invariants.invariant import Judges, Look
 from .record import Record
 from .trace import Trace
 from .truth import Truth
@@ -53,8 +53,7 @@ class Watched:
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
         self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
-        self._rules = {when: [each for each in self.invariants if each.when is when] for when in When}
-        self._looks: Counter[When] = Counter()
+        self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 
     @property
@@ -65,7 +64,7 @@ class Watched:
     @property
     def checks(self) -> Counter[str]:
         """How often each invariant was looked at."""
-        return Counter({each.name: self._looks[each.when] for each in self.invariants})
+        return self._judges.looks
 
     def expect(self, fault: Fault) -> None:
         """Have a fault begin when its time has come, if that is before the next rest."""
@@ -89,11 +88,11 @@ class Watched:
         for number in list(self._ends):
             self._end(number)
         end = self.world.now + REST_S
-        while self.world.now < end and self._restless():
+        while self.world.now < end and not self._judges.is_at_rest(self._look):
             self.world.advance(1.0)
-        self._apply(When.END)
+        self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S)
-        self._apply(When.END)
+        self._raise(self._judges.at_the_end(self._look))
 
     def _begin_expected(self, expected: tuple[int, Fault]) -> None:
         rests, fault = expected
@@ -108,21 +107,16 @@ class Watched:
             self.world.last_fault_at = self.world.now
             self.trace.note(f"fault over {_told(self.faults[number])}")
 
-    def _restless(self) -> bool:
-        return any(sentence for each in self._rules[When.END] for sentence in each.rule(self._look))
-
     def _check(self) -> None:
-        self._look.truth.look()
-        self._look.record.look()
+        look = self._look
+        look.truth.look()
+        look.record.look()
         self.trace.look()
-        for when in occasions(self._look):
-            self._apply(when)
+        self._raise(self._judges.after_a_step(look))
 
-    def _apply(self, when: When) -> None:
-        self._looks[when] += 1
-        for each in self._rules[when]:
-            for sentence in each.rule(self._look):
-                raise Broken(each.name, sentence)
+    def _raise(self, breaches: Iterable[tuple[str, str]]) -> None:
+        for name, sentence in breaches:
+            raise Broken(name, sentence)
 
 
 def _told(fault: Fault) -> str:

@@ -36,7 +36,7 @@ def _reachable() -> dict[State | None, frozenset[State]]:
 REACHABLE = _reachable()
 
 
-@invariant(When.SENT)
+@invariant(When.COMMANDED)
 def no_command_to_unfit(look: Look) -> Iterable[str]:
     """Nothing but stops goes to a robot that is offline, unhomed, faulted or latched by what it has said."""
     for sent in look.record.commands.new:
@@ -53,7 +53,7 @@ def _excused(sent: SentCommand) -> frozenset[Obstacle]:
     return STOPPED if opens and Verb.RELEASE in sent.verbs else frozenset()
 
 
-@invariant(When.SENT)
+@invariant(When.COMMANDED)
 def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
     """A stop is cleared at a robot only when an operator has asked for that."""
     for sent in look.record.commands.new:
@@ -63,7 +63,7 @@ def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
             yield f"{sent} clears its stop, which nobody asked for"
 
 
-@invariant(When.SENT)
+@invariant(When.COMMANDED)
 def one_motion_per_robot(look: Look) -> Iterable[str]:
     """At most one motion command of a robot is open."""
     for sent in look.record.commands.new:
@@ -150,11 +150,9 @@ def _waits(leaves: Iterable[object], now: float) -> Iterator[str]:
             yield f"{getattr(leaf, 'name', leaf)} still waits {now - until:.3f} s after its end"
 
 
-@invariant(When.SENT)
+@invariant(When.COMMANDED)
 def retries_bounded(look: Look) -> Iterable[str]:
     """A step gives its command once, once per retry, and once more each time that an operator says so."""
-    if not look.record.commands.new:
-        return
     for cell in look.record.cells.values():
         most = cell.cell.retry.times + 1 + cell.again
         for leaf, count in cell.sends.items() if cell.looked else ():

@@ -11,16 +11,13 @@ from ..truth.deeds import CellTruth, Switch, named
 from ..truth.parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
 from .invariant import Look, When, invariant
 
-NOTHING: tuple[str, ...] = ()
 
-
-@invariant(When.ALWAYS)
+@invariant(When.DEEDS)
 def effector_on_only_between_pick_and_place(look: Look) -> Iterable[str]:
     """An effector goes on only at the pick-up of a running task that has not placed its part, and is off
     when a task begins and when one is done; in between a plant that failed keeps its grip.
     """
-    truth = look.truth
-    return _grips(look) if truth.changed or truth.begun or truth.ended or truth.stray_grips else NOTHING
+    return _grips(look)
 
 
 @invariant(When.CHANGED)
@@ -59,10 +56,10 @@ def station_gets_one_part(look: Look) -> Iterator[str]:
             yield f"{station} of {cell} holds {len(parts)} parts"
 
 
-@invariant(When.ALWAYS)
+@invariant(When.DEEDS)
 def one_pick_one_place(look: Look) -> Iterable[str]:
     """At most one part leaves the pick-up for a task, and at most one comes to its place."""
-    return _repeated(look) if look.truth.changed or look.truth.ended else NOTHING
+    return _repeated(look)
 
 
 @invariant(When.ENDED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
@@ -31,9 +32,12 @@ class When(Enum):
     """After which steps an invariant is worth a look; the value is what of a `Look` is true, or not empty."""
 
     ALWAYS = "world"
+    DEEDS = "truth.deeds"
     ASKED = "world.moment.asked"
     HEARD = "world.moment.heard"
     SENT = "world.moment.sent"
+    COMMANDED = "record.commands.new"
+    TOLD = "record.told"
     PUBLISHED = "world.moment.published"
     EXECUTED = "world.moment.executed"
     STEPPED = "record.stepped"
@@ -48,15 +52,6 @@ class When(Enum):
     FREED = "truth.zones.freed"
     ENTERED = "truth.zones.entries"
     END = "end"  # once, when everything should be at rest
-
-
-AFTER_A_STEP = tuple(when for when in When if when is not When.END)
-_signs = attrgetter(*(when.value for when in AFTER_A_STEP))
-
-
-def occasions(look: Look) -> Iterator[When]:
-    """What this step gives reason to look at."""
-    return compress(AFTER_A_STEP, _signs(look))
 
 
 Rule = Callable[[Look], Iterable[str]]
@@ -79,3 +74,50 @@ def invariant(when: When) -> Callable[[Rule], Invariant]:
         return Invariant(rule.__name__, (rule.__doc__ or "").strip(), when, rule)
 
     return make
+
+
+class Judges:
+    """Invariants in a row for each When; `looks` counts how often each of them looked."""
+
+    def __init__(self, invariants: Iterable[Invariant]) -> None:
+        self._benches = {when: _Bench() for when in When}
+        for each in invariants:
+            self._benches[each.when].rules.append((each.name, each.rule))
+        used = [when for when, bench in self._benches.items() if bench.rules and when is not When.END]
+        self._after_a_step = [self._benches[when] for when in used]
+        self._signs = [attrgetter(when.value) for when in used]
+
+    @property
+    def looks(self) -> Counter[str]:
+        benches = self._benches.values()
+        return Counter({name: bench.looks for bench in benches for name, _ in bench.rules})
+
+    def after_a_step(self, look: Look) -> Iterator[tuple[str, str]]:
+        """Each breach that a step gives reason to look for: the invariant's name, and its sentence."""
+        for bench in compress(self._after_a_step, [sign(look) for sign in self._signs]):
+            bench.looks += 1
+            for name, rule in bench.rules:
+                for sentence in rule(look):
+                    yield name, sentence
+
+    def at_the_end(self, look: Look) -> Iterator[tuple[str, str]]:
+        """Each breach of what must hold once everything should be at rest."""
+        self._benches[When.END].looks += 1
+        return self._benches[When.END].breaches(look)
+
+    def is_at_rest(self, look: Look) -> bool:
+        """Whether that holds already."""
+        return not any(True for _ in self._benches[When.END].breaches(look))
+
+
+class _Bench:
+    """Those that look after the same steps."""
+
+    def __init__(self) -> None:
+        self.rules: list[tuple[str, Rule]] = []
+        self.looks = 0
+
+    def breaches(self, look: Look) -> Iterator[tuple[str, str]]:
+        for name, rule in self.rules:
+            for sentence in rule(look):
+                yield name, sentence

@@ -42,7 +42,7 @@ ROWS = tuple(TABLE.items())
 TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def each_task_ends_once(look: Look) -> Iterable[str]:
     """Each accepted task is told to have ended once, and only after it was accepted."""
     for change in look.record.tasks.changes:
@@ -51,7 +51,7 @@ def each_task_ends_once(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} ended as {change.said.state.value}, and was {was}"
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def ended_tasks_stay_ended(look: Look) -> Iterable[str]:
     """A task that has ended never changes, and to cancel it is refused."""
     for change in look.record.tasks.changes:
@@ -70,7 +70,7 @@ def _had_ended(look: Look, answer: OperatorAnswer) -> bool:
     return ended and id not in look.record.scopes
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def only_legal_task_states(look: Look) -> Iterable[str]:
     """A task is queued, then runs, then ends; only a queued one may be cancelled before it runs."""
     for change in look.record.tasks.changes:
@@ -79,7 +79,7 @@ def only_legal_task_states(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} became {change.said.state.value}, and was {was}"
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def first_come_first_served(look: Look) -> Iterable[str]:
     """The task of a cell that starts is the one that has waited longest."""
     for change in look.record.tasks.changes:
@@ -87,7 +87,7 @@ def first_come_first_served(look: Look) -> Iterable[str]:
             yield f"task {change.said.task} started before {change.first}"
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
     """A task that an operator has cancelled ends as cancelled, whatever its last move came to."""
     for change in look.record.tasks.changes:
@@ -180,7 +180,7 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
         yield f"task requests {tokens} were answered as {told}"
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def no_internal_failure(look: Look) -> Iterable[str]:
     """No task fails, and no cell is held, for a defect of the plant itself."""
     for change in look.record.tasks.changes:
@@ -192,7 +192,7 @@ def no_internal_failure(look: Look) -> Iterable[str]:
             yield f"{cell.name} is held: {trouble.sentence}"
 
 
-@invariant(When.SENT)
+@invariant(When.TOLD)
 def sentences_are_for_people(look: Look) -> Iterable[str]:
     """What the plant tells people is one line without a traceback, and a failure always has a sentence."""
     for message in look.moment.sent:

@@ -40,7 +40,8 @@ class Truth:
     Of this step: `changed`, the robots of which there is more to say than that they stand or go on as
     before; `begun`, the cells whose task began, and `ended`, the tasks that did; `stray_grips`, the arms that
     the plant told to grip though no task of their cell ran; `defied`, what boards began although an
-    operator's stop holds. Robots without a virtual board are left out.
+    operator's stop holds; `deeds`: whether any of the first four is not empty. Robots without a virtual
+    board are left out.
     """
 
     def __init__(self, world: World) -> None:
@@ -52,6 +53,7 @@ class Truth:
         self.ended: list[Ended] = []
         self.stray_grips: list[str] = []
         self.defied: list[tuple[str, Act]] = []
+        self.deeds = False
         self.books = Books(world)
         self.stops = Stops(world.model)
         self.parts = Parts()
@@ -107,6 +109,7 @@ class Truth:
         self._look_at_plant()
         if self.world.model.zones:
             self.zones.look(bool(self.changed))
+        self.deeds = bool(self.changed or self.begun or self.ended or self.stray_grips)
 
     def _look_at_messages(self) -> None:
         """What reached the boards, and what they carry out."""
