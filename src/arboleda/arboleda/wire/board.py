@@ -13,6 +13,7 @@ from .labels import Labels
 from .link import BoardLink, Heard
 from .motion import Motion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode
+from .repeats import Words
 from .topics import Channel, topic
 from .transport import Delivery, Publication
 from .units import from_wire
@@ -40,6 +41,7 @@ class Board:
         self.counters = Counters()
         self._plant: int | None = None
         self._last: Report | None = None
+        self._words: Words | None = None  # of the last telemetry, until a command changes what it means
         self._axes = len(robot.joints) if isinstance(robot, Arm) else None
         self._nodes = robot.grid.size if isinstance(robot, Mobile) else 0
         self._motion: Motion | None = None
@@ -74,6 +76,7 @@ class Board:
     def refuse(self, at: float, command: Command, word: str) -> list[Message]:
         self._count(f"{type(command).__name__} {command.id or '(no id)'} is refused: {word}")
         self.labels.refuse(command.id, word)
+        self._words = None
         if not command.id:
             return []
         return [self._report(at, state=None if self.link.up else MotionState.NO_LINK)]
@@ -89,7 +92,8 @@ class Board:
         if epoch == self._plant:
             return []
         self._plant = epoch
-        return [replace(self._last, at=at, plant=epoch)] if self._last and self.link.up else []
+        self._last = replace(self._last, at=at, plant=epoch) if self._last else None
+        return [self._last] if self._last and self.link.up else []
 
     def beat(self) -> Publication:
         """`latido`: who commands this board is alive."""
@@ -97,6 +101,8 @@ class Board:
 
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
         """A message from the board; what breaks the contract is counted and changes nothing."""
+        if channel is Channel.TELEMETRY and (again := self._again(delivery)):
+            return [again]
         try:
             said = decode(channel, delivery.payload, axes=self._axes)
             self._check(said, delivery)
@@ -105,7 +111,17 @@ class Board:
             return []
         if isinstance(said, Presence):
             return self._presence(delivery.at, said.online)
-        return self._telemetry(delivery.at, said) if isinstance(said, Telemetry) else []
+        return self._telemetry(delivery, said) if isinstance(said, Telemetry) else []
+
+    def _again(self, delivery: Delivery) -> Report | None:
+        """The last report once more, where the board says what it said before and that means the same."""
+        if self._words is None or self._last is None or delivery.retain:
+            return None
+        number = self._words.number(delivery.payload)
+        if number is None or not self.link.hear_again(delivery.at, number):
+            return None
+        self._last = self._last.again(delivery.at)
+        return self._last
 
     def _check(self, said: Payload, delivery: Delivery) -> None:
         if not isinstance(said, (Presence, Telemetry)):
@@ -121,7 +137,8 @@ class Board:
             return self.lose(at)
         return self._stop_again(at) if self.link.up else []
 
-    def _telemetry(self, at: float, said: Telemetry) -> list[Message]:
+    def _telemetry(self, delivery: Delivery, said: Telemetry) -> list[Message]:
+        at = delivery.at
         heard = self.link.hear(at, said)
         if heard is Heard.OLD:
             self.counters = replace(self.counters, old=self.counters.old + 1)
@@ -135,7 +152,7 @@ class Board:
         q, ended = self._joints(said), self.labels.hear(said)
         if self._motion and self._motion.ended(said, q, ended):
             self._motion = None
-        self._last = self._told(at, said, q)
+        self._last, self._words = self._told(at, said, q), Words.of(delivery.payload, said)
         return [self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
 
     def _refusal(self, command: Command) -> str | None:
@@ -147,6 +164,7 @@ class Board:
 
     def _send(self, at: float, command: Command) -> list[Message]:
         seq = self.labels.issue(command.id)
+        self._words = None
         numbered = self.robot.evidence is Evidence.IDS
         stamp = {"seq": seq, "epoch": self.labels.epoch} if numbered else {"seq": None, "epoch": None}
         channel, goal = goals.goal(self.robot, command, **stamp)

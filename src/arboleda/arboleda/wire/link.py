@@ -67,6 +67,14 @@ class BoardLink:
             return Heard.REBOOT
         return Heard.ARRIVAL if arrived else Heard.NEWS
 
+    def hear_again(self, at: float, seq: int) -> bool:
+        """Take over telemetry that repeats the last one; whether it is surely news, else `hear` decides."""
+        if not self.up or (self._seq is not None and seq <= self._seq):
+            return False
+        self.stale_at = None if self._stale_after_s is None else at + self._stale_after_s
+        self._seq = None if self._seq is None else seq
+        return True
+
     def _overtaken(self, said: Telemetry) -> bool:
         if said.boot_id is None or said.boot_id != self.boot_id:
             return False
