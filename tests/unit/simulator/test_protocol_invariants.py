@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any
 
 import pytest
@@ -526,7 +527,9 @@ def test_published_joints_are_reported(monkeypatch, bites, q):
 
 
 def test_published_joints_are_reported__by_a_belief_that_lags(monkeypatch, bites):
-    monkeypatch.setattr(belief, "MERGED", tuple(name for name in belief.MERGED if name != "node"))
+    kept = tuple(name for name in belief.MERGED if name != "node")
+    monkeypatch.setattr(belief, "MERGED", kept)
+    monkeypatch.setattr(belief, "_merged", attrgetter(*kept))
     watch = Watch()
     watch.task(wait_s=10)
     bites(watch)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from operator import attrgetter
+
 from .messages import Failure, Reason, Report
 from .model import Arm, Evidence, Link, MotionState, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
+_words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
+_merged = attrgetter(*MERGED)
 
 
 class Belief:
@@ -41,16 +46,29 @@ class Belief:
         self.homed: bool | None = None
         self.effector: bool | None = None
         self.piece: bool | None = None
+        self._said: tuple[object, ...] = ()  # the words of the last report
+
+    def hear_again(self, report: Report) -> bool:
+        """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
+        if _words(report) != self._said or not self.online or report.at < self.position_at:
+            return False
+        self._count(report)
+        self._hear(report)
+        return True
 
     def merge(self, report: Report) -> None:
         """Take over what the report says; what it leaves out stays."""
         self._count(report)
-        for name in MERGED:
-            value = getattr(report, name)
+        for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
+        self._said = _words(report)
+        self._hear(report)
+
+    def _hear(self, report: Report) -> None:
+        """Take over when it spoke."""
         if report.q is not None or report.node is not None:
             self.position_at = report.at
         if report.state is not MotionState.NO_LINK:

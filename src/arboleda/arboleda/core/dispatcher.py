@@ -174,6 +174,9 @@ class Dispatcher:
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.robot.link is Link.NONE:
             return
+        if belief.hear_again(report):
+            self._prove(belief, report, now)
+            return
         before, told = Before.of(belief), self._told(belief)
         returned = _returned(belief, report)
         belief.merge(report)
@@ -181,19 +184,23 @@ class Dispatcher:
         astray = goal is not None and evidence.strayed(before, belief, report, goal)
         if astray or evidence.displaced(before, belief, report):
             belief.displaced = True
+        self._prove(belief, report, now, before)
+        if returned and report.robot in self.latched:
+            self._stop(report.robot, StopMode.LATCH)
+        if self._told(belief) != told:
+            self.version += 1
+            self.ledger.changed.add(self.model.cell_of[report.robot].name)
+
+    def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
+        """Book what a report proves, even one that only repeats what was believed `before` (then None)."""
         for entry in self.ledger.of_robot(report.robot):
-            verdict = evidence.judge(entry, before, belief, report)
+            verdict = evidence.judge(entry, before or Before.of(belief), belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
         self.under_way.hear(report, now)
         if belief.online:
             self._say_again(belief, now)
         self._settle_grip(belief)
-        if returned and report.robot in self.latched:
-            self._stop(report.robot, StopMode.LATCH)
-        if self._told(belief) != told:
-            self.version += 1
-            self.ledger.changed.add(self.model.cell_of[report.robot].name)
 
     def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
         """Fail a command that could not leave this process."""

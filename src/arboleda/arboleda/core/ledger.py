@@ -112,7 +112,8 @@ class Ledger:
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
-        return list(self._of_robot.get(robot, {}).values())
+        entries = self._of_robot.get(robot)
+        return list(entries.values()) if entries else []
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""

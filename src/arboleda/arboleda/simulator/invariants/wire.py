@@ -124,7 +124,7 @@ def published_joints_are_reported(look: Look) -> Iterable[str]:
         if report.robot not in record.shown:
             continue
         known, board, belief = record.shown[report.robot]
-        if belief.q is not known.q or belief.node != known.node:
+        if belief.q != known.q or belief.node != known.node:
             wrong.append(f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}")
         if board.is_news(report) and not board.said(report.q, report.node, record.told_since(report.at)):
             where = report.node if report.q is None else report.q
