@@ -23,7 +23,7 @@ from arboleda.wire.payloads import (
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
-from .body import Body
+from .body import Body, Told
 from .receipts import Receipts
 from .uplink import Uplink
 
@@ -47,6 +47,7 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
+        self._said: tuple[object, ...] | None = None  # what the last telemetry was made of
         self._boot(boot_id, homed=True)
 
     def _boot(self, boot_id: int, *, homed: bool) -> None:
@@ -76,8 +77,10 @@ class Board:
 
     @property
     def next_deadline_us(self) -> int | None:
-        times = (self._next_motion_us(), self._uplink.due_us)
-        return min([time for time in times if time is not None], default=None)
+        motion_us, telemetry_us = self._next_motion_us(), self._uplink.due_us
+        if motion_us is None or telemetry_us is None:
+            return telemetry_us if motion_us is None else motion_us
+        return min(motion_us, telemetry_us)
 
     def take(self) -> list[Publication]:
         """What the board published since the last call, in order."""
@@ -202,12 +205,15 @@ class Board:
     @property
     def _silence_us(self) -> int | None:
         """When the silence gets too long; None unless it is watched."""
-        watched = self._beaten and self.body.moving and self._job is not None
+        watched = self._beaten and self._job is not None and self.body.moving
         return self._alive_us + SILENCE_US if watched else None
 
     def _next_motion_us(self) -> int | None:
-        change_us, silence_us = self.body.next_change_us, self._silence_us
-        return change_us if change_us is None or silence_us is None else min(change_us, silence_us)
+        change_us = self.body.next_change_us
+        if change_us is None:
+            return None
+        silence_us = self._silence_us
+        return change_us if silence_us is None else min(change_us, silence_us)
 
     def _move_on(self) -> None:
         """An arrival or the end of patience, at the time the board has reached."""
@@ -235,10 +241,17 @@ class Board:
         self._tell()
 
     def _tell(self) -> None:
-        self._uplink.tell(self._telemetry())
-
-    def _telemetry(self) -> Telemetry:
+        """Telemetry; most of it says what the one before said, and is not written anew."""
         told, receipts = self.body.tell(), self._receipts
+        said = (*told, self.state, self.boot_id, self.homed, *receipts.told)
+        if said == self._said:
+            self._uplink.tell_again()
+        else:
+            self._said = said if self._uplink.connected else None
+            self._uplink.tell(self._telemetry(told))
+
+    def _telemetry(self, told: Told) -> Telemetry:
+        receipts = self._receipts
         if not self._numbered:
             return Telemetry(state=self.state, q=told.q, node=told.node)
         return Telemetry(

@@ -21,6 +21,11 @@ class Receipts:
         self.refusal: str | None = None
         self.refused: int | None = None
 
+    @property
+    def told(self) -> tuple[object, ...]:
+        """All of it."""
+        return (self.epoch, self.accepted, self.finished, self.refusal, self.refused)
+
     def repeats(self, goal: Goal) -> bool:
         """Whether this is the last accepted command once more (QoS 1 may deliver twice)."""
         return goal.seq is not None and (goal.epoch, goal.seq) == (self.epoch, self.accepted)

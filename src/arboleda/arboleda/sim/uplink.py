@@ -19,8 +19,7 @@ class Uplink:
         self._presence = topic(name, Channel.PRESENCE)
         self._telemetry = topic(name, Channel.TELEMETRY)
         self._due_us = 0
-        self._said: Telemetry | None = None
-        self._frame = (b"", b"", b"")  # how that reads: up to its number, the number, after it
+        self._frame = (b"", b"", b"")  # the last telemetry: up to its number, the number, after it
         self._outbox: list[Publication] = []
 
     @property
@@ -42,11 +41,15 @@ class Uplink:
 
     def tell(self, said: Telemetry) -> None:
         """Telemetry; a `seq` of 0 stands for the number that it gets."""
+        if self.connected:
+            self._frame = encode(said).partition(UNNUMBERED)
+            self.tell_again()
+
+    def tell_again(self) -> None:
+        """What the last telemetry said, under the next number."""
         if not self.connected:
             return
         self.told += 1
-        if said != self._said:  # most say what the one before said
-            self._said, self._frame = said, encode(said).partition(UNNUMBERED)
         before, number, after = self._frame
         payload = b'%b"seq":%d,%b' % (before, self.told, after) if number else before
         self._outbox.append(Publication(topic=self._telemetry, payload=payload, qos=0))
