@@ -11,6 +11,7 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.core.model import Evidence, Retry
+from arboleda.core.tree_run import TreeRun
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness, faults
 from arboleda.wire.transport import Publication
@@ -206,6 +207,23 @@ def test_a_piece_that_never_comes_is_waited_for_as_long_as_declared(
     )
     assert change.sentence == "ra1: no piece at pick-up"
     assert witness.switches == [], "nothing was gripped, so nothing is let go"
+
+
+def test_a_tree_that_waits_for_a_piece_is_left_alone_by_reports_that_there_is_none(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig, _ = stage(piece_check=True)
+    body(rig).supplied = False
+    rig.submit(TASK)
+    rig.wait_for("sis_a", "piece there")
+    rig.wait(0.5)
+    ticks: list[float] = []
+    usual = TreeRun.tick
+    monkeypatch.setattr(TreeRun, "tick", lambda run: (ticks.append(rig.now), usual(run))[1])
+    rig.wait(1.0)
+    assert ticks == [] and rig.runs("sis_a", "piece there")
+    body(rig).supplied = True
+    assert ended(rig).state is TaskState.DONE
 
 
 def grips_at(rig: Rig, attempt: int) -> None:

@@ -27,7 +27,7 @@ class Context:
         self.timing: Timing = dispatcher.model.timing
         self.wakes: list[float] = []
         self.sent = 0
-        self.awaits_piece = False
+        self.awaits_piece = False  # for a report newer than the last one that had it
         self.carried = False  # a part that was seen in the effector is on its way
         self.failure: Failure | None = None
         self.last_failure: Failure | None = None
@@ -159,7 +159,7 @@ class Context:
         """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""
         belief, arm = self._dispatcher.beliefs[self.cell.arm.name], self.cell.arm
         fresh = arm.piece_on_change or belief.piece_at - self._paused_s >= since
-        self.awaits_piece = True
+        self.awaits_piece = self.awaits_piece or not fresh  # a change of a fresh word wakes the tree anyway
         if belief.piece is None or not belief.online or not fresh:
             return None
         settled_at = belief.piece_since + self.timing.piece_debounce_s - self._paused_s

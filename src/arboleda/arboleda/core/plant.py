@@ -170,7 +170,9 @@ class Plant:
         cell = self.model.cell_of.get(report.robot)
         if cell is None:
             return
-        if report.piece is not None and self.cells[cell.name].context.awaits_piece:
+        context = self.cells[cell.name].context
+        if report.piece is not None and context.awaits_piece:
+            context.awaits_piece = False  # who goes on waiting asks again
             self.dispatcher.ledger.changed.add(cell.name)
         self._home_at_start(report.robot)
 
