@@ -22,9 +22,13 @@ class Line:
         self.reorders = 0  # how many faults let later messages overtake
         self.busy_until = 0.0
 
+    def is_clear(self, now: float) -> bool:
+        """Whether a message arrives at once, and once."""
+        return not self.troubles and self.busy_until <= now
+
     def carry(self, now: float, message: Any) -> list[float]:
         """When each copy of a message arrives; empty where it is lost."""
-        if not self.troubles and self.busy_until <= now:
+        if self.is_clear(now):
             return [now]
         delays = [0.0]
         for trouble in self.troubles:
@@ -84,9 +88,13 @@ class Broker:
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Somebody publishes; None: somebody who is no part of the plant, or the broker for a lost client."""
         if sender is None:
-            self._arrive((self._lives, publication))
+            self._spread(publication)
         elif sender.connected:
-            for at in sender.up.carry(self._clock(), publication):
+            now = self._clock()
+            if sender.up.is_clear(now):
+                self._spread(publication)
+                return
+            for at in sender.up.carry(now, publication):
                 self._when(at, self._arrive, (self._lives, publication))
 
     def tell_retained(self, client: Client) -> None:
@@ -111,7 +119,11 @@ class Broker:
 
     def _arrive(self, carried: tuple[int, Publication]) -> None:
         life, publication = carried
-        if not self.is_up or life != self._lives:
+        if life == self._lives:
+            self._spread(publication)
+
+    def _spread(self, publication: Publication) -> None:
+        if not self.is_up:
             return
         if publication.retain:
             self.retained[publication.topic] = publication
@@ -119,17 +131,21 @@ class Broker:
             self._send(client, publication, retained=False)
 
     def _send(self, client: Client, publication: Publication, *, retained: bool) -> None:
-        if client.connected:
-            carried = (client, client.connection, client.queue, publication, retained)
-            for at in client.down.carry(self._clock(), publication):
-                self._when(at, self._hand_over, carried)
+        if not client.connected:
+            return
+        now = self._clock()
+        if client.down.is_clear(now):
+            self._deliver(client, publication, retained, now)
+            return
+        carried = (client, client.connection, client.queue, publication, retained)
+        for at in client.down.carry(now, publication):
+            self._when(at, self._hand_over, carried)
 
     def _hand_over(self, carried: tuple[Client, int, int, Publication, bool]) -> None:
         client, connection, queue, publication, retained = carried
         if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
-            self._heard(
-                client,
-                Delivery(
-                    at=self._clock(), topic=publication.topic, payload=publication.payload, retain=retained
-                ),
-            )
+            self._deliver(client, publication, retained, self._clock())
+
+    def _deliver(self, client: Client, publication: Publication, retained: bool, now: float) -> None:
+        topic, payload = publication.topic, publication.payload
+        self._heard(client, Delivery(at=now, topic=topic, payload=payload, retain=retained))

@@ -109,6 +109,7 @@ class World:
         self._due: dict[str, float] = dict.fromkeys((PLANT, *self.boards), now)
         for name, board in self.boards.items():
             self._add_board(name, board)
+        self._stations = [(name, board, self.broker.clients[name]) for name, board in self.boards.items()]
         self.start_bridge()
         self.settle()
 
@@ -298,14 +299,14 @@ class World:
         while self._agenda and self._agenda[0][0] <= self.now:
             _, _, call, argument = heappop(self._agenda)
             call(argument)
-        for name, board in self.boards.items():
-            client = self.broker.clients[name]
-            if (client.inbox or self._due[name] <= self.now) and self._awake(name):
+        now, due, bridge = self.now, self._due, self.broker.clients[BRIDGE]
+        if bridge.inbox:  # what the plant said
+            self._step_bridge(bridge)
+        for name, board, client in self._stations:
+            if (client.inbox or due[name] <= now) and self._awake(name):
                 self._step_board(name, board, client)
-        if self.bridge is not None:
-            client = self.broker.clients[BRIDGE]
-            if (client.inbox or self._due[BRIDGE] <= self.now) and self._awake(BRIDGE):
-                self._step_bridge(self.bridge, client)
+        if bridge.inbox or due.get(BRIDGE, math.inf) <= now:  # what the boards said
+            self._step_bridge(bridge)
         if (self._plant_inbox or self._due[PLANT] <= self.now) and self._awake(PLANT):
             self._step_plant()
 
@@ -326,7 +327,10 @@ class World:
         self._due[name] = math.inf if due_us is None or name in self._off else due_us / 1e6
         return self.boards[name].take()
 
-    def _step_bridge(self, bridge: Bridge, client: Client) -> None:
+    def _step_bridge(self, client: Client) -> None:
+        bridge = self.bridge
+        if bridge is None or not self._awake(BRIDGE):
+            return
         inbox, client.inbox = client.inbox, []
         for message in bridge.step(self.now, inbox):
             if isinstance(message, Report):
@@ -349,6 +353,9 @@ class World:
         self._due[PLANT] = self.plant.next_deadline
 
     def _carry(self, line: Line, call: Callable[[Any], None], message: Any) -> None:
+        if line.is_clear(self.now):
+            call(message)
+            return
         for at in line.carry(self.now, message):
             if at <= self.now:
                 call(message)
