@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -83,6 +85,26 @@ def test_telemetry_is_numbered_from_each_boot(bench):
     assert [said.seq for said in bench.heard("ra_1")] == [1, 2, 3, 4]
     bench.reboot("ra_1")
     assert bench.last("ra_1").seq == 1
+
+
+def test_a_board_that_comes_back_speaks_when_its_neighbours_do(bench):
+    bench.run(0.33)
+    bench.connect("ra_1", up=False)
+    bench.connect("ra_1")
+    before = {board: len(bench.heard(board)) for board in BOARDS}
+    bench.run(0.08)
+    assert {board: len(bench.heard(board)) - before[board] for board in BOARDS} == dict.fromkeys(BOARDS, 1)
+    assert bench.devices.next_deadline == pytest.approx(1000.5)
+
+
+def test_what_a_board_says_again_has_the_next_number_and_nothing_else_new(bench):
+    bench.run(0.25)
+    first, second, third = bench.heard("ra_1")
+    assert (second, third) == (replace(first, seq=2), replace(first, seq=3))
+    bench.devices.boards["ra_1"].body.supplied = False
+    bench.devices.boards["ra_1"].homed = False
+    bench.run(0.1)
+    assert (bench.last("ra_1").seq, bench.last("ra_1").homed) == (4, False)
 
 
 def test_a_message_on_a_foreign_topic_is_ignored(bench):

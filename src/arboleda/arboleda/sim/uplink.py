@@ -33,8 +33,8 @@ class Uplink:
         return taken
 
     def announce(self, now_us: int) -> None:
-        """Presence; the telemetry that follows it starts the rhythm."""
-        self._due_us = now_us + PERIOD_US
+        """Presence; periodic telemetry follows at each tenth of a second, as that of its neighbours does."""
+        self._due_us = (now_us // PERIOD_US + 1) * PERIOD_US
         if self.connected:
             presence = encode(Presence(online=True))
             self._outbox.append(Publication(topic=self._presence, payload=presence, retain=True))
