@@ -133,8 +133,8 @@ class Plant:
             self.dispatcher.expire(limit, self.now)
 
     def _earliest(self) -> float:
-        cells = [cell.context.next_deadline for cell in self.cells.values()]
-        due = [self._next_beat, self.dispatcher.next_deadline, *cells]
+        due = [self._next_beat, self.dispatcher.next_deadline]
+        due += [cell.context.next_deadline for cell in self.cells.values()]
         return min([at for at in due if at is not None])
 
     def _advance(self) -> None:
@@ -143,14 +143,15 @@ class Plant:
             changed = self.dispatcher.ledger.changed
             self.dispatcher.ledger.changed = set()
             did = [cell.advance(woken=name in changed) for name, cell in self.cells.items()]
-            self._changes += any(did)
-            if not any(did) and not self.dispatcher.ledger.changed:
+            if True in did:
+                self._changes += 1
+            elif not self.dispatcher.ledger.changed:
                 return
         raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
 
     def _watch_zones(self) -> None:
         """An arm that is not heard may still be where it was; one that is seen outside is not."""
-        for cell in self.cells.values() if self.model.zones else ():
+        for cell in self.cells.values() if self.zones.held else ():
             arm = cell.cell.arm.name
             if not self.zones.held_by(arm):
                 continue
@@ -178,11 +179,13 @@ class Plant:
 
     def _home_at_start(self, robot: str) -> None:
         belief = self.dispatcher.beliefs[robot]
-        if not belief.robot.home_at_start or not belief.answered or belief.homed is None:
+        if robot in self._homed_once or not belief.robot.home_at_start:
+            return
+        if not belief.answered or belief.homed is None:
             return
         if self.cells[self.model.cell_of[robot].name].state not in (CellState.IDLE, CellState.HELD):
             return
-        if robot in self._homed_once or (belief.unhomed and self._operator.not_free_for_homing({robot})):
+        if belief.unhomed and self._operator.not_free_for_homing({robot}):
             return
         self._homed_once.add(robot)
         if belief.unhomed:

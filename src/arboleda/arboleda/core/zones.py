@@ -35,6 +35,11 @@ class Zones:
         """The zones of which it is the holder, quarantined ones too."""
         return frozenset([zone for zone, holder in self._holders.items() if holder == robot])
 
+    @property
+    def held(self) -> bool:
+        """Whether anybody holds any."""
+        return bool(self._holders)
+
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, Report, Stop, StopMode
@@ -97,7 +98,7 @@ class Board:
 
     def beat(self) -> Publication:
         """`latido`: who commands this board is alive."""
-        return self._publication(Channel.BEAT, Beat(epoch=self.labels.epoch), qos=0)
+        return _beat(self.robot.mqtt, self.labels.epoch)
 
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
         """A message from the board; what breaks the contract is counted and changes nothing."""
@@ -226,3 +227,8 @@ class Board:
 
     def _count(self, sentence: str) -> None:
         self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
+
+
+@lru_cache(maxsize=256)
+def _beat(name: str, epoch: int) -> Publication:
+    return Publication(topic=topic(name, Channel.BEAT), payload=encode(Beat(epoch=epoch)), qos=0)

@@ -53,6 +53,7 @@ class Bridge:
         self._boards = {
             robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
         }
+        self._links = [(board.link, board) for board in self._boards.values()]
         self._routes = {
             topics.topic(board.robot.mqtt, channel): (board, channel)
             for board in self._boards.values()
@@ -75,7 +76,7 @@ class Bridge:
     @property
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
-        times = [self._started_at, self._beat_at, *[board.link.stale_at for board in self._boards.values()]]
+        times = [self._started_at, self._beat_at, *[link.stale_at for link, _ in self._links]]
         return min([time for time in times if time is not None], default=None)
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
@@ -83,9 +84,8 @@ class Bridge:
         out = self._start(now)
         for event in events:
             out += self._take(event)
-        for board in self._boards.values():
-            stale_at = board.link.stale_at
-            if stale_at is not None and now >= stale_at:
+        for link, board in self._links:
+            if link.stale_at is not None and now >= link.stale_at:
                 out += board.lose(now)
         return out + self._own_beats(now)
 
