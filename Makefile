@@ -5,7 +5,7 @@
 export PYTHON
 BIN := .venv/bin
 PYTEST_ARGS ?= -n 4 --dist worksteal
-CYCLES ?= 10
+CYCLES ?= 15
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"

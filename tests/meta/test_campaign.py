@@ -26,7 +26,9 @@ def campaign() -> Any:
 
 def summary(**faults: int) -> dict[str, Any]:
     """A thousand seeds that held, the first with 100 faults of each kind besides `faults`."""
-    seeds = [{"seed": number, "broken": None, "faults": {}} for number in range(1000)]
+    seeds = [
+        {"seed": number, "broken": None, "cycles": 25, "faults": {"reboot": 25}} for number in range(1000)
+    ]
     return {"seeds": [{**seeds[0], "faults": {**dict.fromkeys(KINDS, 100), **faults}}, *seeds[1:]]}
 
 
@@ -35,11 +37,23 @@ def test_a_campaign_that_held_with_every_kind_of_fault_is_enough(campaign: Any) 
 
 
 def test_a_kind_that_came_too_seldom_is_named(campaign: Any) -> None:
-    assert campaign.shortcomings(summary(reboot=99)) == ["reboot came 99 times, 100 are needed"]
+    assert campaign.shortcomings(summary(loss=99)) == ["loss came 99 times, 100 are needed"]
+
+
+def test_too_few_cycles_or_faults_are_named(campaign: Any) -> None:
+    lazy = summary()
+    for seed in lazy["seeds"]:
+        seed.update(cycles=24, faults=dict.fromkeys(KINDS, 1) if seed["seed"] < 100 else {})
+    assert campaign.shortcomings(lazy) == [
+        "24000 cycles, 25000 are needed",
+        f"{100 * len(KINDS)} faults, 25000 are needed",
+    ]
 
 
 def test_a_broken_seed_and_missing_seeds_are_named(campaign: Any) -> None:
     short = summary()
     short["seeds"][3]["broken"] = {"invariant": "stop_holds"}
     short["seeds"].pop()
+    short["seeds"][1]["cycles"] = 1000
+    short["seeds"][1]["faults"] = {"reboot": 1000}
     assert campaign.shortcomings(short) == ["seed 3 breaks stop_holds", "999 seeds, 1000 are needed"]
