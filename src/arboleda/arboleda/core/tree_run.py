@@ -74,12 +74,10 @@ class TreeRun:
         raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
 
     def _signature(self, tree: Behaviour) -> tuple[object, ...]:
-        statuses, nodes = [], [tree]
-        while nodes:  # `tree.iterate()` takes several times as long
-            node = nodes.pop()
-            statuses.append(node.status)
+        nodes = [tree]
+        for node in nodes:  # it grows meanwhile; `tree.iterate()` takes several times as long
             nodes += node.children
-        return (self._context.sent, statuses)
+        return (self._context.sent, [node.status for node in nodes])
 
     def _raised(self, error: Exception) -> Status:
         sentence = f"{self._context.cell.name}: {type(error).__name__} in the tree: {error}"
