@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ from .setting import Setting
 
 AHEAD = 2  # seeds that are handed out to each worker
 TICK_S = 0.5
+YOUNG = 50_000  # objects before a collection: what a simulation makes dies without one, and looking costs 5 %
 
 
 def processors() -> int:
@@ -91,6 +93,8 @@ class _Worker:
     @classmethod
     def prepare(cls, setting: Setting, minutes: Any) -> None:
         cls.setting, cls.minutes = setting, minutes
+        gc.freeze()
+        gc.set_threshold(YOUNG)
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who ends the workers
         Thread(target=_end_with_parent, daemon=True).start()
 
