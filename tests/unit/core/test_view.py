@@ -1,86 +1,153 @@
-"""What screens are told of a plant: how far a task is, and how each robot and cell fares."""
-
 from __future__ import annotations
 
-from typing import Any
+import json
+from collections.abc import Callable
+from typing import Any, ClassVar
 
 import pytest
-from py_trees.behaviours import Failure, Running, Success
-from py_trees.composites import Selector, Sequence
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
-from arboleda.core import view
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import MotionState
-from arboleda.core.view import ERROR, OK, STALE, WARN
+from arboleda.core import tree_view, view
+from arboleda.core.messages import Verb
+from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import Rig, shipped
 
-TASK = "sis_a 0B 7"
 
-
-def recipe(*work: Any) -> Selector:
-    """A tree as recipes are, ticked once."""
-    main = Sequence("main", memory=True, children=list(work))
-    recovery = Sequence("recovery", memory=True, children=[Running("go home")])
-    tree = Selector("storage", memory=True, children=[main, recovery])
-    tree.tick_once()
-    return tree
-
-
-@pytest.mark.parametrize(
-    ("work", "share"),
-    [
-        ([Running("drive"), Success("grip")], 0.0),
-        ([Success("drive"), Running("grip"), Success("go"), Success("home")], 0.25),
-        ([Success("drive"), Failure("grip")], 0.5),
-        ([Success("drive")], 1.0),
-    ],
-    ids=["first step", "second of four", "recovering", "done"],
-)
-def test_progress_is_the_share_of_the_steps_that_are_done(work: list[Any], share: float) -> None:
-    assert view.progress_of(recipe(*work)) == share
-
-
-@pytest.mark.parametrize(
-    "tree", [None, Success("alone"), Sequence("recovery", memory=True)], ids=["none", "leaf", "recovery"]
-)
-def test_without_work_there_is_no_progress(tree: Any) -> None:
-    assert view.progress_of(tree) is None
-
-
-def test_progress_only_grows_while_a_task_is_carried_out() -> None:
-    rig, seen = Rig(shipped("sis_a")), [0.0]
-
-    def look() -> bool:
-        share = rig.snapshot()["cells"][0]["progress"]
-        if share is not None and share != seen[-1]:
-            seen.append(share)
-        return [change.state for change in rig.changes][-1] is TaskState.DONE
-
+@pytest.fixture
+def rig() -> Rig:
+    rig = Rig(shipped())
     rig.wait(0.5)
-    rig.submit(TASK)
-    assert rig.wait(60.0, until=look)
-    assert len(seen) == 7 and seen == sorted(seen) and seen[-1] < 1.0
+    return rig
 
 
-def levels(rig: Rig) -> dict[str, int]:
-    told = view.diagnostics(rig.snapshot())
-    return {name.removeprefix("arboleda: "): level for name, _, level, _, _ in told}
+def row(snapshot: dict[str, Any], name: str) -> dict[str, Any]:
+    return next(node for node in snapshot["cells"][0]["tree"] if node["name"] == name)
 
 
-def test_every_robot_and_cell_has_a_level() -> None:
-    rig = Rig(shipped("sis_a", "sis_b"))
-    rig.wait(0.5)
-    robots = dict.fromkeys(rig.model.robots, OK)
-    assert levels(rig) == {**robots, "sis_a": OK, "sis_b": OK}
-    assert rig.operate(Verb.STOP, "sis_a") is None
+def robot(snapshot: dict[str, Any], name: str) -> dict[str, Any]:
+    return next(robot for robot in snapshot["robots"] if robot["name"] == name)
+
+
+def test_a_snapshot_is_plain_json(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    assert json.loads(json.dumps(rig.snapshot()))["plant"] == "arboleda"
+
+
+def test_a_node_says_its_kind(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    kinds = {node["name"]: node["kind"] for node in rig.snapshot()["cells"][0]["tree"]}
+    assert kinds["storage"] == "selector" and kinds["main"] == "sequence"
+    assert kinds["move to pick-up"] == "command" and kinds["dwell"] == "dwell" and kinds["settle"] == "await"
+    assert kinds["holds nothing"] == "condition" and kinds["announce"] == "notice"
+
+
+def test_a_running_command_says_what_it_was_sent_with_and_how_long_it_has_left(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.wait(0.25)
+    move = row(rig.snapshot(), "move to pick-up")
+    assert (
+        move["parameters"]["robot"] == "ra1" and move["parameters"]["q"] == rig.plant.model.cells[0].pickup.q
+    )
+    assert move["since_s"] == pytest.approx(0.25, abs=0.06)
+    assert move["since_s"] + move["deadline_s"] == pytest.approx(10.0)  # timeout_s of an arm
+
+
+def test_a_dwell_says_how_long_it_has_left(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait(0.12)
+    dwell = row(rig.snapshot(), "dwell")
+    assert dwell["since_s"] > 0 and dwell["since_s"] + dwell["deadline_s"] == pytest.approx(0.2)
+
+
+def test_a_node_that_does_not_run_has_no_times(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rest = [node for node in rig.snapshot()["cells"][0]["tree"] if node["status"] != "RUNNING"]
+    assert {(node["since_s"], node["deadline_s"]) for node in rest} == {(None, None)}
+
+
+def test_a_failed_node_keeps_its_sentence(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
+    assert rig.wait(9.0, until=lambda: str(rig.snapshot()["cells"][0]["step"]).startswith("recovery"))
+    assert "no telemetry" in row(rig.snapshot(), "drive path 0B")["failure"]
+
+
+def test_a_node_of_a_users_own_is_described_by_its_docstring() -> None:
+    class Polish(Behaviour):
+        """Polish the part.
+
+        Twice.
+        """
+
+        parameters: ClassVar = {"cloth": 3}
+
+        def update(self) -> Status:
+            return Status.RUNNING
+
+    (polish,) = tree_view.rows(Polish("polish"), now=0.0)
+    assert (polish["kind"], polish["description"], polish["parameters"]) == (
+        "step",
+        "Polish the part.",
+        {"cloth": "3"},
+    )
+
+
+def test_a_robot_says_its_last_command_and_what_became_of_it(rig: Rig) -> None:
+    assert robot(rig.snapshot(), "ra1")["command"] is None
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    mobile, arm = (robot(rig.snapshot(), name)["command"] for name in ("rm_sis_a", "ra1"))
+    assert (mobile["what"], mobile["state"]) == ("driving path 0B", "done")
+    assert (arm["what"], arm["state"], arm["age_s"]) == ("moving to pick-up", "running", 0.0)
+
+
+def test_a_robot_says_how_often_it_reports(rig: Rig) -> None:
+    assert robot(rig.snapshot(), "ra1")["telemetry_hz"] is None
+    rig.wait(5.0)
+    assert robot(rig.snapshot(), "ra1")["telemetry_hz"] == pytest.approx(10.0, abs=0.5)
+    rig.lost = lambda publication: publication.topic == "ra_1/sensores"
+    rig.wait(5.0)
+    assert robot(rig.snapshot(), "ra1")["telemetry_hz"] is None
+
+
+def test_refused_commands_are_counted_with_the_last_reason(hand: Callable[[Evidence], Any]) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.submit("sis_a 0B 7")
+    plant.wait(0.2)
+    command = robot(view.snapshot(plant.plant), "rm_sis_a")["command"]["id"]
+    plant.tell("rm_sis_a", state=MotionState.STOPPED, rejected=command, refusal="ocupado")
+    rejected = robot(view.snapshot(plant.plant), "rm_sis_a")["rejected"]
+    assert rejected["count"] == 1 and "ocupado" in rejected["last"]
+    assert robot(view.snapshot(plant.plant), "ra1")["rejected"] == {"count": 0, "last": None}
+
+
+def test_a_robot_says_that_it_stands_still_after_a_stop(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.wait(0.2)
+    rig.operate(Verb.STOP)
+    assert not robot(rig.snapshot(), "ra1")["still"]
+    rig.wait(2.0)
+    assert robot(rig.snapshot(), "ra1")["still"]
+
+
+def test_what_operators_did_is_numbered(rig: Rig) -> None:
+    rig.operate(Verb.STOP)
     rig.wait(1.0)
-    assert levels(rig) == {**robots, "ra1": ERROR, "rm_sis_a": ERROR, "sis_a": WARN, "sis_b": OK}
-    assert rig.plant.dispatcher.beliefs["ra1"].state is MotionState.STOP_LATCHED
+    rig.operate(Verb.CLEAR, "sis_a")
+    rig.operate(Verb.RESUME, "sis_b")  # refused: not an act
+    acts = rig.snapshot()["acts"]
+    assert [(act["number"], act["sentence"]) for act in acts] == [(1, "stop plant"), (2, "clear sis_a")]
 
 
-def test_a_silent_robot_is_stale() -> None:
-    rig = Rig(shipped("sis_a"))
-    rig.wait(0.5)
-    rig.power_off("ra_1", will_after_s=7.0)
-    rig.wait(rig.model.timing.stale_after_s + 0.1)
-    assert levels(rig) == {"ra1": STALE, "rm_sis_a": OK, "sis_a": OK}
+def test_the_layout_says_what_the_plant_file_says() -> None:
+    layout = view.layout(shipped())
+    cell = layout["cells"][0]
+    assert (cell["name"], cell["arm"], cell["mobile"], cell["stations"]) == ("sis_a", "ra1", "rm_sis_a", 9)
+    assert cell["paths"]["0B"] == [0, 3, 4, 7] and cell["grid"] == {"rows": 3, "columns": 3}

@@ -9,6 +9,7 @@ from .messages import Failure, Reason, Report
 from .model import Arm, Evidence, Link, MotionState, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
+RATE_S = 2.0  # the telemetry rate is counted over at least this long
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
 _words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
 _merged = attrgetter(*MERGED)
@@ -39,6 +40,8 @@ class Belief:
         self.position_no = 0
         self.state_no = 0
         self.reports = 0
+        self.rate_hz: float | None = None
+        self._counted = (0.0, 0)  # when the rate was counted last, and the number of reports then
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
@@ -72,9 +75,17 @@ class Belief:
         if report.q is not None or report.node is not None:
             self.position_at = report.at
         if report.state is not MotionState.NO_LINK:
+            self._count_rate(report.at)
             self.heard_at = report.at
             self.stale = False
             self.stale_at = report.at + self.stale_after_s if self.supervised else None
+
+    def _count_rate(self, at: float) -> None:
+        since, reports = self._counted
+        if self.heard_at is None or not self.online:
+            self.rate_hz, self._counted = None, (at, self.reports)
+        elif at - since >= RATE_S:
+            self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
 
     def fall_silent(self) -> None:
         """Silence has lasted too long."""

@@ -57,6 +57,8 @@ class Dispatcher:
         }
         self.under_way = UnderWay(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
+        self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
+        self.rejected: dict[str, tuple[int, str]] = {}  # how often a robot refused, and the last why
         self._count = 0
 
     @property
@@ -75,6 +77,7 @@ class Dispatcher:
             return entry
         entry.settles_at = self._settles_at(command, now)
         self.ledger.open(entry)
+        self.last_sent[command.robot] = entry
         if isinstance(command, SetEffector):
             self._grip(command.robot, Grip.SWITCHING)
         elif not isinstance(command, Stop):
@@ -310,9 +313,15 @@ class Dispatcher:
         self.version += entry.state is not before
         if entry.state is State.DONE:
             self._done(entry.command)
+        elif verdict.feed is Feed.REJECTED:
+            self._reject(entry.command.robot, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
         if failed and entry.is_motion and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
+
+    def _reject(self, robot: str, failure: Failure | None) -> None:
+        count, _ = self.rejected.get(robot, (0, ""))
+        self.rejected[robot] = (count + 1, failure.sentence if failure else "")
 
     def _done(self, command: Command) -> None:
         if isinstance(command, SetEffector):

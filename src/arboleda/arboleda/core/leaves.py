@@ -25,7 +25,18 @@ RETRYABLE = frozenset(
 )
 
 
-class Act(Behaviour):
+class Leaf(Behaviour):
+    """What can fail; `last_failure` keeps the sentence when py_trees has forgotten the status."""
+
+    last_failure: str | None = None
+
+    def failed(self, failure: Failure) -> Status:
+        """FAILURE, with its sentence for people."""
+        self.feedback_message = self.last_failure = failure.sentence
+        return Status.FAILURE
+
+
+class Act(Leaf):
     """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted.
 
     A failure that a retry can help is tried again as the cell's `retry` says, after its back-off.
@@ -68,6 +79,7 @@ class Act(Behaviour):
         retry = self.context.cell.retry
         if failure.reason in RETRYABLE and self.tries < retry.times:
             self.tries += 1
+            self.last_failure = failure.sentence
             self.feedback_message = f"{failure.sentence}; try {self.tries} of {retry.times} follows"
             self.again_at = self.context.now + retry.backoff_s
             self.context.wake_at(self.again_at)
@@ -81,10 +93,9 @@ class Act(Behaviour):
         return Status.RUNNING
 
     def _failed(self, failure: Failure) -> Status:
-        self.feedback_message = failure.sentence
         self.context.fail(failure)
         self._halt()
-        return Status.FAILURE
+        return self.failed(failure)
 
     def _halt(self) -> None:
         if self.entry is not None and self.entry.open:
@@ -125,7 +136,7 @@ class Announce(Behaviour):
         return Status.SUCCESS
 
 
-class Require(Behaviour):
+class Require(Leaf):
     """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
 
     def __init__(self, name: str, context: Context, obstacle: Guard) -> None:
@@ -137,9 +148,8 @@ class Require(Behaviour):
         failure = self.obstacle()
         if failure is None:
             return Status.SUCCESS
-        self.feedback_message = failure.sentence
         self.context.fail(failure)
-        return Status.FAILURE
+        return self.failed(failure)
 
 
 class Unless(Behaviour):
@@ -153,7 +163,7 @@ class Unless(Behaviour):
         return Status.SUCCESS if self.holds() else Status.FAILURE
 
 
-class Await(Behaviour):
+class Await(Leaf):
     """RUNNING until `arrived()`, at most `seconds`; FAILURE then, `otherwise()` its cause if `final`."""
 
     def __init__(
@@ -184,10 +194,9 @@ class Await(Behaviour):
         if self.context.now < self.until:
             return Status.RUNNING
         failure = self.otherwise()
-        self.feedback_message = failure.sentence
         if self.final:
             self.context.fail(failure)
-        return Status.FAILURE
+        return self.failed(failure)
 
 
 class Piece(Await):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from .cell import CellRun
@@ -17,6 +19,19 @@ from .zones import Zones
 
 class Refused(ArboledaError):
     """A verb that changes nothing now; the sentence says why and what is possible."""
+
+
+ACTS_KEPT = 20  # what a screen shows of them; the journal has all
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorAct:
+    """What an operator did, at `at` s of the plant's clock."""
+
+    number: int
+    at: float
+    scope: str
+    sentence: str
 
 
 class Operator:
@@ -35,6 +50,7 @@ class Operator:
         self._zones = zones
         self._intake = intake
         self._clock = clock
+        self.acts: deque[OperatorAct] = deque(maxlen=ACTS_KEPT)
 
     def act(self, request: OperatorRequest) -> None:
         """Do it and journal it; Refused says why nothing was done."""
@@ -47,6 +63,8 @@ class Operator:
             self._on_robots(request, scope)
         sentence = f"{request.verb.value} {scope or 'plant'}{' by hand' if request.by_hand else ''}"
         self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=sentence))
+        number = self.acts[-1].number + 1 if self.acts else 1
+        self.acts.append(OperatorAct(number=number, at=self._clock(), scope=scope, sentence=sentence))
 
     def _on_robots(self, request: OperatorRequest, scope: str) -> None:
         robots = self._robots(scope)

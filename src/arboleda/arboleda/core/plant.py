@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -31,7 +31,7 @@ from .messages import (
     Undelivered,
 )
 from .model import Cell, PlantModel
-from .operator import Operator, Refused
+from .operator import Operator, OperatorAct, Refused
 from .recipes import RECIPES, Recipes
 from .task import Order, Recipe, Task
 from .zones import Zones
@@ -89,6 +89,11 @@ class Plant:
     def version(self) -> int:
         """A number that changes whenever something other than a position changed."""
         return self.dispatcher.version + self._changes
+
+    @property
+    def acts(self) -> Sequence[OperatorAct]:
+        """What operators did last, oldest first."""
+        return self._operator.acts
 
     @property
     def at_rest(self) -> bool:

@@ -7,11 +7,13 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import recipes
+from . import places, recipes, tree_view, twin_view
 from .belief import Belief
 from .cell import CellRun
+from .ledger import Entry
 from .messages import TaskChanged
-from .model import Arm
+from .model import Arm, Cell, PlantModel
+from .operator import OperatorAct
 from .plant import Plant
 from .task import Task
 
@@ -31,7 +33,31 @@ def snapshot(plant: Plant) -> dict[str, Any]:
         "robots": [_robot(plant, belief) for belief in plant.dispatcher.beliefs.values()],
         "tasks": [_task(task, plant.now) for task in _recent(plant)],
         "zones": plant.zones.snapshot(),
+        "acts": [_act(act) for act in plant.acts],
         "ignored": dict(plant.dispatcher.ledger.ignored),
+    }
+
+
+def layout(model: PlantModel) -> dict[str, Any]:
+    """What never changes while a plant runs, as its file says it."""
+    return {
+        "plant": model.name,
+        "zones": list(model.zones),
+        "no_stop": [robot.name for robot in model.robots.values() if not robot.has_stop],
+        "cells": [_cell_layout(cell) for cell in model.cells],
+        "places": places.places(model),
+    }
+
+
+def _cell_layout(cell: Cell) -> dict[str, Any]:
+    grid = cell.mobile.grid
+    return {
+        "name": cell.name,
+        "arm": cell.arm.name,
+        "mobile": cell.mobile.name,
+        "grid": {"rows": grid.rows, "columns": grid.columns},
+        "paths": {path.code: list(path.nodes) for path in cell.paths},
+        "stations": len(cell.stations),
     }
 
 
@@ -95,7 +121,7 @@ def _cell(cell: CellRun, now: float) -> dict[str, Any]:
         "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
         "held_by": cell.held_by,
-        "tree": _nodes(cell.tree, "") if cell.tree else [],
+        "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
     }
 
 
@@ -110,6 +136,8 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "reason": task.failure.reason.value if task.failure else None,
         "sentence": task.failure.sentence if task.failure else "",
         "elapsed_s": None if started is None else ended - started,
+        "started_at": started,
+        "ended_at": task.ended_at,
     }
 
 
@@ -132,19 +160,32 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "piece": belief.piece,
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
+        "still": belief.still,
+        "holding": plant.dispatcher.grips.holding(robot.name) if isinstance(robot, Arm) else None,
+        "goal": twin_view.goal(plant.dispatcher.last_sent.get(robot.name)),
+        "telemetry_hz": belief.rate_hz if belief.online else None,
+        "command": _command(plant.dispatcher.last_sent.get(robot.name), now),
+        "rejected": _rejected(plant.dispatcher.rejected.get(robot.name)),
     }
 
 
-def _nodes(node: Behaviour, path: str) -> list[dict[str, Any]]:
-    """A tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
-    here = {
-        "path": path or "root",
-        "name": node.name,
-        "status": node.status.value,
-        "feedback": node.feedback_message,
-    }
-    children = [_nodes(child, f"{path}.{i}".lstrip(".")) for i, child in enumerate(node.children)]
-    return [here, *(row for rows in children for row in rows)]
+def _command(entry: Entry | None, now: float) -> dict[str, Any] | None:
+    """The last command of a robot."""
+    if entry is None:
+        return None
+    id, what = entry.command.id, entry.doing
+    return {"id": id, "what": what, "state": entry.state.value, "age_s": now - entry.sent_at}
+
+
+def _rejected(known: tuple[int, str] | None) -> dict[str, Any]:
+    """How many commands a robot refused, and why the last one."""
+    count, last = known or (0, None)
+    return {"count": count, "last": last}
+
+
+def _act(act: OperatorAct) -> dict[str, Any]:
+    """What an operator did; `number` grows by one with every act."""
+    return {"number": act.number, "at": act.at, "scope": act.scope, "sentence": act.sentence}
 
 
 def diagnostics(snapshot: dict[str, Any]) -> list[Diagnostic]:
@@ -158,7 +199,8 @@ def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
     level = OK if robot["online"] else STALE
     if robot["online"] and robot["state"] not in (None, 0, 1):
         level = ERROR
-    values = {key: str(value) for key, value in robot.items() if value is not None}
+    plain = {key: value for key, value in robot.items() if not isinstance(value, dict)}
+    values = {key: str(value) for key, value in plain.items() if value is not None}
     return (f"arboleda: {robot['name']}", robot["mqtt"], level, robot["obstacle"] or "ready", values)
 
 

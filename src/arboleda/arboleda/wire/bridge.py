@@ -67,6 +67,7 @@ class Bridge:
         self._plant_beats = False
         self._beat_at: float | None = None
         self._strays = Counters()
+        self.connected = False  # to the broker
 
     @property
     def counters(self) -> dict[str, Counters]:
@@ -99,6 +100,7 @@ class Bridge:
         if isinstance(event, Delivery):
             return self._deliver(event)
         if isinstance(event, Connection):
+            self.connected = event.up
             changed = [board.connection(event.at, event.up) for board in self._boards.values()]
             return [message for messages in changed for message in messages]
         if isinstance(event, Leaving):

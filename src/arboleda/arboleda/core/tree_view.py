@@ -1,0 +1,129 @@
+"""A tree as plain data: a row per node, what kind it is, what it was given, how long it has left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from .leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless
+
+Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
+UNKNOWN: Times = (None, None)
+
+
+def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
+    """A tree in depth-first order; a node is named by its path of child numbers, e.g. `0.2.1`."""
+    found: list[dict[str, Any]] = []
+    _add(tree, "", now, found)
+    return found
+
+
+def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
+    running = node.status is Status.RUNNING
+    since_s, deadline_s = _times(node, now) if running else UNKNOWN
+    found.append(
+        {
+            "path": path or "root",
+            "name": node.name,
+            "kind": kind(node),
+            "status": node.status.value,
+            "feedback": node.feedback_message,
+            "description": _description(node),
+            "parameters": _parameters(node),
+            "since_s": since_s,
+            "deadline_s": deadline_s,
+            "failure": _failure(node),
+        }
+    )
+    for number, child in enumerate(node.children):
+        _add(child, f"{path}.{number}" if path else str(number), now, found)
+
+
+KINDS: dict[type, str] = {
+    composites.Selector: "selector",
+    composites.Sequence: "sequence",
+    composites.Parallel: "parallel",
+    Act: "command",
+    Announce: "notice",
+    Await: "await",
+    Carry: "note",
+    Dwell: "dwell",
+    Require: "condition",
+    Unless: "condition",
+}
+OWN = "step"  # a node of a user's own
+_KIND_OF: dict[type, str] = {}
+
+
+def kind(node: Behaviour) -> str:
+    """One word of KINDS, OWN for a node of a user's own."""
+    known = _KIND_OF.get(type(node))
+    if known is None:
+        known = next((KINDS[base] for base in type(node).__mro__ if base in KINDS), OWN)
+        _KIND_OF[type(node)] = known
+    return known
+
+
+def _description(node: Behaviour) -> str:
+    """The first line of a user's own docstring; what is in KINDS screens explain in their own words."""
+    lines = (type(node).__doc__ or "").strip().splitlines() if kind(node) == OWN else []
+    return lines[0].strip() if lines else ""
+
+
+def _parameters(node: Behaviour) -> dict[str, Any]:
+    """What a node was given; of a command only what it was sent with."""
+    told = TOLD.get(kind(node))
+    if told is not None:
+        return told(node)
+    own = getattr(node, "parameters", None)
+    return {str(key): str(value) for key, value in own.items()} if isinstance(own, dict) else {}
+
+
+def _of_command(node: Any) -> dict[str, Any]:
+    if node.entry is None:
+        return {}
+    command = node.entry.command
+    said = {field.name: getattr(command, field.name) for field in fields(command)}
+    return {"command": said.pop("id"), **said, **({"tries": node.tries + 1} if node.tries else {})}
+
+
+def _of_await(node: Any) -> dict[str, Any]:
+    zones = {"zones": sorted(node.zones)} if isinstance(node, TakeZones) else {}
+    return {"seconds": node.seconds, **zones}
+
+
+TOLD: dict[str, Callable[[Any], dict[str, Any]]] = {
+    "command": _of_command,
+    "await": _of_await,
+    "dwell": lambda node: {"seconds": node.seconds},
+    "note": lambda node: {"carried": node.carried},
+}
+
+
+def _times(node: Behaviour, now: float) -> Times:
+    if isinstance(node, Act):
+        return _command_times(node, now)
+    if isinstance(node, Await | Dwell):
+        left = node.until - node.context.now
+        return node.seconds - left, left
+    return UNKNOWN
+
+
+def _command_times(node: Act, now: float) -> Times:
+    if node.again_at is not None:
+        return None, node.again_at - node.context.now
+    if node.entry is None or not node.entry.open:
+        return UNKNOWN
+    return now - node.entry.sent_at, node.entry.deadline - now
+
+
+def _failure(node: Behaviour) -> str | None:
+    """The sentence of its last failure."""
+    if node.status is Status.FAILURE and node.feedback_message:
+        return node.feedback_message
+    return getattr(node, "last_failure", None)
