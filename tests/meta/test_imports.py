@@ -22,8 +22,11 @@ def third_party(path: Path) -> set[str]:
     return {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"arboleda"}
 
 
-@pytest.mark.parametrize(("layer", "allowed"), [("core", {"py_trees"}), ("wire", set()), ("sim", set())])
-def test_pure_layers_need_no_other_package(layer: str, allowed: set[str]) -> None:
+@pytest.mark.parametrize(
+    ("layer", "allowed"),
+    [("core", {"py_trees"}), ("wire", set()), ("sim", set()), ("dashboard", {"fastapi", "nicegui", "yaml"})],
+)
+def test_these_layers_need_no_other_package(layer: str, allowed: set[str]) -> None:
     files = sorted((PACKAGE / layer).rglob("*.py"))
     assert files
     assert {path.name: extra for path in files if (extra := third_party(path) - allowed)} == {}

@@ -30,7 +30,7 @@ _PARAMETERS: dict[str, tuple[Value, str]] = {
     "state_dir": ("", "where the plant keeps its state; empty: $XDG_STATE_HOME/arboleda/<plant name>"),
 }
 _DASHBOARD: dict[str, tuple[Value, str]] = {
-    "dashboard": (False, "serve the HTTP API on a free port of this machine"),
+    "dashboard": (False, "serve the page and the HTTP API on this machine: port 8080, or a free one"),
 }
 _PARTS = {"orchestrator": "orchestrator", "mqtt_bridge": "bridge", "virtual_devices": "devices"}
 _KINDS = {float: "a number", str: "a text", bool: "true or false"}
@@ -82,6 +82,7 @@ def _app(link: Link, name: str) -> App:
         broker=None if "broker" in parts else values["broker"] or None,
         credentials=login(),
         rate=values["rate"],
+        page="web" in parts,
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
     )
     return build(model, parts, options)
@@ -98,9 +99,10 @@ def _embedded(name: str) -> str:
 
 
 def _has_web() -> bool:
-    """Whether the libraries of the HTTP API are there; a line in the log where they are not."""
+    """Whether the libraries of the page are there; a line in the log where they are not."""
     try:
-        import arboleda.app.parts.web  # noqa: F401
+        import arboleda.app.parts.web
+        import arboleda.dashboard.page  # noqa: F401
     except ImportError as error:
         logging.warning("the dashboard is off: %s", missing.sentence(error))
         return False

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Collection
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .rate import at_rate
 from .state import StateDir, default_state
+from .web_options import WebOptions
 
 if TYPE_CHECKING:  # its libraries are needed only where this part is
     from .parts.web import WebPart
@@ -45,6 +46,8 @@ class Options:
     credentials: Credentials | None = None
     rate: float = 1.0
     state_dir: Path | None = None
+    web: WebOptions = field(default_factory=WebOptions)
+    page: bool = True  # the API needs none, and a page takes a second to load
 
 
 class App:
@@ -56,7 +59,9 @@ class App:
         self._state = StateDir(options.state_dir or default_state(model.name))
         self._store = Store(self._state.path / STORE)
         self._broker = _broker(model, options, set(parts))
-        self._web = self._web_part() if "web" in parts else None
+        self._web = self._web_part(options) if "web" in parts else None
+        self._bridge: BridgePart | None = None
+        self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
@@ -67,6 +72,7 @@ class App:
             if "orchestrator" in parts:
                 self._state.open()
                 self._store.open()
+                self._past_acts = _acts(self._store)
             self._build(set(parts))
         except BaseException:  # whatever it is, the next start finds the state directory free
             self._let_go()
@@ -78,7 +84,7 @@ class App:
         notes = list(self._link.notes) if self._link else []
         notes.append(f"MQTT broker: {self._broker.address}")
         if self._web is not None:
-            notes.append(f"HTTP API: http://127.0.0.1:{self._web.port}/api/plant")
+            notes += self._web.notes
         return notes
 
     @property
@@ -135,8 +141,31 @@ class App:
     def snapshot(self) -> dict[str, Any]:
         return self._plant.snapshot()
 
-    def _find(self, task: str) -> dict[str, Any] | None:
+    def positions(self) -> dict[str, Any]:
+        return self._plant.positions()
+
+    def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)
+
+    def links(self) -> dict[str, Any]:
+        """Broker, ROS 2 and refused messages, as the page's `PlantSide` has them; from any thread."""
+        connected, refused = self._bridge.links() if self._bridge else (False, {})
+        broker = {"address": str(self._broker.address), "connected": connected} if self._bridge else None
+        ros = {"notes": list(self._link.notes)} if self._link else None
+        return {"broker": broker, "ros": ros, "refused": refused}
+
+    def _web_part(self, options: Options) -> WebPart:
+        from .parts import page  # its libraries take half a second, and nodes do without them
+        from .parts.web import WebPart
+
+        sources = page.Sources(
+            model=self.model,
+            links=self.links,
+            positions=self.positions,
+            past_acts=lambda: self._past_acts,
+        )
+        mount = page.mounting(sources) if options.page else None
+        return WebPart(self, self._state.path, self._state.announce, options.web, mount)
 
     @property
     def _plant(self) -> Orchestrator:
@@ -144,17 +173,12 @@ class App:
             raise ArboledaError("there is no orchestrator in this process")
         return self.orchestrator
 
-    def _web_part(self) -> WebPart:
-        from .parts.web import WebPart
-
-        return WebPart(self.snapshot, self._find, self.submit, self.operate, self._state.announce)
-
     def _build(self, parts: set[str]) -> None:
         now, bridge = int(time.time()), None
         virtual, scout = "devices" in parts, "broker" not in parts
         if "bridge" in parts:
             waits = virtual and scout
-            bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
+            bridge = self._bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
             self._parts.append(bridge)
         if virtual:
             joined = bridge.join if bridge is not None and scout else _nothing
@@ -166,6 +190,7 @@ class App:
             self.orchestrator = Orchestrator(self.model, epoch, self._crash, self._store)
             self._parts.append(self.orchestrator)
         if self._web is not None:
+            self.watch(self._web.side.saw)
             self._parts.append(self._web)
         self._join(bridge, self._link)
 
@@ -224,6 +249,12 @@ def _refuse_ros_robots(model: PlantModel) -> None:
 
 
 def _nothing() -> None: ...
+
+
+def _acts(store: Store) -> list[dict[str, Any]]:
+    """What operators did before this start, oldest first."""
+    entries = reversed(store.entries())
+    return [{"at": each.unix_s, "scope": each.scope, "sentence": each.sentence} for each in entries]
 
 
 def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker | OtherBroker:

@@ -15,13 +15,14 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda import __version__
+from arboleda.adapters.web.names import is_loopback, public_origin
 from arboleda.core import recipes, text
 from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.task import Order, Recipe
 
-from . import config, session, verbs
+from . import config, session, token_command, verbs
 from .build import PARTS, Options, build
 from .client import Refused
 from .parts.broker import PASSWORD, USER, address, login
@@ -29,6 +30,7 @@ from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
 from .urdf import robot_urdf
+from .web_options import WebOptions
 from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
@@ -52,6 +54,15 @@ class Boards(str, Enum):
 
 def _broker(value: str | None) -> str | None:
     return value if value is None else str(_or_bad_parameter(address, value))
+
+
+def _host(value: str) -> str:
+    _or_bad_parameter(is_loopback, value)
+    return value
+
+
+def _public_url(value: str | None) -> str | None:
+    return value if value is None else str(_or_bad_parameter(public_origin, value))
 
 
 def _rate(value: float) -> float:
@@ -101,8 +112,32 @@ BoardsOption = Annotated[
 Rate = Annotated[
     float, typer.Option(metavar="X", callback=_rate, help="Make the virtual robots X times as fast.")
 ]
-
-
+Host = Annotated[
+    str,
+    typer.Option(
+        metavar="ADDRESS",
+        callback=_host,
+        help="Where the HTTP API listens; with 0.0.0.0 or any other address of a network, everybody needs "
+        "a token.",
+    ),
+]
+Port = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        min=1,
+        max=65535,
+        help="Port of the HTTP API. [default: 8080, or a free one if it is taken]",
+    ),
+]
+PublicUrl = Annotated[
+    str | None,
+    typer.Option(
+        metavar="URL",
+        callback=_public_url,
+        help="How people reach a proxy before the HTTP API, e.g. https://plant.example; demands a token.",
+    ),
+]
 Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
 
 
@@ -117,11 +152,15 @@ def up(
     broker_users: BrokerUsers = None,
     boards: BoardsOption = None,
     rate: Rate = 1.0,
+    host: Host = "127.0.0.1",
+    port: Port = None,
+    public_url: PublicUrl = None,
     state: StateFolder = None,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model = _model(plant, tasks or [])
-    options = _options(broker, broker_host, broker_users, rate, state)
+    web = WebOptions(host=host, port=port, public_url=public_url)
+    options = _options(broker, broker_host, broker_users, rate, state, web)
     _run(model, tasks or [], options, boards=boards, ros=not no_ros, lan=ros_lan, stay=True)
 
 
@@ -136,11 +175,15 @@ def run(
     broker_users: BrokerUsers = None,
     boards: BoardsOption = None,
     rate: Rate = 1.0,
+    host: Host = "127.0.0.1",
+    port: Port = None,
+    public_url: PublicUrl = None,
     state: StateFolder = None,
 ) -> None:
     """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input."""
     model = _model(plant, tasks)
-    options = _options(broker, broker_host, broker_users, rate, state)
+    web = WebOptions(host=host, port=port, public_url=public_url)
+    options = _options(broker, broker_host, broker_users, rate, state, web)
     _run(model, tasks, options, boards=boards, ros=not no_ros, lan=ros_lan, stay=False)
 
 
@@ -170,6 +213,7 @@ def status(
     Console(highlight=False).print(table(snapshot))
 
 
+token_command.add_to(cli)
 simulate.add_to(cli)
 verbs.add_to(cli)
 
@@ -252,7 +296,12 @@ def _model(plant: Path | None, tasks: list[str]) -> PlantModel:
 
 
 def _options(
-    broker: str | None, host: str | None, users: Path | None, rate: float, state: Path | None
+    broker: str | None,
+    host: str | None,
+    users: Path | None,
+    rate: float,
+    state: Path | None,
+    web: WebOptions,
 ) -> Options:
     if broker and host:
         raise typer.BadParameter(
@@ -267,6 +316,7 @@ def _options(
         credentials=login(),
         rate=rate,
         state_dir=state,
+        web=web,
     )
 
 
@@ -286,7 +336,7 @@ def _run(
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
     link = session.ros_link(lan=lan) if ros else None
-    app = build(model, set(PARTS) - left_out, replace(options, link=link))
+    app = build(model, set(PARTS) - left_out, replace(options, link=link, page=stay))
     raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
 
 

@@ -8,10 +8,12 @@ from urllib.parse import quote
 
 import httpx
 
+from arboleda.adapters.web.auth import Role
 from arboleda.core.errors import ArboledaError, QueueFull, TextError
 from arboleda.core.messages import Verb
 
-from .state import find_running
+from . import tokens
+from .state import Running, find_running
 
 TIMEOUT_S = 10.0
 
@@ -54,15 +56,24 @@ class PlantClient:
             raise ArboledaError(
                 f"The plant on {self._state} (process {running.pid}) is still starting or ending."
             )
+        host = running.guarded_at or "127.0.0.1"
         try:
             # No proxy of the environment stands between two processes of one machine.
-            with httpx.Client(trust_env=False, timeout=TIMEOUT_S) as client:
-                answer = client.request(method, f"http://127.0.0.1:{running.port}{path}", json=body)
-                said = answer.json()
-        except (httpx.HTTPError, ValueError) as error:
+            with httpx.Client(trust_env=False, timeout=TIMEOUT_S, headers=self._login(running)) as client:
+                answer = client.request(method, f"http://{host}:{running.port}{path}", json=body)
+                said, sentence = answer.json(), ""
+                if not answer.is_success:
+                    sentence = said["sentence"]
+        except (httpx.HTTPError, ValueError, TypeError, KeyError) as error:
             raise ArboledaError(
                 f"The plant on {self._state} (process {running.pid}) did not answer."
             ) from error
         if answer.is_success:
             return said
-        raise ERRORS.get(answer.status_code, ArboledaError)(said["sentence"])
+        raise ERRORS.get(answer.status_code, ArboledaError)(sentence)
+
+    def _login(self, running: Running) -> dict[str, str]:
+        """The operator's token where the plant wants one: whoever may read it may operate."""
+        if not running.guarded_at:
+            return {}
+        return {"authorization": f"Bearer {tokens.TokenFile(self._state)()[Role.OPERATOR]}"}

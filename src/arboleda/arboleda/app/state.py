@@ -27,11 +27,13 @@ def default_state(plant: str) -> Path:
 
 @dataclass(frozen=True, kw_only=True)
 class Running:
-    """Who runs the plant; `port` is that of its HTTP API, None until it listens."""
+    """Who runs the plant; `port` is that of its HTTP API, None until it listens. `guarded_at` is the host
+    where it wants a token, "" where it listens to this machine only and wants none."""
 
     pid: int
     started: str
     port: int | None = None
+    guarded_at: str = ""
 
 
 class StateDir:
@@ -69,9 +71,10 @@ class StateDir:
         replace_file(file, str(epoch))
         return epoch
 
-    def announce(self, port: int) -> None:
-        """Say where the HTTP API listens."""
-        replace_file(self.path / FACTS, json.dumps(asdict(replace(self._running, port=port))))
+    def announce(self, port: int, guarded_at: str = "") -> None:
+        """Say where the HTTP API listens, and whether it wants a token."""
+        known = replace(self._running, port=port, guarded_at=guarded_at)
+        replace_file(self.path / FACTS, json.dumps(asdict(known)))
 
     def close(self) -> None:
         """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""

@@ -26,4 +26,9 @@ StateFolder = Annotated[
 
 def client(plant: Path | None, state: Path | None) -> PlantClient:
     """The client of the plant that runs on `state`, or where that plant file keeps its state."""
-    return PlantClient(state or default_state(config.load(plant).name))
+    return PlantClient(folder(plant, state))
+
+
+def folder(plant: Path | None, state: Path | None) -> Path:
+    """`state`, or where that plant file keeps its state."""
+    return state or default_state(config.load(plant).name)

@@ -73,6 +73,18 @@ class BridgePart:
             self._tell_link(False, str(self._broker.address))
             self._client.start()
 
+    def links(self) -> tuple[bool, dict[str, dict[str, Any]]]:
+        """Whether the broker is reached, and by robot what of its board was refused: count, last sentence."""
+
+        def look(bridge: Bridge) -> tuple[bool, dict[str, dict[str, Any]]]:
+            counted = bridge.counters.items()
+            return bridge.connected, {
+                robot: {"count": counters.refused, "last": counters.last or None}
+                for robot, counters in counted
+            }
+
+        return self.loop.read(look)
+
     def stop(self) -> None:
         """Halt what still moves, then leave; the plant may be another process that has ended already."""
         self.loop.post(Leaving(at=time.monotonic()))

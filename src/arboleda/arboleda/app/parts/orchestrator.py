@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from uuid import uuid4
 
 from arboleda.adapters.store import Store
-from arboleda.core import view
+from arboleda.core import twin_view, view
 from arboleda.core.messages import (
     Command,
     Fact,
@@ -112,6 +112,10 @@ class Orchestrator:
 
     def snapshot(self) -> dict[str, Any]:
         return self.loop.read(view.snapshot)
+
+    def positions(self) -> dict[str, Any]:
+        """What moves; `now` is on the plant's clock."""
+        return {"now": time.monotonic(), **self.loop.read(twin_view.positions)}
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self.loop.read(lambda plant: view.task_by_id(plant, task))

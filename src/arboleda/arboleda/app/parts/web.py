@@ -1,40 +1,128 @@
-"""The HTTP API as a part."""
+"""The HTTP server as a part, and the plant as it sees it."""
 
 from __future__ import annotations
 
+import logging
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
-from arboleda.adapters.web import Api, Operate
+from fastapi import FastAPI
+
+from arboleda.adapters.web.api import make_app
+from arboleda.adapters.web.auth import Door
+from arboleda.adapters.web.guard import Guard
+from arboleda.adapters.web.names import is_loopback, names_for
+from arboleda.adapters.web.plant_side import Snapshot
+from arboleda.adapters.web.server import DEFAULT_PORT, Server
 from arboleda.core import view
-from arboleda.core.messages import TaskChanged
+from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
+
+from .. import tokens
+from ..web_options import WebOptions
+
+LOG = logging.getLogger(__name__)
+CLEAR = "No TLS: the token travels in clear on {host}; see docs/how-to/network.md"
+
+
+class Asked(Protocol):
+    """What the part asks of the plant it belongs to."""
+
+    def snapshot(self) -> Snapshot: ...
+    def find(self, task: str) -> dict[str, Any] | None: ...
+    def submit(self, text: str) -> Future[TaskChanged]: ...
+    def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
+
+
+class Side:
+    """The plant side of the API and of pages."""
+
+    def __init__(self, plant: Asked) -> None:
+        self._plant = plant
+        self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
+        self._changing = threading.Lock()
+        self.snapshot = plant.snapshot
+        self.find = plant.find
+        self.operate = plant.operate
+
+    def submit(self, text: str) -> Future[dict[str, Any]]:
+        plain: Future[dict[str, Any]] = Future()
+        self._plant.submit(text).add_done_callback(lambda answer: _pass_on(answer, plain))
+        return plain
+
+    def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
+        with self._changing:
+            self._watchers = (*self._watchers, callback)
+        return lambda: self._forget(callback)
+
+    def saw(self, snapshot: Snapshot) -> None:
+        """Tell every watcher, in the plant's thread; one that fails is told no more."""
+        for callback in self._watchers:
+            try:
+                callback(snapshot)
+            except Exception as error:  # noqa: BLE001 - whatever a screen does, the plant goes on
+                LOG.error("a watcher of the plant failed and is told no more: %r", error)
+                self._forget(callback)
+
+    def _forget(self, callback: Callable[[Snapshot], None]) -> None:
+        with self._changing:
+            self._watchers = tuple(each for each in self._watchers if each is not callback)
 
 
 class WebPart:
-    """Listens on any free port of this machine, and has it announced."""
+    """Serves the API, and the pages that `mount(app, side)` adds; has its address announced."""
 
     def __init__(
         self,
-        snapshot: Callable[[], dict[str, Any]],
-        find: Callable[[str], dict[str, Any] | None],
-        submit: Callable[[str], Future[TaskChanged]],
-        operate: Operate,
-        announce: Callable[[int], None],
+        plant: Asked,
+        state: Path,
+        announce: Callable[[int, str], None],
+        options: WebOptions,
+        mount: Callable[[FastAPI, Side], None] | None = None,
     ) -> None:
-        self.port = 0
+        self.side = Side(plant)
+        self._options = options
+        self._state = state
         self._announce = announce
-        self._api = Api(snapshot, find, lambda text: _plain(submit(text)), operate)
+        self._port = 0
+        self._shows_page = mount is not None
+        app = make_app(self.side)
+        if mount is not None:
+            mount(app, self.side)
+        door = Door(tokens.TokenFile(state) if options.guarded else None)
+        guarded = Guard(app, names_for(options.host, options.public_url), door)
+        self._server = Server(guarded, host=options.host, port=options.port)
+
+    @property
+    def notes(self) -> list[str]:
+        """What a person should know, a line each."""
+        address = f"http://{self._options.near}:{self._port}"
+        notes = [f"HTTP API: {address}/api/plant"]
+        if self._options.port is None and self._port != DEFAULT_PORT:
+            notes[0] += f" (port {DEFAULT_PORT} is taken)"
+        if self._shows_page:
+            notes.insert(0, f"Page: {address}")
+        if self._options.guarded:
+            notes.append(f"Tokens: {self._state / tokens.TOKENS}; arboleda token shows them")
+        if not is_loopback(self._options.host):
+            notes.append(CLEAR.format(host=self._options.host))
+        return notes
 
     def start(self) -> None:
-        self.port = self._api.start()
-        self._announce(self.port)
+        if self._options.guarded:
+            tokens.read(self._state)
+        self._port = self._server.start()
+        self._announce(self._port, self._options.near if self._options.guarded else "")
 
     def stop(self) -> None:
-        self._api.stop()
+        self._server.stop()
 
 
-def _plain(answer: Future[TaskChanged]) -> Future[dict[str, Any]]:
-    plain: Future[dict[str, Any]] = Future()
-    answer.add_done_callback(lambda known: plain.set_result(view.change(known.result())))
-    return plain
+def _pass_on(answer: Future[TaskChanged], plain: Future[dict[str, Any]]) -> None:
+    error = answer.exception()
+    if error is not None:
+        plain.set_exception(error)
+    else:
+        plain.set_result(view.change(answer.result()))

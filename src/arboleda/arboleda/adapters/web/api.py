@@ -1,0 +1,171 @@
+"""The routes of the HTTP API."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from concurrent.futures import Future
+from typing import Any, TypeVar
+from urllib.parse import quote
+
+from fastapi import APIRouter, FastAPI, Request
+from fastapi.responses import JSONResponse
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
+
+from arboleda import __version__
+from arboleda.core.errors import ArboledaError, PayloadError, TextError
+from arboleda.core.messages import Verb
+
+from . import listing, login, stream
+from .auth import SUBMIT, Forbidden, require
+from .plant_side import PlantSide
+from .schema import ByHand, Done, Sentence, Snapshot, Task, TaskText
+
+log = logging.getLogger(__name__)
+Answer = TypeVar("Answer")
+
+ANSWER_S = 5.0
+ABOUT = """Look at a running plant, give it tasks, and operate it. What is refused says why in one sentence.
+Where the plant is open to a network every request carries a token (Authorization: Bearer ...). The stop is a
+stop in software and no safety function."""
+STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403}
+Answers = dict[int | str, dict[str, Any]]
+OTHERS: Answers = {
+    "default": {"model": Sentence, "description": "401 without a token, 413 too long, 429 too often, ..."}
+}
+REFUSED: Answers = {
+    403: {"model": Sentence, "description": "The role is not enough, or a page of another site asks."},
+    422: {"model": Sentence, "description": "The request is wrong."},
+    503: {"model": Sentence, "description": "Not now."},
+}
+CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
+UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
+
+
+def make_app(side: PlantSide) -> FastAPI:
+    """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it."""
+    app = FastAPI(
+        title="Arboleda",
+        version=__version__,
+        description=ABOUT,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+        redirect_slashes=False,
+    )
+    app.add_exception_handler(ArboledaError, refuse)
+    app.add_exception_handler(HTTPException, refuse)
+    app.add_exception_handler(Exception, own_up)
+    for router in (routes(side), stream.routes(side), login.routes(), listing.routes(app)):
+        app.include_router(router, responses=OTHERS)
+    return app
+
+
+def routes(side: PlantSide) -> APIRouter:
+    """Look, submit, operate."""
+    api = APIRouter(prefix="/api")
+
+    @api.get("/plant", response_model=Snapshot)
+    async def plant() -> JSONResponse:
+        """The whole plant: cells with their trees, robots, tasks, zones."""
+        return JSONResponse(side.snapshot())
+
+    @api.post(
+        "/tasks", status_code=202, response_model=Task, responses=REFUSED, openapi_extra=_body(TaskText)
+    )
+    async def add_task(request: Request) -> JSONResponse:
+        """Queue a task; 422 where its text is refused, 503 where the queue is full."""
+        require(request.scope["arboleda.role"], SUBMIT)
+        task = await in_time(side.submit(task_text(await request.body())))
+        return JSONResponse(task, status_code=422 if task["state"] == "refused" else 202)
+
+    @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
+    async def task(task_id: str) -> JSONResponse:
+        """One task."""
+        known = side.find(task_id)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no task {task_id[:80]!a}.")
+        return JSONResponse(known)
+
+    verb_route: dict[str, Any] = {
+        "response_model": Done,
+        "responses": REFUSED | CONFLICT,
+        "openapi_extra": _body(ByHand, required=False),
+    }
+
+    @api.post("/plant/{verb}", **verb_route)
+    async def operate_plant(verb: str, request: Request) -> JSONResponse:
+        """Have the whole plant do it: stop, clear, reset, hold, resume, ..."""
+        return await operated(verb, "", request)
+
+    @api.post("/cells/{scope}/{verb}", **verb_route)
+    async def operate_one(scope: str, verb: str, request: Request) -> JSONResponse:
+        """Have one cell, robot, zone or task do it."""
+        return await operated(verb, scope, request)
+
+    async def operated(word: str, scope: str, request: Request) -> JSONResponse:
+        verb, by_hand = verb_of(word), said_by_hand(await request.body())
+        require(request.scope["arboleda.role"], verb.value)
+        answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
+        if answer.refusal is not None:
+            return JSONResponse({"sentence": answer.refusal}, status_code=409)
+        return JSONResponse({"verb": verb.value, "scope": scope})
+
+    return api
+
+
+async def in_time(answer: Future[Answer]) -> Answer:
+    """What the plant answers; ArboledaError where it takes longer than ANSWER_S."""
+    try:
+        # the plant still sets its future after that, which a cancelled one does not allow
+        return await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(answer)), ANSWER_S)
+    except asyncio.TimeoutError:
+        raise ArboledaError(
+            "The plant did not answer in time; see its state before sending this again."
+        ) from None
+
+
+def verb_of(word: str) -> Verb:
+    """The operator's verb of that name; PayloadError where there is none."""
+    try:
+        return Verb(word)
+    except ValueError:
+        names = ", ".join(verb.value for verb in Verb)
+        raise PayloadError(f"{word[:80]!a} is not an operator's verb; there are {names}.") from None
+
+
+def said_by_hand(body: bytes) -> bool:
+    """The value in `{"by_hand": true}`, False where there is no body; PayloadError for anything else."""
+    try:
+        return ByHand.model_validate_json(body or b"{}").by_hand
+    except ValidationError:
+        raise PayloadError(
+            'The body may be empty or JSON like {"by_hand": true}, and nothing else.'
+        ) from None
+
+
+def task_text(body: bytes) -> str:
+    """The text in `{"text": "..."}`; PayloadError for anything else."""
+    try:
+        return TaskText.model_validate_json(body).text
+    except ValidationError:
+        raise PayloadError('The body must be JSON like {"text": "sis_a 0B 7"}, and nothing else.') from None
+
+
+async def refuse(_request: Request, error: Exception) -> JSONResponse:
+    """A refusal as status and sentence."""
+    if isinstance(error, HTTPException):
+        return JSONResponse({"sentence": error.detail}, status_code=error.status_code)
+    return JSONResponse({"sentence": str(error)}, status_code=STATUS.get(type(error), 503))
+
+
+async def own_up(request: Request, error: Exception) -> JSONResponse:
+    """An error of ours: the log names it, the caller gets a sentence."""
+    log.error("%s %s failed: %r", request.method, quote(request.url.path), error)
+    return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
+
+
+def _body(model: type[TaskText] | type[ByHand], *, required: bool = True) -> dict[str, Any]:
+    schema = model.model_json_schema()
+    return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}

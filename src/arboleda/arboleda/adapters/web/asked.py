@@ -1,0 +1,116 @@
+"""A request before anybody answers it: its headers, whose it is, what it wants."""
+
+from __future__ import annotations
+
+import re
+from http.cookies import CookieError, SimpleCookie
+
+from starlette.types import Scope
+
+from .names import is_loopback
+
+API, LOGIN, LOGOUT = "/api/", "/login", "/logout"
+STOP = re.compile(r"/api/(plant|cells/[^/]+)/stop")
+READS = {"GET", "HEAD"}
+ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
+FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"}
+
+
+class Asked:
+    """One http request or websocket handshake; header values are latin-1, "" where there is none."""
+
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+        self._headers = [
+            (name.decode("latin-1"), value.decode("latin-1", "replace")) for name, value in scope["headers"]
+        ]
+        self._first = dict(reversed(self._headers))
+
+    def header(self, name: str) -> str:
+        return self._first.get(name, "")
+
+    def has(self, *names: str) -> bool:
+        return any(name in self._first for name in names)
+
+    @property
+    def header_bytes(self) -> int:
+        target = len(self.scope.get("raw_path") or b"") + len(self.scope["query_string"])
+        return target + sum(len(name) + len(value) + 4 for name, value in self._headers)
+
+    @property
+    def ambiguous(self) -> bool:
+        """Whether two readers of it could disagree: on who asks, or on where its body ends."""
+        names = [name for name, _ in self._headers if name in ONLY_ONE]
+        return len(names) > len(set(names)) or (self.has("content-length") and self.has("transfer-encoding"))
+
+    @property
+    def socket(self) -> bool:
+        return bool(self.scope["type"] == "websocket")
+
+    @property
+    def path(self) -> str:
+        return str(self.scope["path"])
+
+    @property
+    def reads(self) -> bool:
+        """Whether it only looks. A websocket may do anything."""
+        return not self.socket and self.scope["method"] in READS
+
+    @property
+    def stops(self) -> bool:
+        return not self.socket and self.scope["method"] == "POST" and bool(STOP.fullmatch(self.path))
+
+    @property
+    def for_api(self) -> bool:
+        return not self.socket and self.path.startswith(API)
+
+    @property
+    def for_page(self) -> bool:
+        return not self.path.startswith(API) and self.path not in (LOGIN, LOGOUT)
+
+    @property
+    def logs_in(self) -> bool:
+        return not self.socket and self.path == LOGIN
+
+    @property
+    def forwarded(self) -> bool:
+        return self.has(*FORWARDED)
+
+    @property
+    def from_elsewhere(self) -> bool:
+        """Whether a browser says that a page of another origin embeds or fetches this."""
+        site, mode = self.header("sec-fetch-site"), self.header("sec-fetch-mode")
+        return site in ("cross-site", "same-site") and mode != "navigate"
+
+    @property
+    def wants_page(self) -> bool:
+        return self.reads and self.for_page and "text/html" in self.header("accept")
+
+    @property
+    def bearer(self) -> bytes | None:
+        kind, _, token = self.header("authorization").partition(" ")
+        return token.strip().encode("latin-1", "replace") if kind.lower() == "bearer" else None
+
+    @property
+    def session(self) -> str | None:
+        """What the login cookie holds."""
+        try:
+            cookie = SimpleCookie(self.header("cookie")).get(cookie_name(self.scope))
+        except CookieError:
+            return None
+        return cookie.value if cookie is not None else None
+
+    def peer(self, *, proxied: bool) -> str:
+        """The address it comes from, an IPv6 one by its network; behind a proxy of this machine, the one
+        that the proxy saw."""
+        address = (self.scope.get("client") or ("",))[0]
+        if proxied and address and is_loopback(address) and self.has("x-forwarded-for"):
+            address = [value for name, value in self._headers if name == "x-forwarded-for"][-1]
+            address = address.rpartition(",")[2].strip()
+        groups = address.split(":")
+        return ":".join(groups[:4]) if len(groups) > 4 and "." not in address else address
+
+
+def cookie_name(scope: Scope) -> str:
+    """Browsers send the cookies of every port of a machine; two plants on one keep theirs apart."""
+    return f"arboleda_{(scope.get('server') or ('', 0))[1]}"

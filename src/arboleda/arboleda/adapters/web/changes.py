@@ -1,0 +1,151 @@
+"""What changed between two snapshots, told to readers of whom none can hold up the plant."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+from .plant_side import PlantSide, Snapshot
+
+HISTORY, WAITING, PENDING = 200, 256, 64
+Row = dict[str, Any]
+
+# list in a snapshot: (kind of event, what names a row, what counts as a change of it)
+ROWS = {
+    "cells": ("cell", "name", ("state", "task", "step", "queue", "paused", "waiting_for", "held_by")),
+    "robots": (
+        "robot",
+        "name",
+        ("online", "obstacle", "state", "node", "homed", "latched", "effector", "piece", "boot_id"),
+    ),
+    "tasks": ("task", "id", ("text", "cell", "state", "reason", "sentence")),
+    "zones": ("zone", "zone", ("state", "robot", "waiting")),
+}
+PLANT = ("plant", "epoch", "ending")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """One server-sent event; `text` is made once for all readers."""
+
+    id: str
+    text: str
+
+
+def event(id: str, kind: str, row: Row) -> Event:
+    return Event(id=id, text=f"id: {id}\nevent: {kind}\ndata: {json.dumps(row)}\n\n")
+
+
+def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
+    """(kind, row) of everything that is new or not as it was; ages and positions do not count."""
+    plant = {key: after[key] for key in PLANT}
+    found = [] if plant == {key: before[key] for key in PLANT} else [("plant", plant)]
+    for where, (kind, name, keys) in ROWS.items():
+        known = {row[name]: _facts(row, (name, *keys)) for row in before[where]}
+        now = [_facts(row, (name, *keys)) for row in after[where]]
+        found += [(kind, row) for row in now if known.get(row[name]) != row]
+    return found
+
+
+def _facts(row: Row, keys: tuple[str, ...]) -> Row:
+    """Those keys of a row; of a task inside it, the id."""
+    facts = {key: row[key] for key in keys}
+    return {key: value["id"] if isinstance(value, dict) else value for key, value in facts.items()}
+
+
+class Reader:
+    """One client's queue: what does not fit ends it."""
+
+    def __init__(self) -> None:
+        self._queue: deque[Event] = deque()
+        self._news = asyncio.Event()
+        self.dropped = False
+
+    @property
+    def waiting(self) -> int:
+        return len(self._queue)
+
+    def put(self, news: Event) -> None:
+        if len(self._queue) >= WAITING:
+            self.dropped = True
+        else:
+            self._queue.append(news)
+        self._news.set()
+
+    async def next(self) -> Event | None:
+        """The next event; None once the reader was too slow."""
+        while not self._queue and not self.dropped:
+            self._news.clear()
+            await self._news.wait()
+        return None if self.dropped else self._queue.popleft()
+
+
+class Changes:
+    """Turns snapshots into numbered events. Everything but `_saw` runs in the server's thread."""
+
+    def __init__(self, side: PlantSide) -> None:
+        self._side = side
+        self._readers: set[Reader] = set()
+        self._history: deque[Event] = deque(maxlen=HISTORY)
+        self._fresh: deque[Snapshot] = deque(maxlen=PENDING)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._woken = False
+        self._number = 0
+        self._latest: Snapshot = {}
+
+    def __len__(self) -> int:
+        return len(self._readers)
+
+    def listen(self, last: str = "") -> Reader:
+        """A reader that goes on after the event `last`; where that is not known any more, with a snapshot."""
+        if self._loop is None:
+            self._loop = asyncio.get_running_loop()
+            self._side.watch(self._saw)
+            self._latest = self._side.snapshot()
+        reader = Reader()
+        for missed in self._missed(last):
+            reader.put(missed)
+        self._readers.add(reader)
+        return reader
+
+    def leave(self, reader: Reader) -> None:
+        """Idempotent."""
+        self._readers.discard(reader)
+
+    def _missed(self, last: str) -> list[Event]:
+        known = [told.id for told in self._history]
+        if last in known:
+            return list(self._history)[known.index(last) + 1 :]
+        return [event(self._id(), "snapshot", self._side.snapshot())]
+
+    def _saw(self, snapshot: Snapshot) -> None:
+        """In the plant's thread: leave the snapshot there and go."""
+        self._fresh.append(snapshot)
+        if not self._woken and self._loop is not None:
+            self._woken = True
+            with suppress(RuntimeError):  # the server has ended
+                self._loop.call_soon_threadsafe(self._tell)
+
+    def _tell(self) -> None:
+        self._woken = False
+        while self._fresh:
+            snapshot = self._fresh.popleft()
+            if snapshot["at"] < self._latest["at"]:
+                continue
+            for kind, row in changed(self._latest, snapshot):
+                self._number += 1
+                self._give(event(self._id(), kind, row))
+            self._latest = snapshot
+
+    def _give(self, news: Event) -> None:
+        self._history.append(news)
+        for reader in self._readers:
+            reader.put(news)
+
+    def _id(self) -> str:
+        """Numbers start anew with each start of the plant, epochs do not."""
+        return f"{self._latest['epoch']}-{self._number}"

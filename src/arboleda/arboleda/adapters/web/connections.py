@@ -1,0 +1,121 @@
+"""Connections that cost nothing to open: a limited number, and none that waits for ever."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import struct
+from itertools import count
+from typing import Any
+
+import h11
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+CONNECTIONS = 512  # of one server; file descriptors are few, and the plant needs some itself
+PER_PEER = 320  # twenty browsers of one network
+REQUEST_S = 10.0  # to send the head of a request
+UNREAD_S = 20.0  # a client that reads nothing of what it asked for
+HEAD_BYTES = 32768
+NOTHING_LINGERS = struct.pack("ii", 1, 0)
+
+
+class Timer:
+    """Calls back once, unless it is off by then."""
+
+    def __init__(self, seconds: float, callback: Any) -> None:
+        self._seconds = seconds
+        self._callback = callback
+        self._handle: asyncio.TimerHandle | None = None
+
+    def on(self) -> None:
+        if self._handle is None:
+            self._handle = asyncio.get_running_loop().call_later(self._seconds, self._callback)
+
+    def off(self) -> None:
+        if self._handle is not None:
+            self._handle.cancel()
+            self._handle = None
+
+
+class _MustRead:
+    """Cuts a client off that leaves what it is sent unread."""
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)  # type: ignore[misc]
+        self._unread = Timer(UNREAD_S, lambda: cut(transport))
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._unread.off()
+        super().connection_lost(exc)  # type: ignore[misc]
+
+    def pause_writing(self) -> None:
+        super().pause_writing()  # type: ignore[misc]
+        self._unread.on()
+
+    def resume_writing(self) -> None:
+        super().resume_writing()  # type: ignore[misc]
+        self._unread.off()
+
+
+class Socket(_MustRead, WebSocketsSansIOProtocol):
+    """A websocket."""
+
+
+class Connection(_MustRead, H11Protocol):
+    """An http connection. Where there are too many, one that idles makes room: a flood of them must not
+    keep a stop out."""
+
+    _numbers = count()  # in the order they came; the clocks of event loops are too coarse for it
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        self.number = next(self._numbers)
+        self._request = Timer(REQUEST_S, lambda: cut(transport))
+        self._request.on()
+        self._make_room()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._request.off()
+        super().connection_lost(exc)
+
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        if self.conn.their_state is h11.IDLE and not self.transport.is_closing():
+            self._request.on()
+        else:
+            self._request.off()
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        self._request.off()
+        super().handle_websocket_upgrade(event)
+
+    def shutdown(self) -> None:
+        """Called when the server ends: an answer that has no end (a stream) ends now."""
+        super().shutdown()
+        if not self.idles and self.cycle.response_started:
+            self.transport.abort()
+
+    @property
+    def idles(self) -> bool:
+        return self.cycle is None or self.cycle.response_complete
+
+    def _make_room(self) -> None:
+        mine = [other for other in self.connections if _peer(other) == _peer(self)]
+        crowd = mine if len(mine) > PER_PEER else self.connections
+        if crowd is not mine and len(self.connections) <= CONNECTIONS:
+            return
+        idle = [other for other in crowd if isinstance(other, Connection) and other.idles]
+        oldest = min(idle, key=lambda other: other.number, default=self)
+        self.connections.discard(oldest)  # at once: the next one that comes must not count it
+        cut(oldest.transport)
+
+
+def cut(transport: Any) -> None:
+    """End a connection at once; what the client has not read yet is not kept for it."""
+    transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NOTHING_LINGERS)
+    transport.abort()
+
+
+def _peer(connection: Any) -> str | None:
+    return connection.client[0] if connection.client else None

@@ -1,0 +1,139 @@
+"""Who may use the server, and how much of it: pure ASGI, for http and websockets alike."""
+
+from __future__ import annotations
+
+from urllib.parse import parse_qsl
+
+from starlette.responses import RedirectResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from . import limits
+from .asked import LOGIN, Asked
+from .auth import LOCAL, Door, Login
+from .body import whole_body
+from .headers import with_headers
+from .limits import Buckets
+from .names import Names
+from .sockets import Sockets
+from .turned import Gone, Turned
+
+IN_URL = {"token", "access_token", "bearer", "authorization"}
+NOT_OURS = "Only tools and pages of this plant may use this address."
+GUESSED = "Too many wrong tokens; wait a minute."
+
+
+class Guard:
+    """Lets in whom `door` and `names` know, within the limits; all else gets a sentence.
+
+    What is let in carries `scope["arboleda.login"]`, `["arboleda.role"]` and `["arboleda.door"]`. A stop of
+    somebody who is logged in has no rate.
+    """
+
+    def __init__(self, app: ASGIApp, names: Names, door: Door) -> None:
+        self._app = app
+        self._names = names
+        self._door = door
+        self._sockets = Sockets(app)
+        self._reads, self._changes = Buckets(limits.READ), Buckets(limits.CHANGE)
+        self._pages = Buckets(limits.PAGE)
+        self._guesses = Buckets(limits.GUESS)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            return await self._app(scope, receive, send)
+        send = with_headers(scope, send)
+        try:
+            return await self._serve(Asked(scope), receive, send)
+        except Turned as turned:
+            return await turned.answer(scope, receive, send)
+        except Gone:
+            return None
+
+    async def _serve(self, asked: Asked, receive: Receive, send: Send) -> None:
+        self._check_shape(asked)
+        self._check_names(asked)
+        peer = asked.peer(proxied=self._names.public is not None)
+        login = self._login(asked, peer)
+        self._check_origin(asked, login)
+        if login is None or not asked.stops:
+            self._check_rate(asked, peer if login in (None, LOCAL) else login.key)
+        if login is None and not asked.logs_in:
+            raise _unknown(asked)
+        scope = self._introduced(asked.scope, login)
+        if asked.socket:
+            return await self._sockets.run(scope, receive, send, login)
+        if asked.logs_in:
+            send = self._counting_guesses(peer, send)
+        return await self._app(scope, await whole_body(asked, receive), send)
+
+    def _check_shape(self, asked: Asked) -> None:
+        if asked.header_bytes > limits.HEADER_BYTES:
+            raise Turned(431, f"Address and headers may have {limits.HEADER_BYTES} bytes.")
+        if asked.ambiguous:
+            raise Turned(400, "A header that counts once is there twice, or the body has two lengths.")
+        query = parse_qsl(asked.scope["query_string"].decode("latin-1"), keep_blank_values=True)
+        if any(name.lower() in IN_URL for name, _ in query):
+            raise Turned(400, "A token does not belong into an address: it stays in logs and histories.")
+
+    def _check_names(self, asked: Asked) -> None:
+        host = asked.header("host")
+        if not self._names.knows_host(host):
+            raise Turned(403, f"This plant is not called {host[:80]!a}; --public-url gives it a name.")
+        if self._door.open and asked.forwarded:
+            raise Turned(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
+
+    def _check_origin(self, asked: Asked, login: Login | None) -> None:
+        if asked.has("origin"):
+            if not self._names.knows_origin(asked.header("origin"), asked.header("host")):
+                raise Turned(403, NOT_OURS)
+            return
+        if asked.from_elsewhere:
+            raise Turned(403, NOT_OURS)
+        if login is None and not asked.logs_in:
+            return  # turned away in any case, and told that a token is missing
+        by_token = asked.bearer is not None and login is not None
+        if not (asked.reads or by_token or (self._door.open and asked.for_api)):
+            raise Turned(403, "The browser must name the page this comes from (Origin); tools send a token.")
+
+    def _login(self, asked: Asked, peer: str) -> Login | None:
+        """Who asks, None for nobody known; Turned for a wrong token."""
+        if self._door.open:
+            return LOCAL
+        if asked.bearer is not None:
+            # A right token passes whoever else guesses from that address: it may be about to stop something.
+            return self._door.by_token(asked.bearer) or self._guessed(peer)
+        if asked.logs_in and not asked.reads and self._guesses.empty(peer):
+            raise Turned(429, GUESSED, retry_after="60")
+        return self._door.by_cookie(asked.session) if asked.session is not None else None
+
+    def _guessed(self, peer: str) -> Login | None:
+        if not self._guesses.take(peer):
+            raise Turned(429, GUESSED, retry_after="60")
+        raise Turned(401, "This token is not valid.", www_authenticate="Bearer")
+
+    def _counting_guesses(self, peer: str, send: Send) -> Send:
+        async def counting(message: Message) -> None:
+            if message["type"] == "http.response.start" and message["status"] == 401:
+                self._guesses.take(peer)
+            await send(message)
+
+        return counting
+
+    def _check_rate(self, asked: Asked, key: str) -> None:
+        rate = self._changes if not asked.reads else self._pages if asked.for_page else self._reads
+        if not rate.take(key):
+            raise Turned(429, "Too many requests; wait a second.", retry_after="1")
+
+    def _introduced(self, scope: Scope, login: Login | None) -> Scope:
+        """The scope with who it is; what a proxy says of its paths is not passed on."""
+        kept = [pair for pair in scope["headers"] if not pair[0].startswith(b"x-forwarded-")]
+        role = login.role if login else None
+        known = {"arboleda.login": login, "arboleda.role": role, "arboleda.door": self._door}
+        return {**scope, "headers": kept, **known}
+
+
+def _unknown(asked: Asked) -> Turned:
+    turned = Turned(401, "This plant wants a token or a login.", www_authenticate="Bearer")
+    if asked.wants_page:
+        turned.answer = RedirectResponse(LOGIN, status_code=303)
+    return turned

@@ -1,0 +1,62 @@
+"""How much is let in: sizes, rates, and how many at a time."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+
+API_BODY_BYTES = 4096
+PAGE_BODY_BYTES = 65536
+HEADER_BYTES = 16384
+MESSAGE_BYTES = 65536  # of a websocket
+BODY_S = 10.0
+
+READ = (50.0, 400)  # per second, at once
+PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
+CHANGE = (10.0, 50)
+GUESS = (0.1, 5)
+MESSAGE = (50.0, 200)
+
+SOCKETS = 64
+STREAMS = 64
+
+
+class Buckets:
+    """One token bucket per client: `burst` at once, then `per_s`; the `most` last seen are remembered."""
+
+    def __init__(
+        self, rate: tuple[float, int], clock: Callable[[], float] = time.monotonic, *, most: int = 4096
+    ) -> None:
+        self._per_s, self._burst = rate
+        self._clock = clock
+        self._most = most
+        self._levels: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def take(self, key: str) -> bool:
+        """Whether the client may; counts it if so."""
+        level = self._level(key)
+        if level < 1:
+            return False
+        self._put(key, level - 1)
+        return True
+
+    def empty(self, key: str) -> bool:
+        """Whether `take` would say no."""
+        return self._level(key) < 1
+
+    def delay_s(self, key: str) -> float:
+        """Count one, and say how long to wait until it is within the rate."""
+        level = self._level(key) - 1
+        self._put(key, level)
+        return max(0.0, -level / self._per_s)
+
+    def _level(self, key: str) -> float:
+        level, at = self._levels.get(key, (float(self._burst), self._clock()))
+        return min(float(self._burst), level + (self._clock() - at) * self._per_s)
+
+    def _put(self, key: str, level: float) -> None:
+        self._levels[key] = (level, self._clock())
+        self._levels.move_to_end(key)
+        while len(self._levels) > self._most:
+            self._levels.popitem(last=False)

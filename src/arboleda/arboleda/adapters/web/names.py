@@ -1,0 +1,86 @@
+"""Which names this server answers to (Host), and whose pages may use it (Origin)."""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+import socket
+from dataclasses import dataclass
+
+from arboleda.core.errors import StartError
+
+LOOPBACK = {"127.0.0.1", "localhost", "[::1]"}
+DEFAULT_PORTS = {"http": ":80", "https": ":443"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Names:
+    """A page of another site may make a browser send requests here, under its own name (Origin) or, with a
+    name that suddenly resolves to this machine, under ours (Host). `public` is the origin before a proxy."""
+
+    hosts: frozenset[str]
+    any_address: bool = False
+    public: str | None = None
+
+    def knows_host(self, host: str) -> bool:
+        """Whether a Host header is ours. On a network any address is: nobody can make it lead elsewhere."""
+        name = host_name(host)
+        return name in self.hosts or (self.any_address and is_address(name))
+
+    def knows_origin(self, origin: str, host: str) -> bool:
+        """Whether an Origin header names a page that came from here. A page of the public name counts under
+        its public scheme only: in the clear, anybody on the way may have made it."""
+        origin = origin.lower()
+        direct = host_name(host) != self._public_name
+        return origin == self.public or (direct and origin == f"http://{host.lower()}")
+
+    @property
+    def _public_name(self) -> str | None:
+        return host_name(self.public.partition("//")[2]) if self.public else None
+
+
+def names_for(host: str, public_url: str | None) -> Names:
+    """The names of a server bound to `host`; StartError for an address or URL that cannot be used."""
+    public = public_origin(public_url) if public_url else None
+    hosts = LOOPBACK | ({host_name(public.partition("//")[2])} if public else set())
+    if not is_loopback(host):
+        own = socket.gethostname().lower()
+        hosts |= {own, own.partition(".")[0], f"{own.partition('.')[0]}.local"}
+    return Names(hosts=frozenset(hosts), any_address=not is_loopback(host), public=public)
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches `host`; StartError where it is no address."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        raise StartError(
+            f"'{host}' is not an address to listen on; write e.g. 0.0.0.0 for every network of this machine"
+        ) from None
+
+
+def public_origin(url: str) -> str:
+    """`https://plant.example` of such a URL; StartError for anything with more in it."""
+    found = re.fullmatch(r"(https?)://([a-z0-9.-]+|\[[0-9a-f:]+\])(:[0-9]{1,5})?/?", url.lower())
+    if found is None:
+        raise StartError(f"'{url}' is not the address of a plant; write one like https://plant.example")
+    scheme, name, port = found.groups(default="")
+    return f"{scheme}://{name}{'' if port == DEFAULT_PORTS[scheme] else port}"
+
+
+def host_name(host: str) -> str:
+    """A Host header without its port, in lower case."""
+    name, _, port = host.rpartition(":")
+    return name.lower() if name and port.isascii() and port.isdigit() else host.lower()
+
+
+def is_address(name: str) -> bool:
+    """Whether a name of a Host header is an IP address in its one usual spelling."""
+    bare = name[1:-1] if name.startswith("[") and name.endswith("]") else name
+    try:
+        usual = str(ipaddress.ip_address(bare)) == bare and "%" not in bare
+        return usual and (":" in bare) == (bare != name)
+    except ValueError:
+        return False

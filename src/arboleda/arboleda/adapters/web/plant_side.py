@@ -1,0 +1,30 @@
+"""What the web side may ask of the plant: look, and post task texts and operators' verbs; nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Protocol
+
+from arboleda.core.messages import OperatorAnswer, Verb
+
+Snapshot = dict[str, Any]
+
+
+class PlantSide(Protocol):
+    """The plant as the server's thread sees it; no call blocks, and all data is plain."""
+
+    def snapshot(self) -> Snapshot: ...
+
+    def find(self, task: str) -> dict[str, Any] | None:
+        """One task by its id, None where the plant knows none."""
+
+    def submit(self, text: str) -> Future[dict[str, Any]]:
+        """A future of the task. A state `refused` or a TextError in it is the caller's mistake, any other
+        ArboledaError means "not now"."""
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
+        """A future of what became of the verb; `scope` is "" for the whole plant."""
+
+    def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
+        """Have each changed snapshot told in the plant's thread, which must not wait; the way to end it."""

@@ -1,0 +1,92 @@
+"""What the API takes and gives, for its description; screens get more keys than are listed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from arboleda.core.messages import Verb
+
+
+class _Asked(BaseModel):
+    """What a client sends: these keys and no others, of exactly these types."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class _Told(BaseModel):
+    """What a client gets; more keys may come."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+class TaskText(_Asked):
+    text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
+
+
+class ByHand(_Asked):
+    by_hand: bool = Field(
+        default=False, description="For home: nothing moves, you declare that the robot is at its reference."
+    )
+
+
+class Sentence(_Told):
+    """What went wrong, for a person."""
+
+    sentence: str = Field(examples=["'sis_z' is not a cell; there are sis_a, sis_b, sis_c."])
+
+
+class Task(_Told):
+    id: str
+    text: str
+    cell: str | None
+    state: str = Field(description="queued, running, done, failed, cancelled or refused.")
+    reason: str | None = None
+    sentence: str = ""
+
+
+class Done(_Told):
+    verb: Verb
+    scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
+
+
+class Cell(_Told):
+    name: str
+    state: str
+    arm: str
+    mobile: str
+    task: Task | None
+    step: str | None = Field(description="The step that runs.")
+    queue: list[str] = Field(description="Ids of the tasks that wait.")
+    paused: bool
+    waiting_for: str | None
+    held_by: str | None = Field(description="Why the cell is held, and what can be done.")
+    tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
+
+
+class Robot(_Told):
+    name: str
+    online: bool
+    obstacle: str | None = Field(description="Why it gets no command now.")
+    state: int | None = Field(
+        description="motion_state: 0 stopped, 1 moving, 2 fault, 3 not homed, 4 latched."
+    )
+    age_s: float | None
+    q: list[float] | None = Field(description="Joints of an arm in rad and m, measured.")
+    node: int | None = Field(description="Node of a mobile robot on its grid.")
+    homed: bool | None
+    latched: bool
+
+
+class Snapshot(_Told):
+    """The plant as of its last step."""
+
+    plant: str
+    epoch: int
+    at: float = Field(description="Monotonic seconds of the plant's clock.")
+    ending: bool
+    cells: list[Cell]
+    robots: list[Robot]
+    tasks: list[Task]
+    zones: list[dict[str, Any]]

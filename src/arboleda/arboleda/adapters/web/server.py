@@ -1,0 +1,108 @@
+"""uvicorn in a thread of its own."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+from typing import Any
+
+import uvicorn
+from starlette.types import ASGIApp
+
+from arboleda.core.errors import StartError
+
+from . import limits
+from .connections import HEAD_BYTES, Connection, Socket
+
+DEFAULT_PORT = 8080
+START_S = 20.0
+BACKLOG = 128  # connections that may come at once before there is a look at their number
+
+
+class Server:
+    """Serves `app` on `host`, on DEFAULT_PORT or where that is taken on another, unless a `port` is named."""
+
+    def __init__(self, app: ASGIApp, *, host: str = "127.0.0.1", port: int | None = None) -> None:
+        self._host = host
+        self._port = port
+        self._server = _Uvicorn(
+            uvicorn.Config(
+                app,
+                http=Connection,
+                ws=Socket,
+                ws_max_size=limits.MESSAGE_BYTES,
+                ws_per_message_deflate=False,
+                h11_max_incomplete_event_size=HEAD_BYTES,
+                backlog=BACKLOG,
+                log_config=None,
+                log_level=logging.CRITICAL,
+                access_log=False,
+                lifespan="on",
+                proxy_headers=False,
+                server_header=False,
+                timeout_graceful_shutdown=1,
+            )
+        )
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> int:
+        """Listen and serve; the port, or StartError with one sentence."""
+        listener = listen(self._host, self._port)
+        # In a thread that is not the main one uvicorn leaves the signals alone.
+        self._thread = threading.Thread(
+            target=self._server.run_until_stopped, args=(listener,), name="http", daemon=True
+        )
+        self._thread.start()
+        self._server.ready.wait(START_S)
+        if not self._server.started:
+            listener.close()
+            self.stop()
+            raise StartError("The HTTP server could not start; details are in the log.")
+        return int(listener.getsockname()[1])
+
+    def stop(self) -> None:
+        """Close every connection and join; idempotent."""
+        self._server.should_exit = True
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+
+class _Uvicorn(uvicorn.Server):
+    """Says when it serves, or that it never will."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = threading.Event()
+
+    def run_until_stopped(self, listener: socket.socket) -> None:
+        try:
+            self.run(sockets=[listener])
+        except SystemExit:  # how it says that the application did not start
+            logging.getLogger(__name__).error("the application behind HTTP did not start")
+        finally:
+            self.ready.set()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets=sockets)
+        self.ready.set()
+
+
+def listen(host: str, port: int | None) -> socket.socket:
+    """A listener on `port`; for None on DEFAULT_PORT, or on a free one where that is taken."""
+    try:
+        return _bound(host, DEFAULT_PORT if port is None else port)
+    except OSError as error:
+        if port is None:
+            return listen(host, 0)
+        where = f"{host}:{port}"
+        raise StartError(f"The HTTP server cannot listen on {where}: {error.strerror or error}.") from error
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    options: dict[str, Any] = {"dualstack_ipv6": True} if host == "::" else {}
+    listener = socket.create_server((host, port), family=family, **options)
+    listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return listener

@@ -1,0 +1,58 @@
+"""What changes in the plant, as server-sent events."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Request
+from fastapi.responses import StreamingResponse
+from starlette.exceptions import HTTPException
+
+from . import limits
+from .changes import Changes
+from .plant_side import PlantSide
+
+BEAT_S = 15.0
+ABOUT: dict[int | str, dict[str, Any]] = {
+    200: {
+        "description": "A stream. `snapshot` is the whole plant; `plant`, `cell`, `robot`, `task` and "
+        "`zone` are each one row of it that changed. With `Last-Event-ID` it goes on after that event, if it "
+        "still can. A reader that does not keep up is cut off.",
+        "content": {"text/event-stream": {"schema": {"type": "string"}}},
+    }
+}
+
+
+def routes(side: PlantSide) -> APIRouter:
+    """`GET /api/events`."""
+    api = APIRouter(prefix="/api")
+    changes = Changes(side)
+
+    @api.get("/events", response_class=StreamingResponse, responses=ABOUT)
+    async def events(request: Request, last_event_id: Annotated[str, Header()] = "") -> StreamingResponse:
+        """Changes as they happen (server-sent events)."""
+        if len(changes) >= limits.STREAMS:
+            raise HTTPException(503, f"{limits.STREAMS} readers listen already; close one.")
+        told = tell(changes, last_event_id, request.scope["arboleda.login"].alive)
+        return StreamingResponse(told, media_type="text/event-stream", headers={"x-accel-buffering": "no"})
+
+    return api
+
+
+async def tell(changes: Changes, last: str, alive: Callable[[], bool]) -> AsyncIterator[str]:
+    """Events, and a comment when there is none for a while, until the reader is too slow or logged out."""
+    reader = changes.listen(last)
+    try:
+        while alive():
+            try:
+                event = await asyncio.wait_for(reader.next(), BEAT_S)
+            except asyncio.TimeoutError:
+                yield ": still here\n\n"
+                continue
+            if event is None or not alive():
+                return
+            yield event.text
+    finally:
+        changes.leave(reader)

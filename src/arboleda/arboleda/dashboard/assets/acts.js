@@ -1,0 +1,105 @@
+// From a click to the plant: what a button asks for goes through the socket; a stop goes over HTTP as well.
+
+import { value } from "./live.js";
+
+const PATIENCE_MS = 3000;
+const SECOND_WAY_MS = 300;
+const words = window.arboledaPage.words;
+let scope = "";
+
+export const setScope = (chosen) => (scope = chosen);
+export const connected = () => Boolean(window.socket?.connected && window.did_handshake);
+
+export function start() {
+  document.getElementById("stop").addEventListener("click", () => stop(""));
+  document.addEventListener("click", (event) => {
+    const button = event.target.closest("[data-act]");
+    if (button) press(button);
+  });
+}
+
+async function press(button) {
+  const { act, byHand } = button.dataset;
+  const of = button.dataset.of === "$scope" ? scope : button.dataset.of;
+  if (act === "stop") return stop(of);
+  const asks = act === "override" ? [words.override_seen, words.override_sure] : JSON.parse(button.dataset.asks ?? "[]");
+  for (const question of asks) if (!(await confirmed(question.replaceAll("{of}", of)))) return;
+  send(act, of, byHand === "true");
+}
+
+// A request that could not leave now is not kept for later: the plant may have changed by then.
+export function send(act, of, byHand = false) {
+  if (!connected()) return answer(words.not_sent, false);
+  window.emitEvent("arboleda", act, of, byHand);
+  return true;
+}
+
+// Over HTTP, which no stuck socket holds up; through the socket as well where that has no answer at once.
+export async function stop(of) {
+  const button = document.getElementById("stop");
+  button.dataset.s = "asked";
+  answer(words.stopping, false);
+  const second = new SecondWay(of);
+  const where = of ? `cells/${encodeURIComponent(of)}` : "plant";
+  try {
+    const sent = await fetch(`/api/${where}/stop`, { method: "POST", keepalive: true, signal: AbortSignal.timeout(PATIENCE_MS) });
+    second.forget();
+    answer(sent.ok ? words.stop_heard : (await sent.json()).sentence, sent.ok);
+  } catch {
+    second.go();
+    if (!isUnderWay()) answer(words.stop_lost, false);
+  } finally {
+    delete button.dataset.s;
+  }
+}
+
+// The socket, once: a stop that came twice might come after somebody has cleared the first.
+class SecondWay {
+  constructor(of) {
+    this.of = of;
+    this.timer = setTimeout(() => this.go(), SECOND_WAY_MS);
+  }
+
+  go() {
+    if (this.timer && connected()) window.emitEvent("arboleda", "stop", this.of, false);
+    this.forget();
+  }
+
+  forget() {
+    clearTimeout(this.timer);
+    this.timer = null;
+  }
+}
+
+const isUnderWay = () => ["stopping", "stopped", "partly", "unconfirmed"].includes(value("text/stop")?.[1]);
+
+export function answer(sentence, good) {
+  const line = document.getElementById("answer");
+  line.textContent = sentence;
+  line.dataset.s = good ? "good" : "bad";
+  return false;
+}
+
+// A dialog of the browser's own: keyboard and screen readers know it.
+function confirmed(question) {
+  const dialog = document.createElement("dialog");
+  const [text, yes, no] = [document.createElement("p"), document.createElement("button"), document.createElement("button")];
+  text.textContent = question;
+  yes.textContent = words.yes;
+  no.textContent = words.no;
+  yes.className = "primary";
+  const buttons = document.createElement("div");
+  buttons.append(no, yes);
+  dialog.append(text, buttons);
+  document.body.append(dialog);
+  dialog.showModal();
+  no.focus();
+  return new Promise((resolve) => {
+    yes.addEventListener("click", () => dialog.close("yes"));
+    no.addEventListener("click", () => dialog.close());
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      resolve(dialog.returnValue === "yes");
+    });
+  });
+}

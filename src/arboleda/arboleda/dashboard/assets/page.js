@@ -1,0 +1,137 @@
+// The page's own behaviour: parts, cells, scopes, filters, language, look, and whether news still comes.
+
+import * as acts from "./acts.js";
+import * as form from "./form.js";
+import { apply, drawList, onChange, setRowFilter, value } from "./live.js";
+import * as tree from "./tree.js";
+
+const SILENT_MS = 4000;
+const ACK_EVERY = 5; // frames
+const all = (selector) => [...document.querySelectorAll(selector)];
+const filters = {};
+let heardAt = 0;
+let frames = 0;
+
+window.arboleda = {
+  live(number, patch) {
+    begin();
+    heardAt = Date.now();
+    apply(patch);
+    if (frames++ % ACK_EVERY === 0) window.emitEvent("arboleda", "seen", number);
+    watch();
+  },
+  answer: acts.answer,
+};
+
+const kept = {
+  get: (name) => sessionStorage.getItem(`arboleda-${name}`),
+  set: (name, what) => sessionStorage.setItem(`arboleda-${name}`, what),
+};
+
+function choosePart(name) {
+  const known = all("[data-part]").map((part) => part.dataset.part);
+  const chosen = known.includes(name) ? name : known[0];
+  all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
+  all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
+  kept.set("part", chosen);
+  tree.refit();
+}
+
+function chooseCell(name) {
+  const names = all("[data-choose]").map((card) => card.dataset.choose);
+  const chosen = names.includes(name) ? name : names[0];
+  all(".cell").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
+  all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
+  kept.set("cell", chosen);
+  tree.refit();
+}
+
+let scope = { of: "", kind: "plant" };
+
+function chooseScope(of, kind) {
+  scope = { of, kind };
+  acts.setScope(of);
+  const cell = all("[data-robots]").find((box) => box.dataset.robots === of || box.querySelector(`[data-scope="${CSS.escape(of)}"]`))?.dataset.robots ?? "";
+  all("[data-scope]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.scope === of || (each.dataset.kind === "cell" && each.dataset.scope === cell)));
+  all("[data-robots]").forEach((box) => (box.hidden = box.dataset.robots !== cell));
+  all("[data-advice]").forEach((line) => (line.hidden = line.dataset.advice !== cell));
+  all(".verb").forEach((verb) => (verb.hidden = !verb.dataset.scopes.split(" ").includes(kind)));
+  suggest();
+}
+
+function suggest() {
+  const words = (value(`text/suggested.${scope.of || "plant"}`)?.[0] ?? "").split(" ");
+  all(".verb").forEach((verb) => verb.classList.toggle("suggested", words.includes(verb.dataset.verb)));
+}
+
+function filterBy(list, cell) {
+  filters[list] = cell;
+  all(`[data-filter="${list}"]`).forEach((each) => each.setAttribute("aria-pressed", each.dataset.value === cell));
+  drawList(list);
+}
+
+function cookie(name, what) {
+  document.cookie = `arboleda_${name}=${what}; path=/; max-age=31536000; SameSite=Strict`;
+}
+
+const LOOKS = ["auto", "light", "dark"];
+const lookNow = () => document.cookie.match(/arboleda_look=(\w+)/)?.[1] ?? "auto";
+
+function look(how) {
+  document.documentElement.dataset.look = how;
+  const button = document.querySelector(".look");
+  button.dataset.look = how;
+  button.title = `${window.arboledaPage.words.look}: ${window.arboledaPage.words[`look_${how}`]}`;
+}
+
+function nextLook() {
+  const next = LOOKS[(LOOKS.indexOf(lookNow()) + 1) % LOOKS.length];
+  cookie("look", next);
+  look(next);
+}
+
+function clicked(event) {
+  const button = event.target.closest("button");
+  if (!button) return;
+  const { tab, choose, scope: of, kind, filter, value: cell, language } = button.dataset;
+  if (tab) choosePart(tab);
+  if (choose) chooseCell(choose);
+  if (of !== undefined) chooseScope(of, kind);
+  if (filter) filterBy(filter, cell);
+  if (language) cookie("language", language), location.reload();
+  if (button.classList.contains("look")) nextLook();
+}
+
+// A page that hears nothing any more must not look as if all were well.
+function watch() {
+  const silent = Date.now() - heardAt > SILENT_MS;
+  const line = document.getElementById("connection");
+  document.documentElement.classList.toggle("silent", silent);
+  line.hidden = heardAt > 0 && !silent;
+  if (heardAt > 0 && silent) line.textContent = line.dataset.lost.replace("{time}", `${Math.round((Date.now() - heardAt) / 1000)} s`);
+}
+
+let begun = false;
+
+function begin() {
+  if (begun) return;
+  begun = true;
+  document.documentElement.lang = window.arboledaPage.language;
+  look(lookNow());
+  setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
+  acts.start();
+  form.start();
+  tree.start();
+  onChange(suggest);
+  document.addEventListener("click", clicked);
+  choosePart(location.hash.slice(1) || kept.get("part"));
+  chooseCell(kept.get("cell"));
+  chooseScope("", "plant");
+  setInterval(watch, 1000);
+}
+
+const ready = () => document.querySelector(".app") && window.socket;
+(function wait() {
+  if (ready()) begin();
+  else setTimeout(wait, 20);
+})();

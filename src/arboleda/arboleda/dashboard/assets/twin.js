@@ -1,0 +1,143 @@
+// The twin on the page: asks for frames while somebody looks, and has them drawn.
+
+import { Plant } from "./twin_plant.js";
+import { FlatView } from "./twin_flat.js";
+import { SolidView } from "./twin_solid.js";
+
+const ACK_EVERY = 5; // frames
+const ASK_AGAIN_MS = 2000;
+const words = () => window.arboledaPage.words;
+let box, note, plant, view;
+let wanted = false;
+let frames = 0;
+
+window.arboledaTwin = {
+  frame(number, patch) {
+    if (!plant) return;
+    plant.apply(patch);
+    view.show();
+    listRobots(patch);
+    if (frames++ % ACK_EVERY === 0) tell("drawn", number);
+  },
+  // What is drawn solid, for whoever wants to compare it: robot -> link -> 16 numbers, row by row.
+  links: () => plant?.links(),
+  solid: (robot) => plant.robots.get(robot).real.root.visible && plant.robots.get(robot).painted === "solid",
+  drawn: () => Object.fromEntries(plant?.drawn ?? []),
+  view: () => view?.name,
+};
+
+const tell = (...what) => window.emitEvent("arboleda-twin", ...what);
+
+function look(seen) {
+  if (seen === wanted) return;
+  wanted = seen;
+  if (!seen) tell("leave");
+  else if (plant) ask();
+  else open().catch((error) => say(error.message));
+}
+
+function ask() {
+  frames = 0;
+  tell("look");
+  setTimeout(() => wanted && frames === 0 && ask(), ASK_AGAIN_MS);
+}
+
+let opening;
+
+async function open() {
+  opening ??= make();
+  try {
+    await opening;
+  } catch (error) {
+    opening = undefined; // the next look tries again
+    wanted = false;
+    throw error;
+  }
+  if (wanted) ask();
+}
+
+async function make() {
+  const [{ THREE, OrbitControls }, scene] = await Promise.all([import("nicegui-scene"), fetchScene()]);
+  const made = new Plant(THREE, scene);
+  show(made, solid(THREE, OrbitControls, made) ?? flat(THREE, made));
+}
+
+async function fetchScene() {
+  const answer = await fetch("/twin/scene.json");
+  const said = await answer.json();
+  if (!answer.ok) throw new Error(words().twin_failed.replace("{why}", said.sentence));
+  return said;
+}
+
+function solid(THREE, OrbitControls, made) {
+  if (!document.createElement("canvas").getContext("webgl2")) return null;
+  try {
+    return new SolidView(THREE, OrbitControls, box, made, () => show(made, flat(THREE, made)));
+  } catch {
+    return null; // there is WebGL, but none for us
+  }
+}
+
+function flat(THREE, made) {
+  say(note.dataset.flat);
+  return new FlatView(THREE, box, made);
+}
+
+function show(made, how) {
+  view?.close();
+  [plant, view] = [made, how];
+  if (how.name === "solid") note.hidden = true;
+  paint();
+}
+
+function say(sentence) {
+  note.textContent = sentence;
+  note.hidden = false;
+}
+
+function listRobots(patch) {
+  const list = document.getElementById("twin-robots");
+  for (const [key, drawn] of Object.entries(patch)) {
+    if (!key.startsWith("robot/")) continue;
+    const name = key.slice("robot/".length);
+    const row = list.querySelector(`[data-robot="${CSS.escape(name)}"]`) ?? newRow(list, name);
+    const text = `${name}: ${plant.wordOf(drawn)}`;
+    if (row.textContent !== text) row.textContent = text;
+    row.dataset.s = drawn.kind;
+  }
+}
+
+function newRow(list, name) {
+  const row = document.createElement("li");
+  row.dataset.robot = name;
+  list.append(row);
+  return row;
+}
+
+function paint() {
+  const style = getComputedStyle(document.documentElement);
+  plant?.paint((name) => style.getPropertyValue(`--${name}`).trim());
+  view?.show();
+}
+
+function clicked(event) {
+  const { twin, twinCell } = event.target.closest?.("[data-twin], [data-twin-cell]")?.dataset ?? {};
+  if (twin) view?.tool(twin);
+  if (twinCell) view?.visit(twinCell);
+}
+
+function begin() {
+  [box, note] = [document.getElementById("twin"), document.getElementById("twin-note")];
+  let inSight = false;
+  const seen = () => look(inSight && !document.hidden);
+  new IntersectionObserver(([entry]) => ((inSight = entry.isIntersecting), seen())).observe(box);
+  document.addEventListener("visibilitychange", seen);
+  document.addEventListener("click", clicked);
+  new MutationObserver(paint).observe(document.documentElement, { attributeFilter: ["data-look"] });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
+}
+
+(function wait() {
+  if (document.getElementById("twin") && window.socket) begin();
+  else setTimeout(wait, 20);
+})();

@@ -1,0 +1,120 @@
+// The plant as a scene graph, with WebGL or without: what stands, and what the frames say of it.
+
+import { Furniture } from "./twin_furniture.js";
+import { Paints } from "./twin_paints.js";
+import { Robot } from "./twin_robot.js";
+import { Zone } from "./twin_zone.js";
+import { geometry } from "./twin_bodies.js";
+
+const PART = [0.014, 0.04]; // m: radius and height of the part that is drawn
+const ROUND = (number) => (number < 60 ? `${number} s` : `${Math.floor(number / 60)}:${String(number % 60).padStart(2, "0")} min`);
+
+export class Plant {
+  constructor(THREE, scene) {
+    Object.assign(this, { THREE, scene, drawn: new Map() });
+    this.paints = new Paints(THREE);
+    this.root = new THREE.Group();
+    this.furniture = new Furniture(THREE, scene, this.paints);
+    this.numbers = new Map(scene.cells.map((cell, number) => [cell.name, number]));
+    this.robots = new Map(scene.robots.map((robot) => [robot.name, new Robot(THREE, robot, this.paints)]));
+    this.zones = new Map(scene.zones.map((zone) => [zone.zone, new Zone(THREE, zone, this.paints)]));
+    this.parts = new Map(scene.cells.map((cell) => [cell.name, this.newPart()]));
+    this.moving = new THREE.Group();
+    this.moving.add(...[...this.robots.values()].map((robot) => robot.root));
+    this.root.add(this.furniture.root, this.moving, ...[...this.zones.values()].map((zone) => zone.root));
+  }
+
+  apply(patch) {
+    for (const [key, told] of Object.entries(patch)) {
+      this.drawn.set(key, told);
+      const at = key.indexOf("/");
+      this[key.slice(0, at)]?.(key.slice(at + 1), told);
+    }
+    for (const cell of this.scene.cells) this.place(cell, this.drawn.get(`part/${cell.name}`));
+    this.root.updateMatrixWorld(true);
+  }
+
+  robot(name, told) {
+    this.robots.get(name)?.show(told);
+  }
+
+  zone(name, told) {
+    const robot = told.robot && this.robots.get(told.robot);
+    this.zones.get(name)?.show(told, robot && this.paints.cell(this.numbers.get(robot.told.cell)));
+  }
+
+  newPart() {
+    const part = new this.THREE.Mesh(geometry(this.THREE, "cylinder", PART), this.paints.part());
+    part.userData.shape = { kind: "cylinder", size: PART };
+    part.castShadow = true;
+    return part;
+  }
+
+  // Puts a cell's part where it is: into the effector, on the mobile, or where it was put down.
+  place(cell, told) {
+    const part = this.parts.get(cell.name);
+    part.removeFromParent();
+    if (!told) return;
+    part.material = told.sure ? this.paints.part() : this.paints.maybe();
+    if (told.at === "place") this.lay(part, told.frame);
+    else this.hang(part, this.robots.get(told.at === "arm" ? cell.arm : cell.mobile).shown.tip, told.at === "arm" ? 0 : cell.deck);
+  }
+
+  hang(part, link, height) {
+    part.matrixAutoUpdate = true;
+    part.rotation.set(0, 0, 0);
+    part.position.set(0, 0, height + PART[1] / 2);
+    link.add(part);
+  }
+
+  lay(part, frame) {
+    part.matrixAutoUpdate = false;
+    const down = new this.THREE.Matrix4().makeTranslation(0, 0, PART[1] / 2);
+    part.matrix.set(...frame).multiply(down);
+    this.moving.add(part);
+  }
+
+  paint(colorOf) {
+    this.paints.paint(colorOf);
+  }
+
+  // What has to be seen of the plant, or of one cell, as points.
+  points(name) {
+    const { Vector3 } = this.THREE;
+    this.root.updateMatrixWorld(true);
+    const cells = this.scene.cells.filter((cell) => !name || cell.name === name);
+    const stations = cells.flatMap((cell) => [cell.pickup, ...cell.stations]).map((frame) => new Vector3(frame[3], frame[7], frame[11]));
+    const robots = cells.flatMap((cell) => [cell.arm, cell.mobile]).map((robot) => this.robots.get(robot));
+    return [...stations, ...cells.flatMap((cell) => this.furniture.corners.get(cell.name).map((corner) => corner.clone())), ...robots.flatMap((robot) => robot.points())];
+  }
+
+  links() {
+    this.root.updateMatrixWorld(true);
+    return Object.fromEntries([...this.robots].map(([name, robot]) => [name, robot.links()]));
+  }
+
+  // What is written into the drawing: {text, state, color, above, at}, `at` in m.
+  labels() {
+    const cells = this.scene.cells.map((cell, number) => ({ text: cell.name, state: "cell", color: this.paints.cell(number), at: this.furniture.nameAt(cell) }));
+    const robots = [...this.robots].map(([name, robot]) => this.robotLabel(name, robot));
+    const zones = [...this.zones].map(([name, zone]) => ({ ...zone.label(), text: this.zoneText(name) }));
+    return [...cells, ...robots, ...zones];
+  }
+
+  robotLabel(name, robot) {
+    const told = this.drawn.get(`robot/${name}`) ?? { kind: "unknown" };
+    const text = told.kind === "measured" ? name : `${name} · ${this.wordOf(told)}`;
+    return { text, state: told.kind, above: robot.told.kind === "mobile", at: robot.labelAt() };
+  }
+
+  zoneText(name) {
+    const { state, robot } = this.drawn.get(`zone/${name}`) ?? { state: "free" };
+    return word(`twin_${state}`).replace("{zone}", name).replace("{robot}", robot ?? "");
+  }
+
+  wordOf(told) {
+    return word(`twin_${told.kind}`).replace("{time}", told.age === null || told.age === undefined ? "?" : ROUND(told.age));
+  }
+}
+
+const word = (key) => window.arboledaPage.words[key] ?? key;

@@ -1,0 +1,77 @@
+"""What happened, from snapshot to snapshot: the time line."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+EVENTS = 1000  # kept; older ones are forgotten
+ENDED_BADLY = frozenset({"failed", "refused"})
+
+Event = dict[str, Any]
+Row = dict[str, Any]
+
+
+class Chronicle:
+    """Events {number, at (unix s), cell, kind, subject, what, sentence}, the newest last.
+
+    `kind` is task, cell, robot, zone or operator; `what` the word of the new state.
+    """
+
+    def __init__(self, past_acts: Iterable[Row] = ()) -> None:
+        self.events: deque[Event] = deque(maxlen=EVENTS)
+        self._count = 0
+        self._known: dict[tuple[str, str], str] = {}
+        self._last_act = 0
+        for act in past_acts:
+            self._add(act["at"], None, "operator", act["scope"] or "plant", "did", act["sentence"])
+
+    def see(self, snapshot: Row, unix_s: float) -> None:
+        """Take in what is new in a snapshot."""
+        for cell, kind, subject, what, sentence in [*self._acts(snapshot), *_states(snapshot)]:
+            if kind == "operator" or self._known.get((kind, subject)) != what:
+                first = (kind, subject) not in self._known
+                self._known[(kind, subject)] = what
+                if not (first and what in EXPECTED):
+                    self._add(unix_s, cell, kind, subject, what, sentence)
+
+    def _acts(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
+        cell_of = {name: cell["name"] for cell in snapshot["cells"] for name in (cell["arm"], cell["mobile"])}
+        for act in snapshot["acts"]:
+            if act["number"] > self._last_act:
+                self._last_act = act["number"]
+                scope = act["scope"] or "plant"
+                yield cell_of.get(scope, scope), "operator", scope, "did", act["sentence"]
+
+    def _add(self, at: float, cell: str | None, kind: str, subject: str, what: str, sentence: str) -> None:
+        self._count += 1
+        self.events.append(
+            {
+                "number": self._count,
+                "at": at,
+                "cell": cell,
+                "kind": kind,
+                "subject": subject,
+                "what": what,
+                "sentence": sentence,
+            }
+        )
+
+
+EXPECTED = frozenset({"idle", "free", "offline"})  # nothing has happened where a thing begins so
+
+
+def _states(snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
+    """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence."""
+    for cell in snapshot["cells"]:
+        yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or ""
+        for name in (cell["arm"], cell["mobile"]):
+            robot = next(each for each in snapshot["robots"] if each["name"] == name)
+            yield cell["name"], "robot", name, "online" if robot["online"] else "offline", ""
+    for task in snapshot["tasks"]:
+        text = f"{task['text']} #{task['id']}"
+        sentence = f"{text}: {task['sentence']}" if task["sentence"] else text
+        yield task["cell"], "task", task["id"], task["state"], sentence
+    for zone in snapshot["zones"]:
+        yield None, "zone", zone["zone"], zone["state"], zone["robot"] or ""

@@ -1,0 +1,23 @@
+"""What the page shows, as flat plain data: key -> value. Pure; one file per part of the page.
+
+| key | value | on the page |
+|---|---|---|
+| `text/<name>` | [text, state] | every element with `data-live="<name>"` |
+| `bar/<name>` | share from 0 to 1 | how full a bar is |
+| `rows/<list>` | [row, ...] | which rows a list has, in order |
+| `row/<list>/<row>` | {state, cell, texts, acts} | one row |
+| `tree/<cell>` | a drawing | a tree, drawn once per task |
+| `node/<cell>/<path>` | {state, ...} | one node of it |
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+Face = dict[str, Any]
+
+
+def changed(before: Face, after: Face) -> Face:
+    """What of `after` a screen that shows `before` has to be told."""
+    missing = object()
+    return {key: value for key, value in after.items() if before.get(key, missing) != value}

@@ -1,0 +1,45 @@
+"""All that a face is made of at one moment."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..tree_memory import TreeMemory
+from ..wording import Words
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moment:
+    """A snapshot and what was kept from earlier ones; `unix_s` is the snapshot's time."""
+
+    snapshot: dict[str, Any]
+    layout: dict[str, Any]
+    links: dict[str, Any]
+    trees: Mapping[str, TreeMemory]
+    events: Sequence[dict[str, Any]]
+    words: Words
+    unix_s: float
+
+    def unix(self, plant_s: float) -> float:
+        """A time of the plant's clock as unix s."""
+        return self.unix_s - (self.snapshot["at"] - plant_s)
+
+
+def clock(unix_s: float) -> str:
+    """Hours, minutes and seconds of this machine's time zone."""
+    return time.strftime("%H:%M:%S", time.localtime(unix_s))
+
+
+def seconds(value: float | None) -> str:
+    """A span for people: `8 s`, `2:05 min`, `3:07 h`; "" where there is none."""
+    if value is None:
+        return ""
+    whole = max(0, round(value))
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60}:{whole % 60:02} min"
+    return f"{whole // 3600}:{whole // 60 % 60:02} h"

@@ -1,0 +1,61 @@
+"""What became of a stop (software), as far as the robots themselves have confirmed it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from . import Face
+from .moment import Moment
+
+LATCHED = 4  # MotionState.STOP_LATCHED
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stopped:
+    """The robots under a stop: those that confirmed it, those that have not yet, those that cannot."""
+
+    confirmed: tuple[str, ...]
+    waiting: tuple[str, ...]
+    silent: tuple[str, ...]
+    free: tuple[str, ...]
+
+    @property
+    def state(self) -> str:
+        """ready, stopping, stopped, partly (some robots are free), unconfirmed (some are silent)."""
+        if self.waiting:
+            return "stopping"
+        if self.silent:
+            return "unconfirmed"
+        if not self.confirmed:
+            return "ready"
+        return "partly" if self.free else "stopped"
+
+
+def stopped(snapshot: dict[str, Any], no_stop: frozenset[str]) -> Stopped:
+    """`no_stop`: robots whose board knows no latch; of them, standing still has to do."""
+    groups: dict[str, list[str]] = {"confirmed": [], "waiting": [], "silent": [], "free": []}
+    for robot in snapshot["robots"]:
+        groups[_group(robot, no_stop)].append(robot["name"])
+    return Stopped(**{name: tuple(robots) for name, robots in groups.items()})
+
+
+def _group(robot: dict[str, Any], no_stop: frozenset[str]) -> str:
+    if not robot["latched"]:
+        return "free"
+    if not robot["online"]:
+        return "silent"
+    latched = robot["state"] == LATCHED or robot["name"] in no_stop
+    return "confirmed" if robot["still"] and latched else "waiting"
+
+
+def face(moment: Moment) -> Face:
+    """The line under the stop button."""
+    found = stopped(moment.snapshot, frozenset(moment.layout["no_stop"]))
+    robots = {
+        "stopping": found.waiting,
+        "unconfirmed": found.silent,
+        "partly": found.confirmed,
+    }.get(found.state, ())
+    sentence = moment.words(f"stop.{found.state}", robots=", ".join(robots), count=len(found.confirmed))
+    return {"text/stop": [sentence, found.state]}

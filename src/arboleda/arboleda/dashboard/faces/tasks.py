@@ -1,0 +1,73 @@
+"""Queue and history of the tasks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import Face
+from .moment import Moment, clock, seconds
+
+ORDER = {"running": 0, "queued": 1}  # the rest has ended
+Row = dict[str, Any]
+
+
+def face(moment: Moment) -> Face:
+    tasks = sorted_tasks(moment.snapshot["tasks"])
+    found: Face = {"rows/tasks": [task["id"] for task in tasks]}
+    for task in tasks:
+        found[f"row/tasks/{task['id']}"] = _row(moment, task)
+    open_ones = [task for task in tasks if task["state"] in ORDER]
+    found["text/tasks.open"] = [str(len(open_ones)) if open_ones else "", ""]
+    return found
+
+
+def sorted_tasks(tasks: list[Row]) -> list[Row]:
+    """What runs, then what waits in its order, then what ended, the last one first."""
+    open_ones = [task for task in tasks if task["state"] in ORDER]
+    ended = [task for task in tasks if task["state"] not in ORDER]
+    return [
+        *sorted(open_ones, key=lambda task: ORDER[task["state"]]),
+        *sorted(ended, key=lambda task: task["ended_at"], reverse=True),
+    ]
+
+
+def _row(moment: Moment, task: Row) -> Row:
+    words = moment.words
+    times = [
+        clock(moment.unix(at)) if at is not None else "" for at in (task["started_at"], task["ended_at"])
+    ]
+    return {
+        "state": task["state"],
+        "cell": task["cell"],
+        "texts": [
+            words.of("task_state", task["state"]),
+            task["text"],
+            *times,
+            seconds(task["elapsed_s"]),
+            why(moment, task),
+            f"#{task['id']}",
+        ],
+        "acts": _acts(words, task),
+    }
+
+
+def why(moment: Moment, task: Row) -> str:
+    """Why it failed or waits: the reason in the page's language, and the plant's sentence."""
+    words = moment.words
+    if task["reason"]:
+        return f"{words.of('reason', task['reason'])}: {words.say(task['sentence'])}"
+    if task["state"] == "queued":
+        cell = next(each for each in moment.snapshot["cells"] if each["name"] == task["cell"])
+        return words.say(cell["waiting_for"]) if cell["waiting_for"] else ""
+    return ""
+
+
+def _acts(words: Any, task: Row) -> list[Row]:
+    if task["state"] in ORDER:
+        return [
+            {"act": "cancel", "of": task["id"], "label": words("tasks.cancel"), "does": words("does.cancel")}
+        ]
+    if task["state"] in ("failed", "cancelled"):
+        does = words("tasks.retry_does", text=task["text"])
+        return [{"act": "submit", "of": task["text"], "label": words("tasks.retry"), "does": does}]
+    return []

@@ -1,0 +1,48 @@
+"""The time line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import Face
+from .moment import Moment, clock
+
+SHOWN = 200  # of what is kept; the download has all
+Event = dict[str, Any]
+
+
+def face(moment: Moment) -> Face:
+    """The newest event first."""
+    last = list(moment.events)[-SHOWN:][::-1]
+    found: Face = {"rows/events": [str(event["number"]) for event in last]}
+    for event in last:
+        found[f"row/events/{event['number']}"] = _row(moment, event)
+    return found
+
+
+def _row(moment: Moment, event: Event) -> dict[str, Any]:
+    words = moment.words
+    return {
+        "state": event["what"],
+        "cell": event["cell"] or "",
+        "texts": [
+            clock(event["at"]),
+            event["cell"] or words("events.plant"),
+            words(f"events.{event['kind']}", subject=event["subject"], what=_what(moment, event)),
+            _sentence(moment, event),
+        ],
+    }
+
+
+def _what(moment: Moment, event: Event) -> str:
+    if event["kind"] == "robot":
+        return moment.words(f"links.{event['what']}")
+    return moment.words.of(f"{event['kind']}_state", event["what"])
+
+
+def _sentence(moment: Moment, event: Event) -> str:
+    """A task's text stays as it was written; what comes after it is the plant's sentence."""
+    text, colon, rest = event["sentence"].partition(": ")
+    if event["kind"] == "task" and colon:
+        return f"{text}: {moment.words.say(rest)}"
+    return moment.words.say(event["sentence"]) if event["sentence"] else ""

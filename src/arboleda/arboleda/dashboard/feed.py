@@ -1,0 +1,149 @@
+"""From the plant's thread to every open page: what changed, FRAMES_HZ times a second, once per language."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, Protocol
+
+from .faces import Face, changed
+from .plant_side import PlantSide
+from .story import Story
+
+FRAMES_HZ = 10.0
+BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
+WAITING = 200  # snapshots between two frames; past that the oldest are dropped
+
+log = logging.getLogger(__name__)
+
+
+class Viewer(Protocol):
+    """One open page."""
+
+    language: str
+
+    @property
+    def connected(self) -> bool: ...
+
+    def show(self, number: int, patch: str) -> None:
+        """Send one frame: its number among those that it was sent, and what changed as JSON."""
+
+
+class Seen:
+    """How far one viewer is, in the frames that it was sent."""
+
+    def __init__(self) -> None:
+        self.whole = True  # it has to be told everything
+        self.sent = 0
+        self.seen = 0
+
+
+class Feed:
+    """`add` and `remove` viewers, `run` in the server's event loop. The plant's thread only appends."""
+
+    def __init__(self, plant: PlantSide) -> None:
+        self._plant = plant
+        self._told: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
+        self._story: Story | None = None
+        self._viewers: dict[Viewer, Seen] = {}
+        self._shown: dict[str, Face] = {}
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._news: asyncio.Event | None = None
+        self._unwatch: Callable[[], None] | None = None
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        """The time line, the newest event last."""
+        return list(self._story.chronicle.events) if self._story else []
+
+    def add(self, viewer: Viewer) -> None:
+        """A page was opened, or is back: it will be told everything."""
+        self._viewers[viewer] = Seen()
+        self._wake()
+
+    def remove(self, viewer: Viewer) -> None:
+        self._viewers.pop(viewer, None)
+
+    def seen(self, viewer: Viewer, number: int) -> None:
+        """A page says which frame it has shown."""
+        known = self._viewers.get(viewer)
+        if known is not None and 0 <= number <= known.sent:
+            known.seen = max(known.seen, number)
+
+    def start(self) -> None:
+        """Listen to the plant; in the event loop that will `run`."""
+        self._loop, self._news = asyncio.get_running_loop(), asyncio.Event()
+        self.begin()
+
+    def begin(self) -> None:
+        """Have the plant tell what is new; `turn` takes it in."""
+        self._story = Story(self._plant.layout(), self._plant.past_acts())
+        self._unwatch = self._plant.watch(self._tell)
+        self._tell(self._plant.snapshot())
+
+    async def run(self) -> None:
+        """Send frames until cancelled."""
+        assert self._news is not None
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            try:
+                self.turn()
+            except Exception:  # one frame that cannot be made does not end the page
+                log.exception("a frame of the page failed")
+            await asyncio.sleep(1 / FRAMES_HZ)
+
+    def stop(self) -> None:
+        if self._unwatch is not None:
+            self._unwatch()
+            self._unwatch = None
+
+    def turn(self) -> None:
+        """Take in what was told, and send each viewer what it has not been told."""
+        story = self._story
+        if story is None:
+            return
+        while self._told:
+            unix_s, snapshot = self._told.popleft()
+            story.see(snapshot, unix_s)
+        languages = {viewer.language for viewer in self._viewers}
+        links = self._plant.links() if languages else {}
+        self._shown = {language: self._shown.get(language, {}) for language in languages}
+        for language in languages:
+            self._send(language, story.face(language, links))
+
+    def _send(self, language: str, face: Face) -> None:
+        patch = changed(self._shown[language], face)
+        self._shown[language] = face
+        text, everything = json.dumps(patch), ""
+        for viewer, seen in self._viewers.items():
+            if viewer.language != language or not self._ready(viewer, seen):
+                continue
+            if seen.whole:
+                everything = everything or json.dumps(face)
+            elif not patch:
+                continue
+            seen.sent += 1
+            viewer.show(seen.sent, everything if seen.whole else text)
+            seen.whole = False
+
+    def _ready(self, viewer: Viewer, seen: Seen) -> bool:
+        """Whether a viewer takes a frame; one that is away or behind is told everything later."""
+        if viewer.connected and seen.sent - seen.seen <= BEHIND:
+            return True
+        seen.whole = True
+        return False
+
+    def _tell(self, snapshot: dict[str, Any]) -> None:
+        self._told.append((time.time(), snapshot))
+        self._wake()
+
+    def _wake(self) -> None:
+        if self._loop is not None and self._news is not None:
+            with suppress(RuntimeError):  # the loop has ended, and the page with it
+                self._loop.call_soon_threadsafe(self._news.set)

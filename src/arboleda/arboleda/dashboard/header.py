@@ -1,0 +1,64 @@
+"""The header: which plant this is, how it stands, and the stop that is always there."""
+
+from __future__ import annotations
+
+from .plant_side import Layout
+from .tags import live, tag
+from .wording import LANGUAGES, Words
+
+
+def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> None:
+    """`role` is that of somebody who logged in, None where nobody has to."""
+    with tag("header", classes="top"):
+        _stop(words)
+        with tag("div", classes="brand"):
+            tag("h1", layout["plant"])
+            live("p", "sum", classes="sum", role="status")
+        _tabs(words, parts)
+        _tools(words, role)
+        tag("p", words("page.connecting"), id="connection", role="status", data_lost=words("page.lost"))
+        tag("div", id="answer", role="status", aria_live="polite")
+
+
+def _stop(words: Words) -> None:
+    """The first thing that the keyboard reaches."""
+    with tag("div", classes="stop"):
+        tag("button", words("stop.button"), id="stop", type="button", title=words("does.stop"))
+        live("p", "stop", classes="stop-state", role="status", aria_live="assertive")
+
+
+def _tabs(words: Words, parts: list[str]) -> None:
+    with tag("nav", classes="tabs", aria_label=words("page.parts")):
+        for name in parts:
+            tag("button", words(f"tab.{name}"), type="button", classes="tab", data_tab=name)
+
+
+def _tools(words: Words, role: str | None) -> None:
+    with tag("div", classes="tools"):
+        for language in LANGUAGES:
+            tag(
+                "button",
+                language.upper(),
+                type="button",
+                classes="tool",
+                lang=language,
+                title=words(f"language.{language}"),
+                data_language=language,
+                aria_pressed="true" if language == words.language else "false",
+            )
+        tag(
+            "button",
+            type="button",
+            classes="tool look",
+            title=words("page.look"),
+            aria_label=words("page.look"),
+        )
+        if role is not None:
+            with tag("form", action="/logout", method="post"):
+                tag(
+                    "button",
+                    words(f"role.{role}"),
+                    type="submit",
+                    classes="tool",
+                    title=words("page.log_out"),
+                )

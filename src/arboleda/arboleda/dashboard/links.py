@@ -1,0 +1,20 @@
+"""The links: broker, ROS 2, and a row per robot."""
+
+from __future__ import annotations
+
+from .cell_filter import cell_filter
+from .plant_side import Layout
+from .tags import live, rows, tag
+from .wording import Words
+
+COLUMNS = ("robot", "presence", "telemetry", "ready", "homed", "effector", "command", "boot", "refused")
+
+
+def build(layout: Layout, words: Words) -> None:
+    with tag("div", classes="box"):
+        tag("h2", words("tab.links"))
+        with tag("div", classes="facts"):
+            for key in ("broker", "ros", "strays"):
+                live("p", key, classes="fact")
+        cell_filter("links", layout, words)
+        rows("links", [words(f"column.{name}") for name in COLUMNS], classes="links")

@@ -1,0 +1,137 @@
+"""The page: header with the big stop, the parts below it, and its mounting on the server's app."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from importlib import resources
+
+from fastapi import FastAPI, Request
+from nicegui import Client, app, ui
+
+from arboleda.core.errors import StartError
+
+from . import header, links, panel, tasks, timeline, trees
+from .desk import Desk
+from .feed import Feed
+from .plant_side import Layout, PlantSide
+from .tags import tag
+from .twin import pane, window
+from .twin.show import Show
+from .wording import LANGUAGES, Words, words
+
+RECONNECT_S = 30.0
+LANGUAGE_COOKIE = "arboleda_language"
+PARTS: dict[str, Callable[[Layout, Words], None]] = {
+    "cells": trees.build,
+    "twin": pane.build,
+    "tasks": tasks.build,
+    "panel": panel.build,
+    "links": links.build,
+    "events": timeline.build,
+}
+_here: list[FastAPI] = []
+
+
+def mount(server: FastAPI, plant: PlantSide) -> None:
+    """Put the page at `/` of this app; StartError where this process shows a page already."""
+    if _here:
+        raise StartError(
+            "This process shows the page of another plant already; NiceGUI has one page a process."
+        )
+    _here.append(server)
+    feed, show = Feed(plant), Show(plant)
+    _keep_running(feed, show)
+    window.serve(server, plant, show)
+    layout = plant.layout()
+    app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
+
+    @ui.page("/", title=f"{layout['plant']} · Arboleda")
+    def page(request: Request, client: Client) -> None:
+        window.open_window(client, show)
+        said = words(language_of(request))
+        desk = Desk(client, plant, feed, said)
+        open_page(client, desk, feed, layout, said, role_shown(request))
+
+    ui.run_with(
+        server,
+        title="Arboleda",
+        dark=None,
+        tailwind=False,
+        binding_refresh_interval=None,
+        reconnect_timeout=RECONNECT_S,
+        show_welcome_message=False,
+        favicon=str(resources.files(__package__).joinpath("assets", "tree.svg")),
+    )
+
+
+def language_of(request: Request) -> str:
+    """The language chosen before, else the first that the browser asks for and we have."""
+    chosen = request.cookies.get(LANGUAGE_COOKIE)
+    if chosen in LANGUAGES:
+        return chosen
+    asked = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
+    return next((each for each in asked if each in LANGUAGES), LANGUAGES[0])
+
+
+def role_shown(request: Request) -> str | None:
+    """The role somebody logged in with; None where nobody needs to log in."""
+    door = request.scope.get("arboleda.door")
+    return None if door is None or door.open else request.scope["arboleda.role"].value
+
+
+def open_page(client: Client, desk: Desk, feed: Feed, layout: Layout, said: Words, role: str | None) -> None:
+    """Build the page of one browser and let it live."""
+    ui.add_head_html(head(said))
+    ui.on("arboleda", desk.hear)
+    client.on_connect(lambda: feed.add(desk))
+    client.on_delete(lambda: feed.remove(desk))
+    with tag("div", classes="app"):
+        header.build(layout, said, list(PARTS), role)
+        with tag("div", id="parts"):
+            for name, build in PARTS.items():
+                label = said(f"tab.{name}")
+                with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
+                    build(layout, said)
+
+
+def head(said: Words) -> str:
+    """What the page's head needs: our style, our script, and the few words that the script says itself."""
+    spoken = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
+    data = json.dumps({"language": said.language, "words": spoken}).replace("<", "\\u003c")
+    return (
+        f'<link rel="stylesheet" href="{assets()}/page.css">'
+        f'<link rel="stylesheet" href="{assets()}/twin.css">'
+        f"<script>window.arboledaPage = {data};</script>"
+        f'<script type="module" src="{assets()}/page.js"></script>'
+        f'<script type="module" src="{assets()}/twin.js"></script>'
+    )
+
+
+@cache
+def assets() -> str:
+    """Where our files are served: another place when one of them has changed, as browsers keep them."""
+    files = sorted(resources.files(__package__).joinpath("assets").iterdir(), key=lambda file: file.name)
+    return f"/arboleda/{hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:12]}"
+
+
+def _keep_running(feed: Feed, show: Show) -> None:
+    running: list[asyncio.Task[None]] = []
+
+    async def start() -> None:
+        feed.start()
+        running.extend(asyncio.create_task(each.run()) for each in (feed, show))
+
+    async def stop() -> None:
+        feed.stop()
+        for task in running:
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
+
+    app.on_startup(start)
+    app.on_shutdown(stop)

@@ -1,0 +1,44 @@
+"""What the page may know of the plant and ask of it; nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, Protocol
+
+from arboleda.core.messages import OperatorAnswer, Verb
+
+Snapshot = dict[str, Any]
+Layout = dict[str, Any]
+Links = dict[str, Any]
+
+
+class PlantSide(Protocol):
+    """The plant as seen from the page; no call blocks, all data is plain and never changed by the page."""
+
+    def snapshot(self) -> Snapshot:
+        """`core.view.snapshot` as of now."""
+
+    def layout(self) -> Layout:
+        """`core.view.layout`: what never changes."""
+
+    def positions(self) -> dict[str, Any]:
+        """`core.twin_view.positions` as of now, and `now` on the plant's clock."""
+
+    def urdf(self, robot: str) -> str:
+        """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
+
+    def links(self) -> Links:
+        """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}}."""
+
+    def past_acts(self) -> list[dict[str, Any]]:
+        """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""
+
+    def submit(self, text: str) -> Future[dict[str, Any]]:
+        """A task, refused ones too; an ArboledaError says why there is none."""
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
+        """An operator's act; `scope` is "" for the plant."""
+
+    def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
+        """Have every changed snapshot told in the plant's thread; returns what ends that."""

@@ -1,0 +1,50 @@
+"""What the page keeps from one snapshot to the next, and the faces it makes of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .chronicle import Chronicle
+from .faces import Face, whole
+from .faces.moment import Moment
+from .tree_memory import TreeMemory
+from .wording import words
+
+Row = dict[str, Any]
+
+
+class Story:
+    """Trees and events of a plant; pure: `see` each snapshot in order, then ask for a `face`."""
+
+    def __init__(self, layout: Row, past_acts: list[Row]) -> None:
+        self.layout = layout
+        self.chronicle = Chronicle(past_acts)
+        self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
+        self._offset_s: float | None = None  # unix s less the plant's clock, so that shown times stay put
+        self._snapshot: Row | None = None
+
+    def see(self, snapshot: Row, unix_s: float) -> None:
+        """Take in one snapshot, told at unix s."""
+        if self._offset_s is None:
+            self._offset_s = unix_s - snapshot["at"]
+        at = snapshot["at"] + self._offset_s
+        for cell in snapshot["cells"]:
+            self.trees[cell["name"]].see(cell, snapshot["tasks"], at)
+        self.chronicle.see(snapshot, at)
+        self._snapshot = snapshot
+
+    def face(self, language: str, links: Row) -> Face:
+        """What a page in this language shows now; empty before the first snapshot."""
+        if self._snapshot is None or self._offset_s is None:
+            return {}
+        return whole.face(
+            Moment(
+                snapshot=self._snapshot,
+                layout=self.layout,
+                links=links,
+                trees=self.trees,
+                events=self.chronicle.events,
+                words=words(language),
+                unix_s=self._snapshot["at"] + self._offset_s,
+            )
+        )

@@ -1,0 +1,51 @@
+"""Elements of the page: text is always text, never HTML."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+from nicegui.element import Element
+from nicegui.elements.mixins.text_element import TextElement
+
+
+def tag(
+    name: str, text: str | None = None, *, classes: str = "", style: str = "", **attributes: Any
+) -> Element:
+    """`tag("button", "Send", data_act="submit")`; a `with` block fills it."""
+    made = ui.element(name) if text is None else TextElement(tag=name, text=text)
+    made.style(style)
+    for key, value in attributes.items():
+        made.props[key.rstrip("_").replace("_", "-")] = value
+    return made.classes(classes)
+
+
+def live(name: str, key: str, *, classes: str = "", **attributes: Any) -> Element:
+    """An element whose text and state come with the frames, as `text/<key>`."""
+    return tag(name, classes=classes, data_live=key, **attributes)
+
+
+def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Element:
+    """A button that asks the plant for something; `does` says what it will do."""
+    return tag(
+        "button",
+        label,
+        classes=f"act {classes}",
+        type="button",
+        title=does,
+        data_act=act,
+        data_of=of,
+        **attributes,
+    )
+
+
+def rows(name: str, columns: list[str], *, empty: str = "", classes: str = "") -> Element:
+    """A list whose rows come with the frames, as `rows/<name>`; `empty` stands where there is none."""
+    with tag("div", classes=f"table {classes}", role="table") as table:
+        if any(columns):
+            with tag("div", classes="row head", role="row"):
+                for column in columns:
+                    tag("span", column, role="columnheader")
+        tag("div", classes="rows", role="rowgroup", data_rows=name, data_columns="|".join(columns))
+        tag("p", empty, classes="empty")
+    return table

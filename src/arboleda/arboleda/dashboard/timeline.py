@@ -1,0 +1,20 @@
+"""The time line: what happened, the newest first, for one cell or all, and as a file."""
+
+from __future__ import annotations
+
+from .cell_filter import cell_filter
+from .plant_side import Layout
+from .tags import act_button, rows, tag
+from .wording import Words
+
+COLUMNS = ("at", "cell", "event", "sentence")
+
+
+def build(layout: Layout, words: Words) -> None:
+    with tag("div", classes="box"):
+        with tag("div", classes="box-head"):
+            tag("h2", words("tab.events"))
+            cell_filter("events", layout, words)
+            act_button(words("events.download"), "download", "", words("events.download_does"))
+        columns = [words(f"column.{name}") for name in COLUMNS]
+        rows("events", columns, empty=words("events.none"), classes="events")

@@ -1,0 +1,1 @@
+"""The digital twin: what is drawn where, and how sure that is."""

@@ -1,0 +1,125 @@
+"""A URDF reduced to what is drawn: nested links, their joints and primitive shapes, as plain data.
+
+A link is {link, xyz, rpy, moves, shapes, children}: `xyz` (m) and `rpy` (rad) lead from the parent to its
+joint, `moves` is None or {type, axis, index}: which of the robot's joints, counted from the root outwards,
+moves it. A shape is {kind, size, xyz, rpy, color}: `size` is [x, y, z] of a box, [radius, length] of a
+cylinder about z, [radius] of a sphere; `color` is [r, g, b] from 0 to 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+Body = dict[str, Any]
+GREY = [0.6, 0.6, 0.6]
+ORIGIN = {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}
+MOVING = ("revolute", "continuous", "prismatic")
+SIZES: dict[str, Callable[[Element], list[float]]] = {
+    "box": lambda found: _numbers(found.get("size", "")),
+    "cylinder": lambda found: [float(found.get(key, "")) for key in ("radius", "length")],
+    "sphere": lambda found: [float(found.get("radius", ""))],
+}
+
+
+def read(text: str) -> Body:
+    """The root link of a URDF; ValueError for what is not one tree of links with primitive shapes."""
+    try:
+        return _Reader(ElementTree.fromstring(text)).body()
+    except ElementTree.ParseError as error:
+        raise ValueError(f"not XML: {error}") from error
+
+
+def links(body: Body) -> Iterator[Body]:
+    """A body's links, each before its children."""
+    yield body
+    for child in body["children"]:
+        yield from links(child)
+
+
+def tip(body: Body) -> str:
+    """The name of the last link of its longest chain: where the tool is."""
+    return max(_chains(body, 0))[1]
+
+
+def _chains(body: Body, depth: int) -> Iterator[tuple[int, str]]:
+    yield depth, body["link"]
+    for child in body["children"]:
+        yield from _chains(child, depth + 1)
+
+
+class _Reader:
+    def __init__(self, robot: Element) -> None:
+        self._links = {link.get("name", ""): link for link in robot.findall("link")}
+        self._joints = robot.findall("joint")
+        self._colors = {each.get("name", ""): _color(each) for each in robot.findall("material")}
+        self._moving = 0
+
+    def body(self) -> Body:
+        children = {_end(joint, "child") for joint in self._joints}
+        roots = [name for name in self._links if name not in children]
+        if len(roots) != 1:
+            raise ValueError(
+                f"a robot is one tree of links; this one has the roots {', '.join(roots) or 'none'}"
+            )
+        return self._link(roots[0], ORIGIN, None)
+
+    def _link(self, name: str, origin: dict[str, Any], moves: dict[str, Any] | None) -> Body:
+        if name not in self._links:
+            raise ValueError(f"a joint leads to the link {name}, which is not there")
+        shapes = [self._shape(visual) for visual in self._links[name].findall("visual")]
+        joints = [joint for joint in self._joints if _end(joint, "parent") == name]
+        children = [self._link(_end(joint, "child"), _origin(joint), self._moves(joint)) for joint in joints]
+        return {"link": name, **origin, "moves": moves, "shapes": shapes, "children": children}
+
+    def _moves(self, joint: Element) -> dict[str, Any] | None:
+        kind = joint.get("type", "")
+        if kind not in MOVING:
+            return None
+        axis = joint.find("axis")
+        index, self._moving = self._moving, self._moving + 1
+        along = _numbers(axis.get("xyz", "")) if axis is not None else [1.0, 0.0, 0.0]
+        return {"type": "slide" if kind == "prismatic" else "turn", "axis": along, "index": index}
+
+    def _shape(self, visual: Element) -> dict[str, Any]:
+        geometry = visual.find("geometry")
+        found = geometry[0] if geometry is not None and len(geometry) else None
+        if found is None or found.tag not in SIZES:
+            what = found.tag if found is not None else "nothing"
+            raise ValueError(f"a shape is one of {', '.join(SIZES)}, not {what}")
+        return {
+            "kind": found.tag,
+            "size": SIZES[found.tag](found),
+            **_origin(visual),
+            "color": self._color_of(visual),
+        }
+
+    def _color_of(self, visual: Element) -> list[float]:
+        material = visual.find("material")
+        if material is None:
+            return GREY
+        own = _color(material)
+        return own or self._colors.get(material.get("name", "")) or GREY
+
+
+def _end(joint: Element, which: str) -> str:
+    found = joint.find(which)
+    return found.get("link", "") if found is not None else ""
+
+
+def _origin(element: Element) -> dict[str, Any]:
+    found = element.find("origin")
+    if found is None:
+        return ORIGIN
+    return {key: _numbers(found.get(key, "0 0 0")) for key in ("xyz", "rpy")}
+
+
+def _color(material: Element) -> list[float] | None:
+    found = material.find("color")
+    return _numbers(found.get("rgba", ""))[:3] if found is not None else None
+
+
+def _numbers(text: str) -> list[float]:
+    return [float(number) for number in text.split()]

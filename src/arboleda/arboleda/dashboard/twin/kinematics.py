@@ -1,0 +1,87 @@
+"""Where the links of a body are: plain 4 x 4 matrices, row by row."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from .bodies import Body, tip
+
+Matrix = tuple[tuple[float, ...], ...]
+Point = tuple[float, float, float]
+
+
+def place(body: Body, q: Sequence[float], base: Matrix | None = None) -> dict[str, Matrix]:
+    """Every link's frame seen from where `base` is seen; `q` in rad and m, in the order of its joints."""
+    found: dict[str, Matrix] = {}
+    _place(body, q, base or shift(0, 0, 0), found)
+    return found
+
+
+def tool(body: Body, q: Sequence[float], base: Matrix | None = None) -> Matrix:
+    """The frame of the last link."""
+    return place(body, q, base)[tip(body)]
+
+
+def floor(at: Sequence[float]) -> Matrix:
+    """A frame that stands on the floor: x, y in m, yaw in rad."""
+    x, y, yaw = at
+    return times(shift(x, y, 0), turn((0, 0, 1), yaw))
+
+
+def shift(x: float, y: float, z: float) -> Matrix:
+    return ((1, 0, 0, x), (0, 1, 0, y), (0, 0, 1, z), (0, 0, 0, 1))
+
+
+def turn(axis: Sequence[float], angle: float) -> Matrix:
+    """A turn by `angle` rad about an axis of length 1."""
+    x, y, z = axis
+    c, s, rest = math.cos(angle), math.sin(angle), 1 - math.cos(angle)
+    return (
+        (c + x * x * rest, x * y * rest - z * s, x * z * rest + y * s, 0),
+        (y * x * rest + z * s, c + y * y * rest, y * z * rest - x * s, 0),
+        (z * x * rest - y * s, z * y * rest + x * s, c + z * z * rest, 0),
+        (0, 0, 0, 1),
+    )
+
+
+def pose(xyz: Sequence[float], rpy: Sequence[float]) -> Matrix:
+    """A URDF origin: turned about x, then y, then z of the parent, then shifted."""
+    roll, pitch, yaw = rpy
+    turned = times(turn((0, 0, 1), yaw), times(turn((0, 1, 0), pitch), turn((1, 0, 0), roll)))
+    return times(shift(*xyz), turned)
+
+
+def times(a: Matrix, b: Matrix) -> Matrix:
+    columns = tuple(zip(*b, strict=True))
+    return tuple(
+        tuple(sum(x * y for x, y in zip(row, column, strict=True)) for column in columns) for row in a
+    )
+
+
+def at(matrix: Matrix, point: Point = (0, 0, 0)) -> Point:
+    """A point of a frame, seen from outside."""
+    x, y, z = (sum(a * b for a, b in zip(row, (*point, 1), strict=True)) for row in matrix[:3])
+    return (x, y, z)
+
+
+def flat(matrix: Matrix) -> list[float]:
+    """Its 16 numbers, row by row."""
+    return [value for row in matrix for value in row]
+
+
+def _place(body: Body, q: Sequence[float], above: Matrix, found: dict[str, Matrix]) -> None:
+    here = times(above, pose(body["xyz"], body["rpy"]))
+    moves = body["moves"]
+    if moves is not None:
+        here = times(here, _moved(moves["type"], moves["axis"], q[moves["index"]]))
+    found[body["link"]] = here
+    for child in body["children"]:
+        _place(child, q, here, found)
+
+
+def _moved(kind: str, axis: Sequence[float], value: float) -> Matrix:
+    if kind == "turn":
+        return turn(axis, value)
+    x, y, z = axis
+    return shift(x * value, y * value, z * value)

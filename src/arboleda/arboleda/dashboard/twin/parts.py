@@ -1,0 +1,36 @@
+"""Where each cell's part is drawn; where one was put down it stays until the cell has another."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import kinematics
+from .bodies import Body
+
+Row = dict[str, Any]
+
+
+class Part:
+    """The part of one cell: {at: "arm" | "mobile" | "place", sure, frame}, or None where there is none.
+
+    `frame` (16 numbers, row by row) is the tool's place over a part that was put down. Only a part that an
+    effector holds for sure is `sure`.
+    """
+
+    def __init__(self, arm: Row, body: Body) -> None:
+        self._base = kinematics.floor(arm["at"])
+        self._body = body
+        self._shown: Row | None = None
+
+    def see(self, part: Row | None, arm: Row) -> Row | None:
+        """`part` as `core.twin_view.part` has it, `arm` as its Track draws it."""
+        if part is not None:
+            self._shown = self._placed(part["q"]) if part["at"] == "pose" else {"sure": False, **part}
+        elif self._shown is not None and self._shown["at"] != "place":
+            here = arm["q"] or arm["estimate"]
+            self._shown = self._placed(here) if self._shown["at"] == "arm" and here else None
+        return self._shown
+
+    def _placed(self, q: list[float]) -> Row:
+        frame = kinematics.flat(kinematics.tool(self._body, q, self._base))
+        return {"at": "place", "sure": False, "frame": frame}

@@ -1,0 +1,108 @@
+"""What stands in a plant and never changes, as one plain piece of data that a browser draws; m and rad."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import bodies, kinematics
+from .bodies import Body
+from .hull import hull
+
+Row = dict[str, Any]
+MARGIN = 0.08  # m around what is known to lie in a zone
+WIDE = 0.05  # m beyond the outermost robot, grid or station
+STEPS = 8  # points on a move that crosses a zone
+
+
+def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
+    """`places` as `core.places` has them, and a body for each robot."""
+    robots = {robot["name"]: robot for robot in places["robots"]}
+    cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
+    zones = [_zone(zone, robots, drawings) for zone in places["zones"]]
+    return {
+        "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
+        "cells": cells,
+        "zones": zones,
+        "bounds": _bounds(places, cells),
+    }
+
+
+def deck(body: Body) -> float:
+    """How high a mobile's uppermost face is, m."""
+    frames = kinematics.place(body, (0.0, 0.0))
+    tops = [
+        kinematics.at(frames[link["link"]])[2] + shape["xyz"][2] + shape["size"][2] / 2
+        for link in bodies.links(body)
+        for shape in link["shapes"]
+        if shape["kind"] == "box"
+    ]
+    return max(tops, default=0.0)
+
+
+def _robot(robot: Row, body: Body) -> Row:
+    kept = {key: robot[key] for key in ("name", "cell", "kind", "at", "reference")}
+    return {**kept, "body": body, "tip": bodies.tip(body)}
+
+
+def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
+    mobile = robots[cell["mobile"]]
+    return {
+        "name": cell["name"],
+        "arm": cell["arm"],
+        "mobile": cell["mobile"],
+        "deck": deck(drawings[cell["mobile"]]),
+        "grid": {
+            "at": mobile["at"],
+            "nodes": mobile["nodes"],
+            "pitch": cell["pitch"],
+            "columns": cell["columns"],
+        },
+        "pickup": _frame(robots[cell["arm"]], drawings, cell["pickup"]),
+        "stations": [_frame(robots[cell["arm"]], drawings, q) for q in cell["stations"]],
+    }
+
+
+def _frame(arm: Row, drawings: Mapping[str, Body], q: Sequence[float]) -> list[float]:
+    """The tool's frame at a pose, 16 numbers row by row."""
+    return kinematics.flat(kinematics.tool(drawings[arm["name"]], q, kinematics.floor(arm["at"])))
+
+
+def _zone(zone: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
+    """A prism around the tool at every pose of the zone, and on every move that crosses it."""
+    spots = [spot for given in zone["spots"] for spot in _spots(given, robots, drawings)]
+    heights = [z for _, _, z in spots]
+    return {
+        "zone": zone["zone"],
+        "outline": hull([(x, y) for x, y, _ in spots], MARGIN),
+        "low": max(0.0, min(heights, default=0.0) - MARGIN),
+        "high": max(heights, default=0.0) + MARGIN,
+    }
+
+
+def _spots(given: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> list[tuple[float, ...]]:
+    arm = robots[given["robot"]]
+    base, body = kinematics.floor(arm["at"]), drawings[arm["name"]]
+    return [kinematics.at(kinematics.tool(body, q, base)) for q in _between(given["path"])]
+
+
+def _between(path: list[list[float]]) -> list[list[float]]:
+    """The joints at the ends of a path and between them."""
+    if len(path) == 1:
+        return path
+    start, end = path
+    shares = [step / STEPS for step in range(STEPS + 1)]
+    return [[a + (b - a) * share for a, b in zip(start, end, strict=True)] for share in shares]
+
+
+def _bounds(places: Row, cells: list[Row]) -> list[list[float]]:
+    """The lowest and the highest x, y, z of all that matters."""
+    points = [kinematics.at(kinematics.floor(robot["at"])) for robot in places["robots"]]
+    for robot in places["robots"]:
+        frame = kinematics.floor(robot["at"])
+        points += [kinematics.at(frame, (x, y, 0.0)) for x, y in robot.get("nodes", ())]
+    points += [
+        (frame[3], frame[7], frame[11]) for cell in cells for frame in [cell["pickup"], *cell["stations"]]
+    ]
+    low = [min(point[axis] for point in points) - WIDE for axis in range(3)]
+    return [low, [max(point[axis] for point in points) + WIDE for axis in range(3)]]

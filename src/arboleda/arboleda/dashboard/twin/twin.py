@@ -1,0 +1,34 @@
+"""The twin of one plant: what stands in it, and what is to be drawn of it at each moment. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .bodies import Body
+from .parts import Part
+from .scene import scene
+from .track import Track
+
+Row = dict[str, Any]
+
+
+class Twin:
+    """`places` as `core.places` has them, and each robot's body."""
+
+    def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
+        self.scene = scene(places, drawings)
+        robots = {robot["name"]: robot for robot in places["robots"]}
+        self._arms = {cell["name"]: cell["arm"] for cell in places["cells"]}
+        self._tracks = {name: Track(robot) for name, robot in robots.items()}
+        self._parts = {cell: Part(robots[arm], drawings[arm]) for cell, arm in self._arms.items()}
+
+    def frame(self, positions: Row, now: float) -> Row:
+        """All that is drawn, by keys robot/<name>, part/<cell>, zone/<name>; `now` on the plant's clock."""
+        robots = {row["name"]: self._tracks[row["name"]].see(row, now) for row in positions["robots"]}
+        found: Row = {f"robot/{name}": drawn for name, drawn in robots.items()}
+        for cell, part in positions["parts"].items():
+            found[f"part/{cell}"] = self._parts[cell].see(part, robots[self._arms[cell]])
+        for zone in positions["zones"]:
+            found[f"zone/{zone['zone']}"] = {key: zone[key] for key in ("state", "robot", "waiting")}
+        return found

@@ -1,0 +1,92 @@
+"""One browser's window on the twin, and the way of the twin onto the page's server."""
+
+from __future__ import annotations
+
+import json
+import threading
+from typing import Any
+
+from fastapi import FastAPI, Response
+from nicegui import Client, ui
+from nicegui.events import GenericEventArguments
+
+from arboleda.core.errors import ArboledaError
+
+from ..plant_side import PlantSide
+from . import bodies
+from .show import Show
+from .twin import Twin
+
+SCENE = "/twin/scene.json"
+EVENT = "arboleda-twin"
+LOOK, LEAVE, DRAWN = "look", "leave", "drawn"
+
+
+class Window:
+    """One open page; its script says when somebody looks at the twin, and how far it is."""
+
+    def __init__(self, client: Client, show: Show) -> None:
+        self._client = client
+        self._show = show
+
+    @property
+    def connected(self) -> bool:
+        return self._client.has_socket_connection
+
+    def draw(self, number: int, patch: str) -> None:
+        self._client.run_javascript(f"arboledaTwin.frame({number}, {patch})")
+
+    def hear(self, event: GenericEventArguments) -> None:
+        """["look"], ["leave"] or ["drawn", number]; anything else is ignored."""
+        asked = event.args if isinstance(event.args, list) else [event.args]
+        what, number = [*asked, None, None][:2]
+        if what == LOOK:
+            self._show.look(self)
+        elif what == LEAVE:
+            self._show.leave(self)
+        elif what == DRAWN and isinstance(number, int):
+            self._show.drawn(self, number)
+
+
+def open_window(client: Client, show: Show) -> None:
+    """Let the page of one browser show the twin."""
+    _ = ui.scene  # has NiceGUI serve its three.js; no scene of its own is made
+    window = Window(client, show)
+    ui.on(EVENT, window.hear)
+    client.on_delete(lambda: show.leave(window))
+
+
+def serve(server: FastAPI, plant: PlantSide, show: Show) -> None:
+    """Have the browser's `SCENE` answered, and the show opened by the first who asks."""
+    store = _Store(plant, show)
+    server.add_api_route(SCENE, store.answer, include_in_schema=False)
+
+
+class _Store:
+    """The scene, made once, when somebody first wants to see it: drawing robots takes a while."""
+
+    def __init__(self, plant: PlantSide, show: Show) -> None:
+        self._plant = plant
+        self._show = show
+        self._making = threading.Lock()
+        self._scene: str | None = None
+
+    def answer(self) -> Response:
+        """The scene as JSON; 503 with {"sentence"} where it cannot be drawn. Called in a thread."""
+        try:
+            with self._making:
+                self._scene = self._scene or self._made()
+        except (ArboledaError, ValueError) as error:
+            return _json({"sentence": str(error)}, 503)
+        return Response(self._scene, media_type="application/json")
+
+    def _made(self) -> str:
+        places = self._plant.layout()["places"]
+        drawings = {robot["name"]: bodies.read(self._plant.urdf(robot["name"])) for robot in places["robots"]}
+        twin = Twin(places, drawings)
+        self._show.open(twin)
+        return json.dumps(twin.scene)
+
+
+def _json(what: Any, status: int) -> Response:
+    return Response(json.dumps(what), status, media_type="application/json")

@@ -1,0 +1,102 @@
+"""A page in a process of its own, before a plant whose every text is the argument; prints its address."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any
+
+from fastapi import FastAPI
+
+from arboleda.adapters.web.auth import Door
+from arboleda.adapters.web.guard import Guard
+from arboleda.adapters.web.names import names_for
+from arboleda.adapters.web.server import Server
+from arboleda.core import view
+from arboleda.core.errors import StartError
+from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.dashboard import page
+from arboleda.testing import Rig, shipped
+
+EVIL = sys.argv[1]
+SAID = {
+    "text",
+    "sentence",
+    "feedback",
+    "failure",
+    "what",
+    "held_by",
+    "waiting_for",
+    "last",
+    "obstacle",
+    "id",
+    "step",
+}
+
+
+def poisoned(data: Any, key: str = "") -> Any:
+    """The same data with every text that a person or a device may have written made an attack."""
+    if isinstance(data, dict):
+        return {name: poisoned(value, name) for name, value in data.items()}
+    if isinstance(data, list):
+        return [poisoned(value, key) for value in data]
+    return f"{data} {EVIL}" if isinstance(data, str) and key in SAID else data
+
+
+class Side:
+    """A plant in the middle of its work, told in such words."""
+
+    def __init__(self) -> None:
+        rig = Rig(shipped())
+        rig.wait(0.5)
+        rig.submit("sis_a 0B 7")
+        rig.submit("sis_a 0B 7")
+        rig.submit("sis_b 0B 7")
+        rig.wait_for("sis_a", "move to pick-up")
+        rig.operate(Verb.STOP, "sis_b")
+        self._layout = view.layout(rig.plant.model) | {"plant": EVIL}
+        self._snapshot = poisoned(rig.snapshot())
+
+    def snapshot(self) -> dict[str, Any]:
+        return self._snapshot
+
+    def layout(self) -> dict[str, Any]:
+        return self._layout
+
+    def links(self) -> dict[str, Any]:
+        broker = {"address": EVIL, "connected": True}
+        return {"broker": broker, "ros": None, "refused": {"": {"count": 1, "last": EVIL}}}
+
+    def past_acts(self) -> list[dict[str, Any]]:
+        return [{"at": 0.0, "scope": EVIL, "sentence": EVIL}]
+
+    def submit(self, text: str) -> Future[dict[str, Any]]:
+        answer: Future[dict[str, Any]] = Future()
+        answer.set_result({"state": "refused", "sentence": f"{text} {EVIL}"})
+        return answer
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
+        answer: Future[OperatorAnswer] = Future()
+        answer.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=EVIL))
+        return answer
+
+    def watch(self, callback: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
+        return lambda: None
+
+
+def main() -> None:
+    app = FastAPI()
+    page.mount(app, Side())
+    try:
+        page.mount(FastAPI(), Side())
+    except StartError as error:
+        print(f"second page: {error}")
+    server = Server(Guard(app, names_for("127.0.0.1", None), Door(None)), port=0)
+    print(f"http://127.0.0.1:{server.start()}", flush=True)
+    sys.stdin.read()
+    server.stop()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""The page before a plant whose every text is an attack."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.requires("chromium", "playwright")
+
+EVIL = "<img src=x onerror=window.broken=1>`${window.broken=2}`</script>\"' {{1+1}}"
+
+
+@pytest.fixture(scope="module")
+def hostile() -> Iterator[list[str]]:
+    """What the process with the page printed; its address is the last line."""
+    script = str(Path(__file__).with_name("hostile_page.py"))
+    environ = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, script, EVIL], env=environ, **pipes) as child:
+        assert child.stdin is not None and child.stdout is not None
+        yield [child.stdout.readline().strip() for _ in range(2)]
+        child.stdin.close()
+        assert child.wait(10) == 0
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        yield made.new_context()
+        made.close()
+
+
+@pytest.fixture
+def tab(browser: Any, hostile: list[str]) -> Iterator[Any]:
+    made = browser.new_page()
+    made.set_default_timeout(10_000)
+    made.goto(hostile[-1])
+    made.wait_for_selector("#connection", state="hidden")
+    yield made
+    made.close()
+
+
+def test_a_second_page_in_one_process_is_refused(hostile: list[str]) -> None:
+    assert "This process shows the page of another plant already" in hostile[0]
+
+
+def test_nothing_that_anybody_wrote_is_rendered_as_html(tab: Any) -> None:
+    for part in ("tasks", "links", "events", "cells"):
+        tab.click(f"[data-tab={part}]")
+        tab.wait_for_selector(f"#part-{part}:has-text('<img src=x')")
+    tab.click(".cell.chosen g.node.current")
+    tab.wait_for_selector("#node:has-text('<img src=x')")
+    tab.click("[data-tab=panel]")
+    tab.click("[data-scope=sis_a]")
+    tab.click(".verb[data-verb=hold] button")
+    tab.wait_for_selector("#answer:has-text('<img src=x')")
+    tab.click("[data-tab=tasks]")
+    tab.fill("#task-text", EVIL)
+    tab.click("#task-send")
+    tab.wait_for_selector("#answer:has-text('{{1+1}}')")
+    assert tab.inner_text("h1") == EVIL
+    assert tab.evaluate("[window.broken ?? null, document.images.length]") == [None, 0]
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        [],
+        ["stop"],
+        ["submit", 7],
+        ["submit", {"a": 1}],
+        ["seen", 1e99],
+        ["seen", True],
+        ["explode", "sis_a"],
+        ["__class__", "x"],
+        [["stop"], "x"],
+        [None, None, None, None],
+        ["submit", "x" * 10_000],
+    ],
+    ids=str,
+)
+def test_events_that_no_button_sends_change_nothing(tab: Any, event: list[Any]) -> None:
+    tab.evaluate("event => window.emitEvent('arboleda', ...event)", event)
+    tab.click("[data-tab=tasks]")
+    tab.fill("#task-text", "still here")
+    tab.click("#task-send")
+    tab.wait_for_selector("#answer:has-text('still here')")

@@ -1,0 +1,188 @@
+"""The real server before a plant that answers what a test prepared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import ExitStack, contextmanager
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI, WebSocket, WebSocketDisconnect
+
+from arboleda.adapters.web.api import make_app
+from arboleda.adapters.web.auth import Door, Role
+from arboleda.adapters.web.guard import Guard
+from arboleda.adapters.web.names import names_for
+from arboleda.adapters.web.server import Server
+from arboleda.core.messages import OperatorAnswer, Verb
+
+QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
+TASK = QUEUED | {"reason": None, "elapsed_s": None}
+VIEW = {"plant": "demo", "epoch": 7, "at": 1.0, "ending": False, "cells": [], "robots": [], "zones": []}
+VIEW |= {"tasks": [TASK]}
+TOKENS = {Role.VIEWER: "v" * 32, Role.OPERATOR: "o" * 32}
+
+
+class Plant:
+    """Answers each text with what was prepared for it."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+        self.answer: dict | Exception | None = QUEUED
+        self.view: dict | Exception = VIEW
+        self.acts: list[tuple[Verb, str, bool]] = []
+        self.refusal: str | None = None
+        self.unanswered: list[Future] | None = None
+        self.watchers: list[Callable[[dict], None]] = []
+
+    def snapshot(self) -> dict:
+        if isinstance(self.view, Exception):
+            raise self.view
+        return self.view
+
+    def find(self, task: str) -> dict | None:
+        return QUEUED if task == QUEUED["id"] else None
+
+    def submit(self, text: str) -> Future:
+        self.texts.append(text)
+        future: Future = Future()
+        if isinstance(self.answer, Exception):
+            future.set_exception(self.answer)
+        elif self.answer is not None:
+            future.set_result(self.answer)
+        return future
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future:
+        self.acts.append((verb, scope, by_hand))
+        future: Future = Future()
+        if self.unanswered is not None:
+            self.unanswered.append(future)
+        else:
+            future.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal))
+        return future
+
+    def watch(self, callback: Callable[[dict], None]) -> Callable[[], None]:
+        self.watchers.append(callback)
+        return lambda: self.watchers.remove(callback)
+
+    def becomes(self, **keys: Any) -> None:
+        """The plant has stepped: it has these keys now, and tells its watchers."""
+        self.view = {**self.view, "at": self.view["at"] + 1, **keys}
+        for watcher in self.watchers:
+            watcher(self.view)
+
+
+class Web:
+    """A running server: where, and clients of it."""
+
+    def __init__(self, server: Server, door: Door) -> None:
+        self.port = port = server.start()
+        self.server = server
+        self.door = door
+        self.origin = f"http://127.0.0.1:{port}"
+        self.cookie = f"arboleda_{port}"
+        self._clients: list[httpx.Client] = []
+
+    def client(self, *, token: Role | None = None, login: Role | None = None, **headers: str) -> httpx.Client:
+        """Somebody with a token, a tool; or with a session, a browser; or with neither."""
+        if token is not None:
+            headers["authorization"] = f"Bearer {TOKENS[token]}"
+        made = httpx.Client(base_url=self.origin, trust_env=False, headers=headers)
+        if login is not None:
+            made.headers["origin"] = self.origin
+            made.cookies.set(self.cookie, self.session(login))
+        self._clients.append(made)
+        return made
+
+    def session(self, role: Role) -> str:
+        session = self.door.log_in(TOKENS[role].encode())
+        assert session
+        return session
+
+    def close(self) -> None:
+        for client in self._clients:
+            client.close()
+
+
+def echo(app: FastAPI) -> None:
+    """A websocket that says who is there and repeats what it hears, as a page's socket would."""
+
+    @app.websocket("/_page/socket")
+    async def socket(socket: WebSocket) -> None:
+        await socket.accept()
+        await socket.send_text(socket.scope["arboleda.role"].value)
+        try:
+            while True:
+                await socket.send_text(await socket.receive_text())
+        except WebSocketDisconnect:
+            pass
+
+
+@pytest.fixture
+def plant() -> Plant:
+    return Plant()
+
+
+@contextmanager
+def running(
+    plant: Plant,
+    tokens: dict[Role, str] | None = None,
+    public_url: str | None = None,
+    mount: Callable[[FastAPI], None] = echo,
+    **options: Any,
+) -> Iterator[Web]:
+    """As on one's own machine; with tokens as on a network. Both listen to 127.0.0.1. `mount` adds pages."""
+    door = Door((lambda: tokens) if tokens else None)
+    app = make_app(plant)
+    mount(app)
+    bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
+    server = Server(Guard(app, names_for(bound, public_url), door), **{"port": 0, **options})
+    web = Web(server, door)
+    try:
+        yield web
+    finally:
+        web.close()
+        server.stop()
+
+
+@pytest.fixture
+def serve(plant: Plant) -> Iterator[Callable[..., Web]]:
+    """`serve()`, `serve(tokens)`: see `running`."""
+    with ExitStack() as stack:
+        yield lambda *args, **options: stack.enter_context(running(plant, *args, **options))
+
+
+@pytest.fixture
+def local(serve: Callable[..., Web]) -> Web:
+    """A plant on one's own machine."""
+    return serve()
+
+
+@pytest.fixture
+def open_to_all(serve: Callable[..., Web]) -> Web:
+    """A plant on a network."""
+    return serve(dict(TOKENS))
+
+
+@pytest.fixture
+def port(local: Web) -> int:
+    return local.port
+
+
+@pytest.fixture
+def web(local: Web) -> httpx.Client:
+    return local.client()
+
+
+@pytest.fixture(scope="module")
+def plant_once() -> Plant:
+    return Plant()
+
+
+@pytest.fixture(scope="module")
+def open_to_all_once(plant_once: Plant) -> Iterator[Web]:
+    """A plant on a network for all rows of a table."""
+    with running(plant_once, dict(TOKENS)) as web:
+        yield web

@@ -1,0 +1,150 @@
+"""The routes of the HTTP API, over real sockets."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.errors import ArboledaError, QueueFull, TextError
+from arboleda.core.messages import OperatorAnswer, Verb
+
+from .conftest import QUEUED, VIEW
+
+
+def test_the_view_is_the_plant(web):
+    answer = web.get("/api/plant")
+    assert (answer.status_code, answer.json()) == (200, VIEW)
+
+
+def test_a_good_text_is_queued(web, plant):
+    answer = web.post("/api/tasks", json={"text": "sis_a 0B 7"})
+    assert (answer.status_code, answer.json()) == (202, QUEUED)
+    assert plant.texts == ["sis_a 0B 7"]
+
+
+@pytest.mark.parametrize(
+    ("said", "status"),
+    [
+        (QUEUED | {"state": "refused", "sentence": "No cell sis_x."}, 422),
+        (TextError("No cell sis_x."), 422),
+        (QueueFull("20 tasks wait."), 503),
+        (ArboledaError("The plant is ending."), 503),
+    ],
+    ids=["refused", "text", "full", "ending"],
+)
+def test_a_refusal_says_why(web, plant, said, status):
+    plant.answer = said
+    answer = web.post("/api/tasks", json={"text": "sis_x"})
+    assert answer.status_code == status
+    assert answer.json()["sentence"] == (said["sentence"] if isinstance(said, dict) else str(said))
+
+
+def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
+    monkeypatch.setattr("arboleda.adapters.web.api.ANSWER_S", 0.05)
+    plant.answer = None
+    answer = web.post("/api/tasks", json={"text": "sis_a 0B 7"})
+    assert answer.status_code == 503
+    assert "did not answer in time" in answer.json()["sentence"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"",
+        b"sis_a 0B 7",
+        b'"sis_a 0B 7"',
+        b'{"text": 7}',
+        b'{"text": null}',
+        b'{"text": "a", "more": 1}',
+        b'{"task": "a"}',
+        b'{"text": "\\ud800"}',
+        b"\xff\xfe",
+        b"[" * 4000,
+    ],
+)
+def test_a_body_that_is_no_task_is_refused_with_a_sentence(web, plant, body):
+    answer = web.post("/api/tasks", content=body, headers={"content-type": "application/json"})
+    assert answer.status_code == 422
+    assert answer.json()["sentence"].startswith("The body must be JSON")
+    assert plant.texts == []
+
+
+def test_one_task_by_its_id(web):
+    assert web.get("/api/tasks/t-1").json() == QUEUED
+    unknown = web.get("/api/tasks/t-9")
+    assert unknown.status_code == 404
+    assert "'t-9'" in unknown.json()["sentence"]
+
+
+@pytest.mark.parametrize("verb", Verb)
+@pytest.mark.parametrize(
+    ("path", "scope"), [("plant", ""), ("cells/sis_a", "sis_a"), ("cells/lot.4-2", "lot.4-2")]
+)
+def test_a_verb_reaches_the_plant_with_its_scope(web, plant, verb, path, scope):
+    answer = web.post(f"/api/{path}/{verb.value}")
+    assert (answer.status_code, answer.json()) == (200, {"verb": verb.value, "scope": scope})
+    assert plant.acts == [(verb, scope, False)]
+
+
+@pytest.mark.parametrize(
+    ("body", "by_hand"), [(b"{}", False), (b'{"by_hand": false}', False), (b'{"by_hand": true}', True)]
+)
+def test_homed_by_hand_is_declared_in_the_body(web, plant, body, by_hand):
+    assert web.post("/api/cells/ra1/home", content=body).status_code == 200
+    assert plant.acts == [(Verb.HOME, "ra1", by_hand)]
+
+
+def test_a_refused_verb_says_why(web, plant):
+    plant.refusal = "ra1 still moves."
+    answer = web.post("/api/plant/clear")
+    assert (answer.status_code, answer.json()) == (409, {"sentence": "ra1 still moves."})
+
+
+@pytest.mark.parametrize("path", ["plant/halt", "cells/sis_a/STOP", "cells/stop/sis_a"])
+def test_an_unknown_verb_names_the_verbs(web, plant, path):
+    answer = web.post(f"/api/{path}")
+    assert answer.status_code == 422
+    assert "there are stop, clear, reset, hold" in answer.json()["sentence"]
+    assert plant.acts == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [b"true", b'{"by_hand": 1}', b'{"by_hand": null}', b'{"more": 1}', b"by_hand", b"\xff", b"[" * 4000],
+)
+def test_a_body_that_means_nothing_stops_nothing(web, plant, body):
+    answer = web.post("/api/plant/stop", content=body)
+    assert answer.status_code == 422
+    assert answer.json()["sentence"].startswith("The body may be empty")
+    assert plant.acts == []
+
+
+def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
+    monkeypatch.setattr("arboleda.adapters.web.api.ANSWER_S", 0.05)
+    plant.unanswered = []
+    answer = web.post("/api/plant/stop")
+    assert answer.status_code == 503
+    assert "did not answer in time" in answer.json()["sentence"]
+    plant.unanswered[0].set_result(OperatorAnswer(verb=Verb.STOP, scope=""))
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "status"),
+    [("GET", "/", 404), ("GET", "/docs", 404), ("PUT", "/api/plant", 405), ("GET", "/api/plant/stop", 405)],
+)
+def test_there_is_nothing_else(web, method, path, status):
+    answer = web.request(method, path)
+    assert answer.status_code == status
+    assert answer.json()["sentence"]
+
+
+def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd):
+    plant.view = RuntimeError("boom")
+    answer = web.get("/api/plant")
+    assert (answer.status_code, answer.json()["sentence"]) == (
+        500,
+        "The plant could not answer: internal error.",
+    )
+    assert [record.getMessage() for record in caplog.records if record.name.startswith("arboleda")] == [
+        "GET /api/plant failed: RuntimeError('boom')"
+    ]
+    assert "Traceback" not in capfd.readouterr().err

@@ -1,0 +1,78 @@
+"""The client of the commands, against the real server."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from arboleda.app import tokens
+from arboleda.app.client import PlantClient, Refused
+from arboleda.app.state import StateDir
+from arboleda.core.errors import ArboledaError, QueueFull, TextError
+from arboleda.core.messages import Verb
+
+from .conftest import QUEUED, VIEW
+
+
+@pytest.fixture
+def state(port, tmp_path):
+    with StateDir(tmp_path / "state") as made:
+        made.announce(port)
+        yield made
+
+
+def test_the_client_submits_and_looks(state, monkeypatch):
+    monkeypatch.setenv("http_proxy", "http://127.0.0.1:9")
+    client = PlantClient(state.path)
+    assert client.submit("sis_a 0B 7") == QUEUED
+    assert client.status() == VIEW
+    assert client.task("t-1") == QUEUED
+
+
+@pytest.mark.parametrize("error", [TextError("No cell sis_x."), QueueFull("20 tasks wait.")])
+def test_the_client_says_what_the_plant_said(state, plant, error):
+    plant.answer = error
+    with pytest.raises(type(error), match=str(error)):
+        PlantClient(state.path).submit("x")
+
+
+def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
+    client = PlantClient(state.path)
+    assert client.operate(Verb.STOP) == {"verb": "stop", "scope": ""}
+    assert client.operate(Verb.HOME, "ra1", by_hand=True) == {"verb": "home", "scope": "ra1"}
+    assert plant.acts == [(Verb.STOP, "", False), (Verb.HOME, "ra1", True)]
+    plant.refusal = "ra1 still moves."
+    with pytest.raises(Refused, match=r"^ra1 still moves\.$"):
+        client.operate(Verb.CLEAR, "sis_a")
+
+
+def test_without_a_plant_the_client_says_so(tmp_path):
+    with pytest.raises(ArboledaError, match=f"No plant is running on {tmp_path}"):
+        PlantClient(tmp_path).status()
+
+
+def test_a_plant_without_its_api_is_said_to(tmp_path, free_port):
+    with StateDir(tmp_path) as state:
+        with pytest.raises(ArboledaError, match="still starting or ending"):
+            PlantClient(tmp_path).status()
+        state.announce(free_port)
+        with pytest.raises(ArboledaError, match=f"process {os.getpid()}\\) did not answer"):
+            PlantClient(tmp_path).status()
+
+
+def test_a_guarded_plant_gets_the_operators_token_from_the_state_directory(tmp_path, serve, plant):
+    known = tokens.read(tmp_path)
+    web = serve(known)
+    with StateDir(tmp_path) as made:
+        made.announce(web.port, "127.0.0.1")
+        assert PlantClient(tmp_path).operate(Verb.RESET) == {"verb": "reset", "scope": ""}
+        (tmp_path / tokens.TOKENS).unlink()
+        with pytest.raises(ArboledaError, match="cannot be read"):
+            PlantClient(tmp_path).status()
+
+
+def test_an_answer_that_is_not_the_plants_is_said_to_be_none(state, plant):
+    plant.view = {"plant": float("nan")}
+    with pytest.raises(ArboledaError, match="internal error"):
+        PlantClient(state.path).status()

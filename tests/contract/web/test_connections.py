@@ -1,0 +1,100 @@
+"""Connections that somebody opens and leaves alone, and where the server listens."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+import pytest
+
+from arboleda.adapters.web import connections, server
+from arboleda.adapters.web.server import Server
+from arboleda.core.errors import StartError
+
+from .conftest import VIEW, Web
+
+
+@contextmanager
+def idle(web: Web, count: int, said: bytes = b"") -> Iterator[list[socket.socket]]:
+    with ExitStack() as stack:
+        talks = []
+        for _ in range(count):
+            talks.append(stack.enter_context(socket.create_connection(("127.0.0.1", web.port), timeout=5)))
+            talks[-1].sendall(said)
+        yield talks
+
+
+def ended(talk: socket.socket) -> bool:
+    """Whether the server closed it, within the socket's timeout."""
+    try:
+        return talk.recv(1) == b""
+    except ConnectionResetError:
+        return True
+
+
+@pytest.mark.parametrize("said", [b"", b"GET /api/plant HT", b"GET / HTTP/1.1\r\nX-A: "])
+def test_a_request_that_does_not_come_is_waited_for_only_so_long(local, monkeypatch, said):
+    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    with idle(local, 1, said) as (talk,):
+        assert ended(talk)
+
+
+def test_a_second_request_that_does_not_come_is_not_waited_for_either(local, monkeypatch):
+    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    asked = f"GET /api/plant HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\n".encode()
+    with idle(local, 1, asked) as (talk,):
+        assert talk.recv(65536).startswith(b"HTTP/1.1 200 ")
+        talk.sendall(b"GET /")
+        while not ended(talk):
+            pass
+
+
+def test_idle_connections_make_room_for_one_that_asks(local, monkeypatch):
+    monkeypatch.setattr(connections, "PER_PEER", 8)
+    with idle(local, 20) as talks:
+        assert local.client().post("/api/plant/stop").status_code == 200
+        assert all(ended(talk) for talk in talks[:12])
+        talks[-1].settimeout(0.05)
+        with pytest.raises(TimeoutError):
+            talks[-1].recv(1)
+
+
+def test_connections_of_many_clients_are_limited_too(local, monkeypatch):
+    monkeypatch.setattr(connections, "CONNECTIONS", 8)
+    with idle(local, 20):
+        assert local.client().get("/api/plant").json() == VIEW
+
+
+def test_a_taken_port_is_refused_in_one_sentence_where_it_was_named(local, serve):
+    with pytest.raises(StartError, match=f"cannot listen on 127.0.0.1:{local.port}: "):
+        serve(port=local.port)
+
+
+def test_without_a_name_another_port_is_found(local, serve, monkeypatch):
+    monkeypatch.setattr(server, "DEFAULT_PORT", local.port)
+    other = serve(port=None)
+    assert other.port != local.port
+    assert other.client().get("/api/plant").json() == VIEW
+
+
+def test_an_application_that_does_not_start_is_one_sentence():
+    async def broken(scope, receive, send):
+        raise RuntimeError("no")
+
+    with pytest.raises(StartError, match="could not start"):
+        Server(broken, port=0).start()
+
+
+def test_it_stops_with_a_connection_open_and_twice(serve):
+    web = serve()
+    kept = http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)
+    kept.request("GET", "/api/plant")
+    assert json.load(kept.getresponse()) == VIEW
+    web.server.stop()
+    web.server.stop()
+    kept.close()
+    assert "http" not in {thread.name for thread in threading.enumerate()}

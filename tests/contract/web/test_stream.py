@@ -1,0 +1,146 @@
+"""The stream of changes, as a client hears it."""
+
+from __future__ import annotations
+
+import json
+import select
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import httpx
+import pytest
+
+from arboleda.adapters.web import connections, limits, stream
+from arboleda.adapters.web.auth import Role
+
+from .conftest import TASK, VIEW, Plant, Web
+
+
+class Listener:
+    """Reads one stream."""
+
+    def __init__(self, answer: httpx.Response) -> None:
+        self.answer = answer
+        self._lines = answer.iter_lines()
+
+    def block(self) -> list[str]:
+        """The lines up to the next empty one."""
+        return list(iter(lambda: next(self._lines), ""))
+
+    def event(self) -> tuple[str, str, dict]:
+        """(id, kind, row) of the next event."""
+        fields = dict(line.split(": ", 1) for line in self.block())
+        return fields["id"], fields["event"], json.loads(fields["data"])
+
+
+@contextmanager
+def listening(client: httpx.Client, **headers: str) -> Iterator[Listener]:
+    with client.stream("GET", "/api/events", headers=headers, timeout=5) as answer:
+        assert answer.status_code == 200
+        assert answer.headers["content-type"].startswith("text/event-stream")
+        yield Listener(answer)
+
+
+def task(state: str) -> list[dict]:
+    return [TASK | {"state": state}]
+
+
+def test_it_begins_with_the_plant_and_goes_on_with_changes(web: httpx.Client, plant: Plant) -> None:
+    with listening(web) as listener:
+        assert listener.event() == ("7-0", "snapshot", VIEW)
+        plant.becomes(tasks=task("running"))
+        plant.becomes(tasks=task("running"))
+        plant.becomes(tasks=task("done"), ending=True)
+        known = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "reason": None, "sentence": ""}
+        assert listener.event() == ("7-1", "task", known | {"state": "running"})
+        assert listener.event() == ("7-2", "plant", {"plant": "demo", "epoch": 7, "ending": True})
+        assert listener.event() == ("7-3", "task", known | {"state": "done"})
+
+
+def test_two_readers_hear_the_same(web: httpx.Client, plant: Plant) -> None:
+    with listening(web) as one, listening(web) as other:
+        assert one.event() == other.event()
+        plant.becomes(tasks=task("failed"))
+        assert one.event() == other.event()
+
+
+def test_whoever_comes_back_hears_what_it_missed(web: httpx.Client, plant: Plant) -> None:
+    with listening(web) as listener:
+        listener.event()
+        plant.becomes(tasks=task("running"))
+        last = listener.event()[0]
+        plant.becomes(tasks=task("done"))
+        missed = listener.event()
+    with listening(web, **{"last-event-id": last}) as listener:
+        assert listener.event() == missed
+
+
+@pytest.mark.parametrize("last", ["6-1", "7-9", "x", "\u00e9".encode().decode("latin-1"), "0" * 500])
+def test_whoever_was_away_too_long_gets_the_whole_plant(web: httpx.Client, last: str) -> None:
+    with listening(web, **{"last-event-id": last.encode("latin-1")}) as listener:
+        assert listener.event()[1] == "snapshot"
+
+
+def test_silence_is_filled_with_comments(
+    web: httpx.Client, plant: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stream, "BEAT_S", 0.05)
+    with listening(web) as listener:
+        listener.event()
+        assert listener.block() == [": still here"]
+        plant.becomes(tasks=task("running"))
+        while (block := listener.block())[0].startswith(":"):
+            pass
+        assert block[0] == "id: 7-1"
+
+
+def test_a_stream_ends_with_its_session(open_to_all: Web, plant: Plant) -> None:
+    session = open_to_all.session(Role.VIEWER)
+    browser = open_to_all.client(cookie=f"{open_to_all.cookie}={session}")
+    with listening(browser) as listener:
+        listener.event()
+        open_to_all.door.log_out(session)
+        plant.becomes(tasks=task("running"))
+        assert listener.block() == []
+
+
+def test_streams_are_limited_in_number(web: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "STREAMS", 1)
+    with listening(web) as listener:
+        listener.event()
+        answer = web.get("/api/events")
+        assert (answer.status_code, answer.json()["sentence"]) == (
+            503,
+            "1 readers listen already; close one.",
+        )
+
+
+def test_the_server_ends_with_a_stream_open(serve) -> None:
+    with listening(serve().client()) as listener:
+        assert listener.event()[1] == "snapshot"
+
+
+def cut_off(talk: socket.socket) -> bool:
+    """Whether the server broke the connection off; reads nothing."""
+    poll = select.poll()
+    poll.register(talk, 0)
+    return any(events & select.POLLHUP for _, events in poll.poll(5000))
+
+
+def test_a_reader_that_never_reads_is_cut_off_and_others_hear_everything(
+    local: Web, plant: Plant, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "UNREAD_S", 0.3)
+    asked = f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\n".encode()
+    with socket.socket() as deaf, listening(local.client()) as listener:
+        deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        deaf.connect(("127.0.0.1", local.port))
+        deaf.sendall(asked)
+        listener.event()
+        for number in range(400):
+            plant.becomes(tasks=[TASK | {"state": "failed", "sentence": f"{number} " + "x" * 20_000}])
+            assert listener.event()[2]["sentence"].startswith(f"{number} ")
+        assert cut_off(deaf)
+        plant.becomes(tasks=task("done"))
+        assert listener.event()[2]["state"] == "done"

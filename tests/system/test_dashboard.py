@@ -1,0 +1,411 @@
+"""The page in a real browser, on a plant with virtual robots."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters.store import Store
+from arboleda.core.messages import Fact, Remember
+
+from .conftest import SHIPPED, Process, paths
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+PATIENCE_MS = 20_000
+LAPTOP = {"viewport": {"width": 1366, "height": 768}, "locale": "en"}
+PHONE = {"viewport": {"width": 360, "height": 740}, "has_touch": True}
+PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
+EVERY_CELL = (
+    "state => [...document.querySelectorAll('.scopes .pill')].every(pill => pill.dataset.s === state)"
+)
+STOPS = "document.querySelector('[data-rows=events]').textContent.split('stop plant').length - 1"
+Open = Callable[..., Any]
+
+
+@contextmanager
+def running(state: Path, *args: str) -> Iterator[str]:
+    """A plant and its page's address."""
+    main = "from arboleda.app.cli import main; main()"
+    command = ("up", "--no-ros", "--rate", "10", "--state", str(state), *args)
+    plant = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
+    try:
+        plant.wait_for("HTTP API")
+        yield next(line.split()[-1] for line in plant.lines if line.startswith("Page:"))
+        assert plant.interrupt() == 0, plant.output
+        assert "Traceback" not in plant.output, plant.output
+    finally:
+        plant.kill()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with running(tmp_path_factory.mktemp("state")) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        yield made
+        made.close()
+
+
+@pytest.fixture(scope="module")
+def household(browser: Any) -> Iterator[Any]:
+    """One person's browser: what it remembers is remembered in all its tabs."""
+    made = browser.new_context(**LAPTOP)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def open_page(browser: Any, household: Any, address: str) -> Iterator[Open]:
+    """`open_page("tasks")`: a tab that shows that part, with options one of a browser of its own.
+
+    A script that fails fails the test.
+    """
+    opened: list[Any] = []
+    troubles: list[str] = []
+
+    def go(part: str = "cells", *, at: str = address, token: str = "", **options: Any) -> Any:
+        context = browser.new_context(**(LAPTOP | options)) if options else household
+        page = context.new_page()
+        opened.append(context if options else page)
+        page.set_default_timeout(PATIENCE_MS)
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.goto(f"{at}/#{part}")
+        if token:
+            page.fill("input", token)
+            page.press("input", "Enter")
+        connected(page)
+        return page
+
+    yield go
+    for each in opened:
+        each.close()
+    assert troubles == []
+
+
+def connected(page: Any) -> None:
+    page.wait_for_function("document.getElementById('connection')?.hidden")
+
+
+def show(page: Any, part: str) -> None:
+    page.click(f"[data-tab={part}]")
+
+
+def send(page: Any, text: str) -> str:
+    """Type a task and send it; its id."""
+    show(page, "tasks")
+    page.fill("#task-text", text)
+    page.click("#task-send")
+    return taken(page, text)
+
+
+def taken(page: Any, text: str) -> str:
+    page.wait_for_function("text => answer.textContent.startsWith(`Taken: ${text}`)", arg=text)
+    found = re.search(r"#([\w.-]+)\)", page.inner_text("#answer"))
+    assert found is not None
+    return found[1]
+
+
+def wait_for_task(page: Any, task: str, state: str) -> None:
+    page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s="{state}"]', state="attached")
+
+
+def wait_for_answer(page: Any, words: str, state: str) -> None:
+    page.wait_for_function(
+        "([words, state]) => answer.textContent.includes(words) && answer.dataset.s === state",
+        arg=[words, state],
+    )
+
+
+def wait_for_stop(page: Any, state: str) -> None:
+    page.wait_for_selector(f'.stop-state[data-s="{state}"]')
+
+
+def get_ready(page: Any) -> None:
+    """Clear, reset and resume the whole plant."""
+    show(page, "panel")
+    page.click('[data-scope=""]')
+    for verb, after in (("clear", "stopped"), ("reset", "idle"), ("resume", "idle")):
+        page.click(f".verb[data-verb={verb}] button")
+        wait_for_answer(page, "Done", "good")
+        page.wait_for_function(EVERY_CELL, arg=after)
+    wait_for_stop(page, "ready")
+
+
+def test_a_task_is_sent_by_clicking_moves_the_tree_and_ends_done(open_page: Open) -> None:
+    page = open_page("tasks")
+    for choice in ("[data-value=sis_a]", "[data-value=storage]"):
+        page.click(f"#task-form {choice}")
+    for place in ("[data-node='0']", "[data-node='7']", "[data-station='7']"):
+        page.click(f"[data-maps=sis_a] {place}")
+    assert page.input_value("#task-text") == "sis_a 0B 7"
+    page.click("#task-send")
+    task = taken(page, "sis_a 0B 7")
+    show(page, "cells")
+    page.wait_for_selector(".cell.chosen g.node.current")
+    page.wait_for_selector(".cell.chosen g.node.is-success[data-path='0']")
+    show(page, "tasks")
+    wait_for_task(page, task, "done")
+
+
+def test_a_waiting_task_is_cancelled_and_sent_again(open_page: Open) -> None:
+    page = open_page("tasks")
+    first, second = send(page, "sis_b 0A 1"), send(page, "sis_b 2C 1")
+    page.click(f'[data-row="{second}"] button[data-act=cancel]')
+    wait_for_task(page, second, "cancelled")
+    wait_for_task(page, first, "done")
+    page.click(f'[data-row="{second}"] button[data-act=submit]')
+    wait_for_task(page, taken(page, "sis_b 2C 1"), "done")
+
+
+def test_stop_is_confirmed_by_the_robots_and_cleared_and_reset(open_page: Open) -> None:
+    page = open_page("tasks")
+    task = send(page, "sis_c 0C 8")
+    wait_for_task(page, task, "running")
+    page.click("#stop")
+    wait_for_stop(page, "stopped")
+    assert "all 6 robots latched and still" in page.inner_text(".stop-state")
+    wait_for_task(page, task, "failed")
+    assert "stopped by the operator" in page.inner_text(f'[data-row="{task}"]')
+    get_ready(page)
+
+
+def test_a_stop_needs_no_socket(open_page: Open) -> None:
+    page = open_page()
+    page.evaluate("window.socket.disconnect()")
+    page.click("#stop")
+    wait_for_answer(page, "The plant took the stop", "good")
+    page.reload()
+    connected(page)
+    wait_for_stop(page, "stopped")
+    get_ready(page)
+
+
+def test_a_stop_needs_no_http(open_page: Open) -> None:
+    page = open_page()
+    page.route("**/api/**", lambda route: route.abort())
+    page.click("#stop")
+    wait_for_stop(page, "stopped")
+    get_ready(page)
+
+
+def test_a_stop_is_one_act_though_there_are_two_ways(open_page: Open) -> None:
+    page = open_page("events")
+    before = page.evaluate(STOPS)
+    page.click("#stop")
+    wait_for_stop(page, "stopped")
+    get_ready(page)
+    assert page.evaluate(STOPS) == before + 1
+
+
+def test_what_is_refused_says_why(open_page: Open) -> None:
+    page = open_page("panel")
+    page.click("[data-scope=sis_a]")
+    page.click(".verb[data-verb=reset] button")
+    wait_for_answer(page, "sis_a is idle; this needs a cell that is stopped", "bad")
+
+
+def test_a_wrong_task_shows_the_plants_sentence(open_page: Open) -> None:
+    page = open_page("tasks")
+    page.fill("#task-text", "sis_a 0D 7")
+    page.press("#task-text", "Enter")
+    wait_for_answer(page, "'0D' is not a path of sis_a", "bad")
+
+
+def test_what_people_write_is_never_html(open_page: Open) -> None:
+    page = open_page("tasks")
+    page.fill("#task-text", "<img/src=x/onerror=window.broken=1> 0B 7")
+    page.click("#task-send")
+    wait_for_answer(page, "'<img/src=x/onerror=window.broken=1>' is not a cell", "bad")
+    assert page.evaluate("[window.broken, document.images.length]") == [None, 0]
+
+
+def test_a_request_without_a_connection_is_not_kept_for_later(open_page: Open) -> None:
+    page = open_page("tasks")
+    page.evaluate("window.socket.disconnect()")
+    page.fill("#task-text", "sis_a 0B 7")
+    page.click("#task-send")
+    wait_for_answer(page, "Not sent", "bad")
+
+
+def test_news_that_no_longer_come_are_told(open_page: Open) -> None:
+    page = open_page()
+    page.evaluate("window.socket.disconnect()")
+    page.wait_for_selector("#connection:not([hidden])")
+    assert "what you see is old" in page.inner_text("#connection")
+
+
+def test_the_language_is_switched_and_remembered(open_page: Open) -> None:
+    page = open_page("tasks", locale="en")
+    page.click("[data-language=es]")
+    page.wait_for_selector("text=Tarea nueva")
+    page.reload()
+    connected(page)
+    assert "Paro (software)" in page.inner_text("#stop")
+    page.fill("#task-text", "sis_a 0D 7")
+    page.click("#task-send")
+    wait_for_answer(page, "'0D' no es un camino de sis_a", "bad")
+    assert page.get_attribute("html", "lang") == "es"
+
+
+def test_a_browser_that_speaks_spanish_is_answered_in_spanish(open_page: Open) -> None:
+    assert "Paro (software)" in open_page(locale="es-MX").inner_text("#stop")
+
+
+def test_a_reload_in_the_middle_shows_where_the_plant_is(open_page: Open) -> None:
+    page = open_page("cells")
+    page.click("[data-choose=sis_b]")
+    task = send(page, "sis_b 1B 0")
+    page.goto(page.url.partition("#")[0])
+    connected(page)
+    assert page.is_visible("#part-tasks")
+    wait_for_task(page, task, "done")
+    show(page, "cells")
+    page.wait_for_selector(".cell.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
+
+
+def test_a_second_browser_sees_the_same(open_page: Open) -> None:
+    one, other = open_page("tasks"), open_page("tasks", **PHONE)
+    task = send(one, "sis_a 1A 3")
+    for page in (one, other):
+        wait_for_task(page, task, "done")
+    rows = "[...document.querySelectorAll('[data-rows=tasks] .row')].map(row => row.textContent)"
+    assert one.evaluate(rows) == other.evaluate(rows)
+
+
+def test_dark_is_chosen_and_remembered(open_page: Open) -> None:
+    page = open_page(color_scheme="light")
+    background = "getComputedStyle(document.body).backgroundColor"
+    light = page.evaluate(background)
+    while page.get_attribute("html", "data-look") != "dark":
+        page.click(".look")
+    assert page.evaluate(background) != light
+    page.reload()
+    connected(page)
+    assert page.get_attribute("html", "data-look") == "dark"
+
+
+def test_the_systems_dark_is_followed_until_something_is_chosen(open_page: Open) -> None:
+    background = "getComputedStyle(document.body).backgroundColor"
+    assert open_page(color_scheme="dark").evaluate(background) != open_page().evaluate(background)
+
+
+def test_a_phone_needs_no_sideways_scroll(open_page: Open) -> None:
+    page = open_page(**PHONE)
+    for part in PARTS:
+        show(page, part)
+        there, room = page.evaluate(
+            "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
+        )
+        assert (part, there) == (part, room)
+        assert page.is_visible("#stop")
+
+
+def focus(page: Any, selector: str) -> None:
+    """Press Tab until this element has the focus."""
+    for _ in range(80):
+        if page.evaluate("selector => document.activeElement.matches(selector)", selector):
+            return
+        page.keyboard.press("Tab")
+    pytest.fail(f"the keyboard does not reach {selector}")
+
+
+def test_the_keyboard_is_enough(open_page: Open) -> None:
+    page = open_page("links")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "stop"
+    focus(page, "[data-tab=tasks]")
+    page.keyboard.press("Enter")
+    focus(page, "#task-text")
+    page.keyboard.type("sis_b 2A 2")
+    page.keyboard.press("Enter")
+    wait_for_task(page, taken(page, "sis_b 2A 2"), "done")
+    page.keyboard.press("Shift+Tab")
+    focus(page, "[data-act=submit]")
+
+
+def test_a_node_says_what_it_was_given(open_page: Open) -> None:
+    page = open_page("cells")
+    wait_for_task(page, send(page, "sis_a 0A 4"), "done")
+    show(page, "cells")
+    page.click("[data-choose=sis_a]")
+    page.focus(".cell.chosen g.node[data-path=root]")
+    page.keyboard.press("Enter")
+    assert page.inner_text("#node-name") == "sis_a · storage"
+    page.click(".cell.chosen g.node:has-text('move to station 4')")
+    given = page.inner_text("#node-given")
+    assert "ra1" in given and "joints" in given
+    page.keyboard.press("Escape")
+    assert not page.is_visible("#node")
+
+
+def test_the_time_line_is_filtered_and_downloaded(open_page: Open) -> None:
+    page = open_page("tasks")
+    wait_for_task(page, send(page, "sis_b 0B 8"), "done")
+    show(page, "events")
+    page.click("[data-filter=events][data-value=sis_b]")
+    cells = page.evaluate(
+        "[...document.querySelectorAll('[data-rows=events] .column-1')].map(c => c.innerText)"
+    )
+    assert set(cells) == {"sis_b"}
+    with page.expect_download() as download:
+        page.click("[data-act=download]")
+    events = json.loads(Path(download.value.path()).read_text())
+    assert {"at", "cell", "kind", "what", "sentence"} <= events[-1].keys()
+    assert any(event["sentence"].startswith("sis_b 0B 8") for event in events)
+
+
+def test_the_links_say_who_is_heard(open_page: Open) -> None:
+    page = open_page("links")
+    page.wait_for_selector('[data-row=ra1][data-s="online"]')
+    row = page.inner_text("[data-row=ra1]")
+    assert re.search(r"\d+\.\d Hz", row) and "ready" in row
+    assert "connected" in page.inner_text("[data-live=broker]")
+
+
+def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> None:
+    with running(tmp_path, "--host", "0.0.0.0") as address:
+        page = open_page(at=address, token=json.loads((tmp_path / "tokens.json").read_text())["viewer"])
+        page.click("#stop")
+        wait_for_stop(page, "stopped")
+        show(page, "panel")
+        page.click(".verb[data-verb=clear] button")
+        wait_for_answer(page, "You are logged in as a viewer", "bad")
+        show(page, "tasks")
+        page.fill("#task-text", "sis_a 0B 7")
+        page.click("#task-send")
+        wait_for_answer(page, "Sending tasks needs an operator", "bad")
+        wait_for_stop(page, "stopped")
+
+
+def test_an_override_is_asked_twice(open_page: Open, tmp_path: Path) -> None:
+    with Store(tmp_path / "plant.sqlite") as store:
+        store.keep(Remember(fact=Fact.QUARANTINE, name="table", value="arm_left"))
+    shared = ("--plant", str(SHIPPED.with_name("shared.yaml")), "--boards", "real", "--rate", "1")
+    with running(tmp_path, *shared) as address:
+        page = open_page("panel", at=address, locale="en")
+        row = '[data-row=table][data-s="quarantined"]'
+        page.click(f"{row} [data-act=override]")
+        page.click("dialog button:has-text('No')")
+        page.click(f"{row} [data-act=override]")
+        page.click("dialog:has-text('with your own eyes') .primary")
+        assert page.is_visible(row)
+        page.click("dialog:has-text('journal') .primary")
+        page.wait_for_selector('[data-row=table][data-s="free"]')
+        show(page, "events")
+        page.wait_for_selector("[data-rows=events] .row:has-text('override table')")

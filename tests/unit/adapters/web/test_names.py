@@ -1,0 +1,74 @@
+"""Which hosts and origins are ours."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.adapters.web.names import is_address, is_loopback, names_for, public_origin
+from arboleda.core.errors import StartError
+
+
+@pytest.mark.parametrize(("host", "near"), [("127.0.0.1", True), ("127.9.9.9", True), ("::1", True)])
+def test_loopback(host: str, near: bool) -> None:
+    assert is_loopback(host) is near
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5"])
+def test_networks(host: str) -> None:
+    assert not is_loopback(host)
+
+
+@pytest.mark.parametrize("host", ["", "plant.example", "127.1", "0.0.0.0:80", "1.2.3.4/24"])
+def test_what_is_no_address_is_refused(host: str) -> None:
+    with pytest.raises(StartError, match="is not an address to listen on"):
+        is_loopback(host)
+
+
+@pytest.mark.parametrize(
+    ("url", "origin"),
+    [
+        ("https://Plant.Example", "https://plant.example"),
+        ("https://plant.example/", "https://plant.example"),
+        ("https://plant.example:443", "https://plant.example"),
+        ("http://plant.lan:8080", "http://plant.lan:8080"),
+        ("https://[2001:db8::1]:8443", "https://[2001:db8::1]:8443"),
+    ],
+)
+def test_a_public_url_is_an_origin(url: str, origin: str) -> None:
+    assert public_origin(url) == origin
+
+
+@pytest.mark.parametrize(
+    "url",
+    ["", "plant.example", "ftp://a", "https://", "https://a/b", "https://u@a", "https://a?b", "https://a b"],
+)
+def test_more_or_less_than_an_origin_is_refused(url: str) -> None:
+    with pytest.raises(StartError, match="is not the address of a plant"):
+        public_origin(url)
+
+
+def test_a_public_name_counts_under_its_own_scheme_only() -> None:
+    names = names_for("0.0.0.0", "https://plant.example")
+    assert names.knows_host("plant.example") and names.knows_host("10.0.0.1:8080")
+    assert names.knows_origin("https://plant.example", "plant.example")
+    assert not names.knows_origin("http://plant.example", "plant.example")
+    assert names.knows_origin("http://10.0.0.1:8080", "10.0.0.1:8080")
+    assert not names.knows_origin("http://10.0.0.1", "10.0.0.1:8080")
+
+
+def test_on_one_machine_only_its_own_names_are_known() -> None:
+    names = names_for("127.0.0.1", None)
+    assert names.knows_host("LOCALHOST:1") and names.knows_host("[::1]")
+    assert not names.knows_host("192.168.1.5") and not names.knows_host("")
+
+
+@pytest.mark.parametrize("name", ["1.2.3.4", "[::1]", "[fe80::1]"])
+def test_addresses(name: str) -> None:
+    assert is_address(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["1.2.3", "01.2.3.4", "::1", "[1.2.3.4]", "[0::1]", "[::1%eth0]", "\u0661.2.3.4"]
+)
+def test_other_spellings_are_none(name: str) -> None:
+    assert not is_address(name)

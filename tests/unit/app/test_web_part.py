@@ -1,0 +1,89 @@
+"""The plant as the web side sees it, and where the server listens."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+
+import pytest
+
+from arboleda.app.parts.web import Side
+from arboleda.app.web_options import WebOptions
+from arboleda.core.errors import ArboledaError, StartError
+from arboleda.core.messages import TaskChanged, TaskState
+
+
+class Plant:
+    def __init__(self) -> None:
+        self.asked: list[Future] = []
+
+    def snapshot(self) -> dict:
+        return {}
+
+    def find(self, task: str) -> None:
+        return None
+
+    def operate(self, *_args: object, **_options: object) -> Future:
+        return Future()
+
+    def submit(self, _text: str) -> Future:
+        self.asked.append(Future())
+        return self.asked[-1]
+
+
+@pytest.fixture
+def side() -> Side:
+    return Side(Plant())
+
+
+def test_every_watcher_is_told_until_it_ends_that(side: Side) -> None:
+    one, other = [], []
+    end = side.watch(one.append)
+    side.watch(other.append)
+    side.saw({"at": 1})
+    end()
+    end()
+    side.saw({"at": 2})
+    assert (one, other) == ([{"at": 1}], [{"at": 1}, {"at": 2}])
+
+
+def test_a_watcher_that_fails_is_told_no_more_and_the_others_are(side: Side, caplog) -> None:
+    heard = []
+    side.watch(lambda snapshot: 1 / 0)
+    side.watch(heard.append)
+    side.saw({"at": 1})
+    side.saw({"at": 2})
+    assert len(heard) == 2
+    assert [record.levelname for record in caplog.records] == ["ERROR"]
+
+
+def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
+    plant = Plant()
+    side = Side(plant)
+    good, bad = side.submit("a"), side.submit("b")
+    plant.asked[0].set_result(TaskChanged(task="t-1", text="a", cell="sis_a", state=TaskState.QUEUED))
+    plant.asked[1].set_exception(ArboledaError("The disk is full."))
+    assert good.result(0)["state"] == "queued"
+    with pytest.raises(ArboledaError, match="The disk is full"):
+        bad.result(0)
+
+
+@pytest.mark.parametrize(
+    ("options", "guarded", "near"),
+    [
+        ({}, False, "127.0.0.1"),
+        ({"host": "localhost"}, False, "localhost"),
+        ({"host": "::1"}, False, "[::1]"),
+        ({"host": "0.0.0.0"}, True, "127.0.0.1"),
+        ({"host": "::"}, True, "[::1]"),
+        ({"host": "192.168.1.5"}, True, "192.168.1.5"),
+        ({"public_url": "https://plant.example"}, True, "127.0.0.1"),
+    ],
+)
+def test_a_token_is_demanded_wherever_others_may_come_from(options: dict, guarded: bool, near: str) -> None:
+    web = WebOptions(**options)
+    assert (web.guarded, web.near) == (guarded, near)
+
+
+def test_a_host_that_is_no_address_is_refused() -> None:
+    with pytest.raises(StartError):
+        _ = WebOptions(host="plant").guarded

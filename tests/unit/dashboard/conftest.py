@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arboleda.core import view
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.story import Story
+from arboleda.testing import Rig, shipped
+
+LINKS: dict[str, Any] = {"broker": {"address": "here:1883", "connected": True}, "ros": None, "refused": {}}
+
+
+class Told(Rig):
+    """A plant whose story is told at every step, as the page's feed does."""
+
+    def __init__(self, **changes: Any) -> None:
+        self.story: Story | None = None
+        super().__init__(shipped(**changes))
+        self.story = Story(view.layout(self.plant.model), [])
+        self.wait(0.5)
+
+    def _keep(self) -> None:
+        super()._keep()
+        if self.story is not None:
+            self.story.see(view.snapshot(self.plant), 1000.0 + self.plant.now)
+
+    def face(self, language: str = "en", **links: Any) -> Face:
+        assert self.story is not None
+        return self.story.face(language, LINKS | links)
+
+    def statuses(self, cell: str = "sis_a") -> dict[str, str]:
+        """What the page shows of each node, by the node's name; of equal names the last."""
+        assert self.story is not None
+        tree = self.story.trees[cell]
+        return {row["name"]: tree.statuses[row["path"]] for row in tree.rows}
+
+
+@pytest.fixture
+def told() -> Callable[..., Told]:
+    return Told

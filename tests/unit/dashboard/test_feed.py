@@ -1,0 +1,150 @@
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arboleda.core import view
+from arboleda.dashboard.feed import BEHIND, Feed
+from arboleda.testing import Rig, shipped
+
+
+class Side:
+    """A plant behind the page, moved by hand."""
+
+    def __init__(self) -> None:
+        self.rig = Rig(shipped())
+        self.rig.wait(0.5)
+        self.told: Callable[[dict[str, Any]], None] = lambda snapshot: None
+
+    def snapshot(self) -> dict[str, Any]:
+        return self.rig.snapshot()
+
+    def layout(self) -> dict[str, Any]:
+        return view.layout(self.rig.plant.model)
+
+    def links(self) -> dict[str, Any]:
+        return {"broker": None, "ros": None, "refused": {}}
+
+    def past_acts(self) -> list[dict[str, Any]]:
+        return []
+
+    def watch(self, callback: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
+        self.told = callback
+        return lambda: None
+
+
+class Viewer:
+    def __init__(self, language: str = "en") -> None:
+        self.language = language
+        self.connected = True
+        self.frames: list[tuple[int, dict[str, Any]]] = []
+
+    def show(self, number: int, patch: str) -> None:
+        self.frames.append((number, json.loads(patch)))
+
+
+@pytest.fixture
+def side() -> Side:
+    return Side()
+
+
+@pytest.fixture
+def feed(side: Side) -> Feed:
+    made = Feed(side)  # type: ignore[arg-type]
+    made.begin()
+    return made
+
+
+def news(side: Side, feed: Feed, text: str = "sis_a 0B 7") -> None:
+    side.rig.submit(text)
+    side.told(side.snapshot())
+    feed.turn()
+
+
+def test_a_page_is_told_everything_first_and_then_what_changed(side: Side, feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    feed.turn()
+    news(side, feed)
+    (_, first), (_, then) = viewer.frames
+    assert "text/sis_b.state" in first and "text/sis_b.state" not in then
+    assert then["text/sis_a.state"] == ["running", "execute"]
+
+
+def test_nothing_new_is_not_told(feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    for _ in range(3):
+        feed.turn()
+    assert len(viewer.frames) == 1
+
+
+def test_each_page_is_told_in_its_language(side: Side, feed: Feed) -> None:
+    english, spanish = Viewer(), Viewer("es")
+    feed.add(english)
+    feed.add(spanish)
+    news(side, feed)
+    assert english.frames[-1][1]["text/sis_a.state"][0] == "running"
+    assert spanish.frames[-1][1]["text/sis_a.state"][0] == "en marcha"
+
+
+def test_a_page_that_was_away_is_told_everything(side: Side, feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    feed.turn()
+    viewer.connected = False
+    news(side, feed)
+    assert len(viewer.frames) == 1
+    viewer.connected = True
+    feed.turn()
+    assert "text/sis_b.state" in viewer.frames[-1][1]
+
+
+def test_a_browser_that_stops_reading_is_told_no_more_until_it_reads_again(side: Side, feed: Feed) -> None:
+    slow, quick = Viewer(), Viewer()
+    feed.add(slow)
+    feed.add(quick)
+    for number in range(BEHIND * 2):
+        news(side, feed, f"sis_a 0B 7 #n{number}")
+        feed.seen(quick, quick.frames[-1][0])
+    assert len(quick.frames) == BEHIND * 2 and len(slow.frames) <= BEHIND + 2
+    feed.seen(slow, slow.frames[-1][0])
+    feed.turn()
+    assert "text/sis_b.state" in slow.frames[-1][1]
+
+
+def test_a_page_that_is_opened_late_is_not_behind(side: Side, feed: Feed) -> None:
+    for number in range(BEHIND * 2):
+        news(side, feed, f"sis_a 0B 7 #n{number}")
+    viewer = Viewer()
+    feed.add(viewer)
+    feed.turn()
+    news(side, feed)
+    assert len(viewer.frames) == 2
+
+
+def test_a_page_is_not_behind_after_a_time_without_news(side: Side, feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    for _ in range(BEHIND * 2):
+        feed.turn()
+    news(side, feed)
+    news(side, feed)
+    assert [number for number, _ in viewer.frames] == [1, 2, 3]
+
+
+def test_a_browser_cannot_claim_to_have_seen_the_future(side: Side, feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    feed.seen(viewer, 10**9)
+    for number in range(BEHIND * 2):
+        news(side, feed, f"sis_a 0B 7 #n{number}")
+    assert len(viewer.frames) <= BEHIND + 2
+
+
+def test_what_happens_while_nobody_looks_is_in_the_time_line(side: Side, feed: Feed) -> None:
+    news(side, feed)
+    assert any(event["what"] == "running" for event in feed.events)

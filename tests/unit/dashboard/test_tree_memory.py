@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arboleda.core.messages import Verb
+from arboleda.dashboard.tree_memory import ancestors, judged, parent
+
+
+def row(path: str, status: str, *, kind: str = "command", failure: str | None = None) -> dict[str, Any]:
+    return {"path": path, "name": path, "status": status, "kind": kind, "failure": failure}
+
+
+def test_a_done_task_leaves_a_tree_that_succeeded(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    assert rig.wait(60.0, until=lambda: not rig.snapshot()["cells"][0]["tree"])
+    statuses = rig.statuses()
+    assert statuses["storage"] == statuses["main"] == statuses["move to station 7"] == "success"
+    assert statuses["recovery"] == "idle"
+
+
+def test_a_failed_step_stays_failed_while_the_recovery_runs(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
+    assert rig.wait(9.0, until=lambda: str(rig.snapshot()["cells"][0]["step"]).startswith("recovery"))
+    statuses = rig.statuses()
+    assert statuses["drive path 0B"] == statuses["main"] == "failure"
+    assert statuses["system start"] == "success"
+    assert statuses["storage"] == statuses["recovery"] == "running"
+
+
+def test_after_a_recovery_the_recovery_succeeded_and_the_task_failed(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
+    assert rig.wait(60.0, until=lambda: not rig.snapshot()["cells"][0]["tree"])
+    statuses = rig.statuses()
+    assert statuses["recovery"] == "success" and statuses["storage"] == statuses["main"] == "failure"
+
+
+def test_what_a_stop_interrupts_is_called_interrupted(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.operate(Verb.STOP)
+    rig.wait(1.0)
+    assert rig.statuses()["storage"] == "failure"
+    pickup = rig.face()["rows/changes.sis_a"]
+    assert pickup  # the changes tell of it
+    names = {(change.name, change.status) for change in rig.story.trees["sis_a"].changes}
+    assert ("move to pick-up", "halted") in names and ("drive path 0B", "success") in names
+
+
+def test_a_new_task_begins_with_a_fresh_tree(told: Callable[..., Any]) -> None:
+    rig = told()
+    for text in ("sis_a 0B 7", "sis_a 0B 3"):
+        rig.submit(text)
+    assert rig.wait(60.0, until=lambda: rig.snapshot()["cells"][0]["queue"] == [])
+    assert set(rig.statuses().values()) <= {"running", "idle", "success"}
+    assert rig.statuses()["main"] == "running" and rig.statuses()["move to station 3"] == "idle"
+
+
+@pytest.mark.parametrize(
+    ("rows", "before", "after"),
+    [
+        ([row("root", "RUNNING")], {}, {"root": "running"}),
+        ([row("root", "INVALID")], {"root": "running"}, {"root": "halted"}),
+        ([row("root", "INVALID", failure="why")], {"root": "running"}, {"root": "failure"}),
+        ([row("root", "INVALID")], {"root": "success"}, {"root": "success"}),
+        ([row("root", "INVALID")], {}, {"root": "idle"}),
+        (
+            [
+                row("root", "INVALID", kind="sequence"),
+                row("0", "INVALID"),
+                row("1", "INVALID", failure="why"),
+            ],
+            {"root": "running", "0": "running", "1": "idle"},
+            {"root": "failure", "0": "success", "1": "failure"},
+        ),
+        (
+            [
+                row("root", "RUNNING", kind="selector"),
+                row("0", "INVALID", failure="why"),
+                row("1", "RUNNING"),
+            ],
+            {"root": "running", "0": "running"},
+            {"root": "running", "0": "failure", "1": "running"},
+        ),
+    ],
+    ids=["runs", "halted", "failed", "was done", "never ran", "in one step", "next branch"],
+)
+def test_a_node_that_was_reset_keeps_what_it_came_to(
+    rows: list[dict[str, Any]], before: dict[str, str], after: dict[str, str]
+) -> None:
+    assert judged(rows, before) == after
+
+
+def test_paths_lead_to_the_root() -> None:
+    assert parent("root") is None and parent("0") == "root" and parent("0.2.1") == "0.2"
+    assert ancestors("0.2.1") == ["0.2", "0", "root"]

@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import re
+from string import Formatter
+from typing import Any
+
+import pytest
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import State
+from arboleda.core.messages import Reason, TaskState, Verb
+from arboleda.core.tree_view import KINDS
+from arboleda.dashboard.wording import LANGUAGES, SLOT, flat, tree_of, words
+
+ENGLISH = LANGUAGES[0]
+
+
+def keys(language: str) -> dict[str, str]:
+    return flat({name: part for name, part in tree_of(language).items() if name != "phrases"})
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_language_has_the_same_keys(language: str) -> None:
+    assert keys(language).keys() == keys(ENGLISH).keys()
+    assert tree_of(language)["phrases"].keys() == tree_of(ENGLISH)["phrases"].keys()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_language_puts_the_same_values_in(language: str) -> None:
+    def fields(text: str) -> set[str | None]:
+        return {field for _, field, _, _ in Formatter().parse(text) if field is not None}
+
+    english = keys(ENGLISH)
+    assert [key for key, text in keys(language).items() if fields(text) != fields(english[key])] == []
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_phrase_keeps_its_slots(language: str) -> None:
+    def slots(pair: tuple[str, str]) -> bool:
+        plant, ours = pair
+        return plant.count(SLOT) >= ours.count(SLOT)
+
+    assert [pair for pair in tree_of(language)["phrases"].items() if not slots(pair)] == []
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize(
+    ("group", "known"),
+    [
+        ("cell_state", {state.value for state in CellState}),
+        ("task_state", {state.value for state in TaskState}),
+        ("command_state", {state.value for state in State}),
+        ("reason", {reason.value for reason in Reason}),
+        ("verb", {verb.value for verb in Verb}),
+        ("does", {verb.value for verb in Verb}),
+        ("kind", {*KINDS.values(), "step"}),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: set[str]) -> None:
+    assert known <= {key.partition(".")[2] for key in keys(language) if key.startswith(f"{group}.")}
+
+
+@pytest.mark.parametrize(
+    ("plant", "spanish"),
+    [
+        ("move to station 7", "mover a estación 7"),
+        ("recovery: move to home", "recuperación: mover a reposo"),
+        ("ra1 is offline", "ra1 está sin conexión"),
+        (
+            "rm_sis_a: no telemetry for 1.5 s while driving path 0B",
+            "rm_sis_a: sin telemetría durante 1.5 s mientras estaba recorriendo el camino 0B",
+        ),
+        (
+            "'0D' is not a path of sis_a; there are 0A, 0B; did you mean 0A?",
+            "'0D' no es un camino de sis_a; hay 0A, 0B; ¿quiso decir 0A?",
+        ),
+    ],
+)
+def test_the_plants_sentences_are_said_in_spanish(plant: str, spanish: str) -> None:
+    assert words("es").say(plant) == spanish
+    assert words("en").say(plant) == plant
+
+
+def test_a_sentence_that_nobody_knows_stays_as_it_is() -> None:
+    assert words("es").say("polish the part") == "polish the part"
+
+
+def test_an_unknown_language_is_english() -> None:
+    assert words("xx").language == "en"
+
+
+def test_a_missing_key_is_an_error() -> None:
+    with pytest.raises(KeyError):
+        words("en")("tasks.nothing")
+
+
+def test_the_stop_is_never_called_by_the_name_of_the_safety_function() -> None:
+    said: list[Any] = [text for language in LANGUAGES for text in keys(language).values()]
+    assert not [text for text in said if re.search(r"(?i)emergenc", text)]

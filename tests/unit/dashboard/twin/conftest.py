@@ -1,0 +1,15 @@
+"""The shipped plant's robots, read from their URDF as the page reads them."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.app.urdf import robot_urdf
+from arboleda.dashboard.twin import bodies
+from arboleda.dashboard.twin.bodies import Body
+from arboleda.testing import shipped
+
+
+@pytest.fixture(scope="session")
+def drawings() -> dict[str, Body]:
+    return {name: bodies.read(robot_urdf(shipped(), name)) for name in shipped().robots}

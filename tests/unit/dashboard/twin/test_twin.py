@@ -1,0 +1,141 @@
+"""The twin beside a plant: what is drawn solid is what the plant was told last, and parts go their way."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from arboleda.core import twin_view
+from arboleda.core.messages import Report, TaskRequest, Verb
+from arboleda.core.model import Evidence, MotionState, PlantModel
+from arboleda.core.places import places
+from arboleda.core.plant import Plant
+from arboleda.dashboard.twin.bodies import Body
+from arboleda.dashboard.twin.twin import Twin
+from arboleda.testing import Rig, shipped
+
+
+class Watched:
+    """A plant and its twin."""
+
+    def __init__(self, plant: PlantModel, drawings: dict[str, Body]) -> None:
+        self.rig = Rig(plant)
+        self.twin = Twin(places(plant), drawings)
+        self.rig.wait(0.5)
+
+    def frame(self) -> dict[str, Any]:
+        return self.twin.frame(twin_view.positions(self.rig.plant), self.rig.now)
+
+    def robot(self, name: str) -> dict[str, Any]:
+        return self.frame()[f"robot/{name}"]
+
+    def part(self) -> dict[str, Any] | None:
+        return self.frame()["part/sis_a"]
+
+
+@pytest.fixture
+def watched(drawings: dict[str, Body]) -> Watched:
+    return Watched(shipped("sis_a"), drawings)
+
+
+def test_what_is_drawn_solid_is_the_last_report_all_the_time(watched: Watched) -> None:
+    watched.rig.submit("sis_a 0B 7")
+    for _ in range(400):
+        watched.rig.wait(0.05)
+        drawn, belief = watched.robot("ra1"), watched.rig.plant.dispatcher.beliefs["ra1"]
+        assert (drawn["kind"], drawn["q"]) == ("measured", list(belief.q))
+    assert watched.rig.outcomes()
+
+
+def test_a_move_shows_where_it_leads_until_it_ends(watched: Watched) -> None:
+    watched.rig.submit("sis_a 0B 7")
+    watched.rig.wait_for("sis_a", "move to pick-up")
+    assert watched.robot("ra1")["goal"] == list(watched.rig.plant.model.cells[0].pickup.q)
+    watched.rig.wait_for("sis_a", "effector on/dwell")
+    assert watched.robot("ra1")["goal"] is None
+
+
+def test_a_part_waits_on_the_mobile_hangs_in_the_effector_and_lies_in_its_station(watched: Watched) -> None:
+    assert watched.part() is None
+    watched.rig.submit("sis_a 0B 7")
+    watched.rig.wait_for("sis_a", "drive path 0B")
+    assert watched.part() == {"at": "mobile", "sure": False}
+    watched.rig.wait_for("sis_a", "move to station 7")
+    assert watched.part() == {"at": "arm", "sure": True}
+    watched.rig.wait_for("sis_a", "move to home")
+    placed = watched.part()
+    assert placed is not None and placed["at"] == "place"
+    assert placed["frame"] == pytest.approx(watched.twin.scene["cells"][0]["stations"][7])
+    watched.rig.wait(20.0)
+    assert watched.part() == placed
+
+
+def test_a_part_that_is_released_by_hand_is_drawn_where_the_arm_let_go(watched: Watched) -> None:
+    watched.rig.submit("sis_a 0B 7")
+    watched.rig.wait_for("sis_a", "move to station 7")
+    watched.rig.operate(Verb.STOP)
+    watched.rig.wait(3.0)
+    assert watched.part() == {"at": "arm", "sure": True}
+    for verb in (Verb.CLEAR, Verb.RESET, Verb.RELEASE):
+        assert watched.rig.operate(verb, "sis_a") is None
+        watched.rig.wait(1.0)
+    part = watched.part()
+    assert part is not None and part["at"] == "place"
+
+
+def test_a_palletizing_part_waits_at_its_pick_pose(watched: Watched) -> None:
+    watched.rig.submit("sis_a palletizing")
+    watched.rig.wait(0.3)
+    part = watched.part()
+    assert part is not None
+    assert part["frame"] == pytest.approx(watched.twin.scene["cells"][0]["pickup"])
+
+
+def test_a_board_that_falls_silent_is_drawn_old(watched: Watched) -> None:
+    watched.rig.power_off("ra_1")
+    watched.rig.wait(5.0)
+    drawn = watched.robot("ra1")
+    assert (drawn["kind"], drawn["q"]) == ("stale", [0, 0, 0])
+    assert drawn["age"] >= 4
+
+
+def test_a_robot_that_only_says_whether_it_moves_is_estimated(drawings: dict[str, Body]) -> None:
+    model = shipped("sis_a", evidence=Evidence.STATE)
+    plant, twin = Plant(model, epoch=1, now=0.0), Twin(places(model), drawings)
+
+    def told(at: float, robot: str, state: MotionState) -> None:
+        plant.step(at, [Report(at=at, robot=robot, state=state)])
+
+    def drawn(robot: str, at: float) -> dict[str, Any]:
+        return twin.frame(twin_view.positions(plant), at)[f"robot/{robot}"]
+
+    for robot in model.robots:
+        told(0.0, robot, MotionState.STOPPED)
+        assert drawn(robot, 0.0)["kind"] == "unknown"
+    plant.step(1.0, [TaskRequest(at=1.0, text="sis_a 0B 7")])
+    plant.step(1.3, [])
+    told(2.0, "rm_sis_a", MotionState.MOVING)
+    assert drawn("rm_sis_a", 2.5)["kind"] == "unknown"
+    told(6.0, "rm_sis_a", MotionState.STOPPED)
+    assert drawn("rm_sis_a", 6.0)["estimate"] == [0.2, 0.4]
+    told(6.1, "ra1", MotionState.MOVING)
+    told(8.0, "ra1", MotionState.STOPPED)
+    pickup = list(model.cells[0].pickup.q)
+    assert drawn("ra1", 8.0) == {
+        "kind": "estimated",
+        "q": None,
+        "estimate": pickup,
+        "goal": None,
+        "age": None,
+    }
+
+
+def test_zones_say_who_has_them(watched: Watched) -> None:
+    positions = twin_view.positions(watched.rig.plant)
+    positions["zones"] = [{"zone": "centre", "state": "held", "robot": "ra1", "waiting": []}]
+    assert watched.twin.frame(positions, 0.0)["zone/centre"] == {
+        "state": "held",
+        "robot": "ra1",
+        "waiting": [],
+    }
