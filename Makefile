@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test ros-test campaign install lint diagrams clean help
+.PHONY: run test ros-test campaign install lint diagrams shots clean help
 
 export PYTHON
 BIN := .venv/bin
@@ -35,9 +35,13 @@ diagrams:  ## write docs/reference/states.md anew from the state tables of the c
 	@scripts/install
 	@page=$$($(BIN)/python scripts/state-diagrams) && printf '%s\n' "$$page" >docs/reference/states.md
 
+shots:  ## take pictures of the page, on screens of several sizes, into shots/; needs chromium
+	@scripts/install test
+	$(BIN)/python scripts/shots
+
 clean:  ## remove .venv and whatever builds and tests left behind
 	rm -rf .venv .colcon build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	rm -rf *.egg-info src/*/*.egg-info
+	rm -rf *.egg-info src/*/*.egg-info shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
