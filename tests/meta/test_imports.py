@@ -24,7 +24,13 @@ def third_party(path: Path) -> set[str]:
 
 @pytest.mark.parametrize(
     ("layer", "allowed"),
-    [("core", {"py_trees"}), ("wire", set()), ("sim", set()), ("dashboard", {"fastapi", "nicegui", "yaml"})],
+    [
+        ("core", {"py_trees"}),
+        ("dashboard", {"fastapi", "nicegui", "yaml"}),
+        ("drawing", set()),
+        ("wire", set()),
+        ("sim", set()),
+    ],
 )
 def test_these_layers_need_no_other_package(layer: str, allowed: set[str]) -> None:
     files = sorted((PACKAGE / layer).rglob("*.py"))

@@ -10,19 +10,16 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from py_trees.display import unicode_tree
 from rich.console import Console
 from rich.text import Text
 
 from arboleda import __version__
 from arboleda.adapters.web.names import is_loopback, public_origin
-from arboleda.core import recipes, text
+from arboleda.core import text
 from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
 from arboleda.core.model import PlantModel
-from arboleda.core.plant import Plant
-from arboleda.core.task import Order, Recipe
 
-from . import config, session, token_command, verbs
+from . import config, session, token_command, tree_command, verbs
 from .build import PARTS, Options, build
 from .client import Refused
 from .parts.broker import PASSWORD, USER, address, login
@@ -229,23 +226,7 @@ def check(
     print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")
 
 
-@cli.command()
-def tree(
-    recipe: Annotated[Recipe, typer.Argument(help="The recipe to draw.")],
-    plant: PlantFile = None,
-    cell: Annotated[str | None, typer.Option(help="Whose tree. [default: the first cell]")] = None,
-) -> None:
-    """Draw the behavior tree of a recipe."""
-    model = _model(plant, [])
-    names = [each.name for each in model.cells]
-    name = cell or names[0]
-    if name not in names:
-        raise typer.BadParameter(f"'{name}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
-    where = model.cell(name)
-    order = Order(
-        text=recipe.value, cell=name, recipe=recipe, path=where.paths[0], station=where.stations[-1]
-    )
-    print(unicode_tree(recipes.build(order, Plant(model, epoch=0, now=0.0).cells[name].context)), end="")
+cli.command()(tree_command.tree)
 
 
 @cli.command()

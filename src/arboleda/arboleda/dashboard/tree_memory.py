@@ -6,6 +6,8 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.drawing.layout import parent
+
 IDLE, RUNNING, SUCCESS, FAILURE, HALTED = "idle", "running", "success", "failure", "halted"
 SEEN = {"RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE}
 CHANGES = 30  # kept of each cell
@@ -115,13 +117,6 @@ def last_status(row: Row, rows: list[Row], state: str | None, *, recovered: bool
     if recovered and any(names[path] == RECOVERY for path in way):
         return SUCCESS
     return FAILURE if row["path"] == "root" and state == "failed" else HALTED
-
-
-def parent(path: str) -> str | None:
-    """The path of a node's parent; None of the root."""
-    if path == "root":
-        return None
-    return path.rpartition(".")[0] or "root"
 
 
 def ancestors(path: str) -> list[str]:

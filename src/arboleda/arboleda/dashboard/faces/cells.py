@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.drawing.layout import parent
+
 from ..tree_drawing import drawing
-from ..tree_memory import FAILURE, RUNNING, SUCCESS, TreeMemory, parent
+from ..tree_memory import FAILURE, RUNNING, SUCCESS, TreeMemory
 from . import Face
 from .moment import Moment, clock, seconds
 

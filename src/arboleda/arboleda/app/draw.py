@@ -1,0 +1,41 @@
+"""Trees as files: which formats there are, and what makes each of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import Enum
+from typing import Any
+
+from arboleda.drawing.picture import picture
+from arboleda.drawing.svg import svg
+from arboleda.drawing.words import dot, outline
+
+Rows = Sequence[dict[str, Any]]
+
+
+class Format(str, Enum):
+    """How a tree can be drawn."""
+
+    ASCII = "ascii"
+    SVG = "svg"
+    PNG = "png"
+    DOT = "dot"
+
+
+def draw(rows: Rows, format: Format | str, *, statuses: bool = False) -> bytes:
+    """A tree (rows of `core/tree_view.py`) as the content of a file; only ASCII leaves statuses out."""
+    return FORMATS[Format(format)](rows, statuses)
+
+
+def _png(rows: Rows, _statuses: bool) -> bytes:
+    from arboleda.adapters.png import png  # Pillow takes a while to load, and only this format needs it
+
+    return png(picture(rows))
+
+
+FORMATS: dict[Format, Callable[[Rows, bool], bytes]] = {
+    Format.ASCII: lambda rows, statuses: outline(rows, statuses=statuses).encode(),
+    Format.SVG: lambda rows, _: svg(picture(rows)).encode(),
+    Format.PNG: _png,
+    Format.DOT: lambda rows, _: dot(rows).encode(),
+}
