@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -147,3 +149,16 @@ def test_a_reader_that_goes_away_does_not_stop_the_plant(start: Callable[..., An
     shell = start("bash", "-c", f"{command} {task} | head -1", env={"PYTHONPATH": paths()})
     assert shell.wait() == 0
     assert "Traceback" not in shell.output
+
+
+def test_a_png_is_not_poured_into_a_terminal() -> None:
+    screen, terminal = os.openpty()
+    main = "from arboleda.app.cli import main; main()"
+    command = [sys.executable, "-c", main, "tree", "storage", "--format", "png"]
+    environ = {**os.environ, "PYTHONPATH": paths()}
+    ran = subprocess.run(
+        command, stdout=terminal, stderr=subprocess.PIPE, env=environ, text=True, timeout=30, check=False
+    )
+    os.close(terminal)
+    os.close(screen)
+    assert ran.returncode == 2 and "add > storage.png" in ran.stderr

@@ -1,0 +1,65 @@
+"""The tutorial says the same in both languages, and leaves no example out."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "docs" / "tutorial"
+LESSONS = sorted(path.stem for path in (ROOT / "examples").glob("[0-9][0-9]_*.py"))
+PAGES = ["README", *LESSONS]
+BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def read(page: str, ending: str) -> str:
+    return (FOLDER / f"{page}{ending}").read_text("utf-8")
+
+
+def headings(text: str) -> list[str]:
+    return re.findall(r"^(#+) ", BOXES.sub("", text), re.MULTILINE)
+
+
+def boxes(text: str) -> list[tuple[str, str]]:
+    """Commands and their output; the words of a plain box may be translated."""
+    return [(kind, content) for kind, content in BOXES.findall(text) if kind]
+
+
+def links(text: str) -> list[str]:
+    """Where a page leads, without its own language."""
+    targets = re.findall(r"\]\((\S+?)\)", text)
+    return [target.replace(".es.md", ".md") for target in targets if "//" not in target]
+
+
+def test_there_are_ten_lessons_with_a_page_each() -> None:
+    assert [name[:2] for name in LESSONS] == [f"{number:02}" for number in range(1, 11)]
+    found = {path.name for path in FOLDER.iterdir()}
+    assert found == {f"{page}{ending}" for page in PAGES for ending in (".md", ".es.md")}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_both_languages_have_the_same_headings_and_commands(page: str) -> None:
+    english, spanish = read(page, ".md"), read(page, ".es.md")
+    assert headings(english)
+    assert headings(spanish) == headings(english)
+    assert boxes(spanish) == boxes(english)
+    assert links(spanish) == links(english)
+
+
+@pytest.mark.parametrize("ending", [".md", ".es.md"])
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_leads_somewhere(page: str, ending: str) -> None:
+    targets = re.findall(r"\]\((\S+?)\)", read(page, ending))
+    assert [name for name in targets if "//" not in name and not (FOLDER / name).exists()] == []
+
+
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_page_runs_its_example(lesson: str) -> None:
+    commands = [content for kind, content in boxes(read(lesson, ".md")) if kind == "console"]
+    assert any(f"$ .venv/bin/python examples/{lesson}.py" in content for content in commands)
+
+
+def test_the_index_names_every_example() -> None:
+    assert re.findall(r"`examples/(\w+)\.py`", read("README", ".md")) == LESSONS
