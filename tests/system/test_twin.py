@@ -397,7 +397,7 @@ def test_what_is_drawn_solid_is_what_joint_states_say(observer: Any, tmp_path: P
     from sensor_msgs.msg import JointState
 
     names = {"ra1": "/r1/joint_states", "ra3": "/r3/joint_states", "rm_sis_a": "/rm_sis_a/joint_states"}
-    observer.listen(JointState, *names.values())
+    observer.listen(JointState, *names.values(), qos=1000)  # looking at the page takes its time
     seen: list[dict[str, Any]] = []
     with running(tmp_path) as plant:
         page = look(plant.page)
