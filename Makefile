@@ -1,10 +1,10 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test ros-test campaign install lint diagrams shots clean help
+.PHONY: run test ros-test campaign firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
 
 export PYTHON
 BIN := .venv/bin
-PYTEST_ARGS ?= -n 4 --dist worksteal
+PYTEST_ARGS ?= -n 6 --dist worksteal
 CYCLES ?= 15
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
@@ -21,6 +21,21 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=50 for a longer one
 	$(BIN)/arboleda simulate --seeds 1000 --cycles $(CYCLES) --json campaign.json
 	$(BIN)/python scripts/campaign campaign.json
+
+firmware:  ## build the board for Linux, firmware/build/board
+	@$(MAKE) --no-print-directory -C firmware board
+
+firmware-test:  ## test the boards' firmware: on this machine, as rv32imc in qemu, against the virtual boards
+	@scripts/install test
+	@$(MAKE) --no-print-directory -C firmware test PYTHON=$(CURDIR)/$(BIN)/python
+	$(BIN)/python -m pytest firmware/test
+
+fuzz:  ## fuzz the firmware's reader of messages, 10 million runs; FUZZ_RUNS=... for others
+	@$(MAKE) --no-print-directory -C firmware fuzz
+
+firmware-robot:  ## write firmware/core/robot_scara.h anew from the robot's YAML
+	@scripts/install
+	@header=$$($(BIN)/python scripts/firmware-robot) && printf '%s\n' "$$header" >firmware/core/robot_scara.h
 
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
 	@scripts/install
@@ -40,9 +55,9 @@ shots:  ## take pictures of the page, on screens of several sizes, into shots/; 
 	$(BIN)/python scripts/shots
 
 clean:  ## remove .venv and whatever builds and tests left behind
-	rm -rf .venv .colcon build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .colcon build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf *.egg-info src/*/*.egg-info shots
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s%s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-15s%s\n", $$1, $$2 }' Makefile

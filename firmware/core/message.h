@@ -1,0 +1,39 @@
+// What a board hears: one value per message, checked whole before anything acts on it.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace arboleda {
+
+constexpr uint8_t kMostAxes = 6;
+
+enum class Channel : uint8_t { kJoints, kEffector, kStop, kHome, kBeat };
+
+constexpr uint8_t kChannels = 5;
+
+// The second level of a topic, `juntas`, ...
+const char* channel_name(Channel channel);
+
+enum class Stop : uint8_t { kClear = 0, kLatch = 1, kHalt = 2 };
+
+struct MaybeNumber {
+    bool known = false;
+    uint32_t value = 0;
+};
+
+struct Message {
+    Channel channel = Channel::kBeat;
+    bool well_formed = false;  // else only `seq` and `epoch` count, as far as they could be read
+    bool retained = false;
+    MaybeNumber seq;
+    MaybeNumber epoch;
+    double q_deg[kMostAxes] = {};
+    bool on = false;
+    Stop stop = Stop::kHalt;
+};
+
+// The message that these bytes are for a board with so many axes; retained as the broker flagged it.
+Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained, uint8_t axes);
+
+}  // namespace arboleda

@@ -1,0 +1,49 @@
+#include "receipts.h"
+
+namespace arboleda {
+
+namespace {
+
+constexpr uint32_t kUnknownSeq = 0;  // senders count from 1
+constexpr const char* kWords[] = {"", "viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"};
+
+bool same(MaybeNumber one, MaybeNumber other) {
+    return one.known == other.known && (!one.known || one.value == other.value);
+}
+
+}  // namespace
+
+const char* refusal_word(Refusal refusal) { return kWords[static_cast<uint8_t>(refusal)]; }
+
+bool Receipts::repeats(const Message& goal) const {
+    return goal.seq.known && same(goal.epoch, epoch_) && same(goal.seq, accepted_);
+}
+
+Refusal Receipts::objection(const Message& goal) {
+    if (!goal.seq.known || !goal.epoch.known) {
+        return Refusal::kFormat;
+    }
+    if (!epoch_.known || goal.epoch.value > epoch_.value) {
+        *this = Receipts();
+        epoch_ = goal.epoch;
+        return Refusal::kNone;
+    }
+    const bool newer = !accepted_.known || goal.seq.value > accepted_.value;
+    return goal.epoch.value == epoch_.value && newer ? Refusal::kNone : Refusal::kOld;
+}
+
+void Receipts::finish(MaybeNumber seq, MaybeNumber epoch) {
+    if (same(epoch, epoch_)) {
+        finished_ = seq;
+    }
+}
+
+void Receipts::refuse(Refusal refusal, MaybeNumber seq, MaybeNumber epoch) {
+    // under a foreign epoch a number could be taken for one of the current sender; `viejo` is for the
+    // sender of the older epoch, which knows itself by its number
+    const bool ours = refusal == Refusal::kOld || !epoch_.known || same(epoch, epoch_);
+    refusal_ = refusal;
+    refused_ = ours && seq.known ? seq.value : kUnknownSeq;
+}
+
+}  // namespace arboleda

@@ -1,0 +1,36 @@
+// The (epoca, seq) rules of a board: which command counts, and what its telemetry says about it.
+#pragma once
+
+#include "message.h"
+
+namespace arboleda {
+
+enum class Refusal : uint8_t { kNone, kOld, kRetained, kFormat, kLimit, kNotHomed, kStopped, kBusy };
+
+// The word of a refusal on the wire, `viejo`, ...; not for kNone.
+const char* refusal_word(Refusal refusal);
+
+// All numbers count only for `epoch`.
+class Receipts {
+public:
+    bool repeats(const Message& goal) const;   // the last accepted command once more: QoS 1 delivers twice
+    Refusal objection(const Message& goal);    // a fresh command makes its epoch the current one
+    void accept(const Message& goal) { accepted_ = goal.seq; }
+    void finish(MaybeNumber seq, MaybeNumber epoch);
+    void refuse(Refusal refusal, MaybeNumber seq, MaybeNumber epoch);
+
+    MaybeNumber epoch() const { return epoch_; }
+    MaybeNumber accepted() const { return accepted_; }
+    MaybeNumber finished() const { return finished_; }
+    Refusal refusal() const { return refusal_; }
+    uint32_t refused() const { return refused_; }
+
+private:
+    MaybeNumber epoch_;
+    MaybeNumber accepted_;
+    MaybeNumber finished_;
+    Refusal refusal_ = Refusal::kNone;
+    uint32_t refused_ = 0;
+};
+
+}  // namespace arboleda

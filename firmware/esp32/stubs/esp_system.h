@@ -1,0 +1,9 @@
+// What the port uses of ESP-IDF 4.4, for a syntax check only.
+#pragma once
+
+#include <stdint.h>
+
+enum esp_reset_reason_t { ESP_RST_UNKNOWN, ESP_RST_POWERON, ESP_RST_SW = 3, ESP_RST_BROWNOUT = 9 };
+
+esp_reset_reason_t esp_reset_reason();
+uint32_t esp_random();

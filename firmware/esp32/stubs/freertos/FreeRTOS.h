@@ -1,0 +1,2 @@
+// What the port uses of FreeRTOS, for a syntax check only.
+#pragma once

@@ -1,0 +1,187 @@
+// What the core does beyond the virtual board: switches, lost steps, held-back targets, the effector on a stop.
+#include "bench.h"
+#include "check.h"
+
+namespace arboleda {
+
+namespace {
+
+constexpr uint64_t kSecondUs = 1000000;
+
+constexpr const char* kMove = R"({"q1":45,"q2":45,"q3":90,"seq":1,"epoca":5})";
+constexpr const char* kHome = R"({"ref":1,"seq":1,"epoca":5})";
+
+bool at_reference(World& world) {
+    return world.true_steps(0) == 0 && world.true_steps(1) == 0 && world.true_steps(2) == 0;
+}
+
+}  // namespace
+
+TEST(homing_finds_the_reference_from_anywhere) {
+    const int32_t places[][3] = {{0, 0, 0}, {7000, 140, 280}, {-7776, -150, 0}, {-7900, -160, -10}};
+    for (const auto& place : places) {
+        Bench bench;
+        bench.world.put(place);
+        bench.board.boot(bench.now_us, 101, false);
+        CHECK(bench.board.state() == State::kNotHomed);
+        bench.send(Channel::kHome, kHome);
+        CHECK(bench.board.state() == State::kMoving);
+        bench.run(60 * kSecondUs);
+        CHECK(bench.board.homed());
+        CHECK(bench.board.state() == State::kStopped);
+        CHECK(bench.last.receipts.finished().known && bench.last.receipts.finished().value == 1);
+        CHECK(at_reference(bench.world));
+        CHECK(bench.board.axes()[0].position() == 0);
+    }
+}
+
+TEST(homing_raises_the_tool_before_the_arm_turns) {
+    Bench bench;
+    const int32_t low[] = {1000, 50, 200};
+    bench.world.put(low);
+    bench.board.boot(bench.now_us, 101, false);
+    bench.send(Channel::kHome, kHome);
+    bench.run(kSecondUs);
+    CHECK(bench.world.true_steps(0) == 1000 && bench.world.true_steps(1) == 50);
+    CHECK(bench.world.true_steps(2) < 200);
+}
+
+TEST(homing_with_a_dead_switch_is_a_fault) {
+    Config config = scara_config();
+    config.home[0].switch_steps = -1000000;
+    Bench bench(config);
+    bench.send(Channel::kHome, kHome);
+    bench.run(60 * kSecondUs);
+    CHECK(bench.board.state() == State::kFault);
+    CHECK(!bench.board.homed());
+    CHECK(!bench.last.receipts.finished().known);
+}
+
+TEST(homing_with_a_stuck_switch_is_a_fault) {
+    Config config = scara_config();
+    config.home[2].switch_steps = 1000000;
+    Bench bench(config);
+    bench.send(Channel::kHome, kHome);
+    bench.run(60 * kSecondUs);
+    CHECK(bench.board.state() == State::kFault);
+}
+
+TEST(a_halt_ends_homing_and_leaves_the_board_not_homed) {
+    Bench bench;
+    bench.send(Channel::kHome, kHome);
+    bench.run(2 * kSecondUs);
+    bench.send(Channel::kStop, R"({"paro":2,"seq":2,"epoca":5})");
+    bench.run(5 * kSecondUs);
+    CHECK(bench.board.state() == State::kNotHomed);
+    bench.send(Channel::kJoints, R"({"q1":1,"q2":1,"q3":1,"seq":3,"epoca":5})");
+    CHECK(bench.last.receipts.refusal() == Refusal::kNotHomed);
+}
+
+TEST(after_homing_an_arm_has_its_full_speed_again) {
+    Bench homed;
+    homed.send(Channel::kHome, kHome);
+    homed.run(60 * kSecondUs);
+    homed.send(Channel::kJoints, R"({"q1":90,"q2":0,"q3":0,"seq":2,"epoca":5})");
+    homed.run(1600000);  // 90 deg at 90 deg/s and 180 deg/s2 take 1.5 s
+    CHECK(homed.board.state() == State::kStopped);
+}
+
+TEST(a_stalled_loop_at_speed_loses_steps_and_asks_for_homing) {
+    Bench bench;
+    bench.send(Channel::kJoints, kMove);
+    bench.run(300000);
+    bench.stall(20000);
+    CHECK(bench.board.lost_steps() == 1);
+    CHECK(bench.board.state() == State::kNotHomed);
+    CHECK(!bench.last.receipts.finished().known);
+    const int32_t there = bench.world.true_steps(0);
+    bench.run(5 * kSecondUs);
+    CHECK(bench.world.true_steps(0) == there);
+    bench.send(Channel::kJoints, R"({"q1":0,"q2":0,"q3":0,"seq":2,"epoca":5})");
+    CHECK(bench.last.receipts.refusal() == Refusal::kNotHomed);
+}
+
+TEST(a_stall_while_nothing_moves_loses_nothing) {
+    Bench bench;
+    bench.stall(3 * kSecondUs);
+    CHECK(bench.board.lost_steps() == 0 && bench.board.homed());
+}
+
+TEST(missed_reports_are_not_made_up_for) {
+    Bench bench;
+    const int before = bench.told;
+    bench.stall(350000);
+    bench.run(40000);
+    CHECK(bench.told == before + 1);
+    bench.run(15000);
+    CHECK(bench.told == before + 2);
+}
+
+TEST(a_late_poll_within_bounds_loses_nothing) {
+    Bench bench;
+    bench.send(Channel::kJoints, kMove);
+    bench.run(300000);
+    bench.stall(4000);
+    bench.run(5 * kSecondUs);
+    CHECK(bench.board.lost_steps() == 0);
+    CHECK(bench.board.state() == State::kStopped && bench.last.receipts.finished().known);
+}
+
+TEST(a_switch_met_on_a_way_means_that_steps_were_lost) {
+    Bench bench;
+    bench.world.slip(0, -7500);
+    bench.send(Channel::kJoints, R"({"q1":-90,"q2":0,"q3":0,"seq":1,"epoca":5})");
+    bench.run(3 * kSecondUs);
+    CHECK(bench.board.state() == State::kNotHomed);
+    CHECK(bench.board.lost_steps() == 1);
+}
+
+TEST(alternating_targets_do_not_speed_a_motor_up) {
+    Bench calm;
+    calm.send(Channel::kJoints, R"({"q1":0,"q2":90,"q3":0,"seq":1,"epoca":5})");
+    calm.run(200000);
+    Bench bench;
+    for (int seq = 1; seq < 400; ++seq) {
+        char text[96];
+        const char* q2 = seq % 2 != 0 ? "90" : "91";
+        snprintf(text, sizeof text, R"({"q1":0,"q2":%s,"q3":0,"seq":%d,"epoca":5})", q2, seq);
+        bench.send(Channel::kJoints, text);
+        bench.run(500);
+    }
+    const int32_t ahead = bench.board.axes()[1].position() - calm.board.axes()[1].position();
+    CHECK(ahead >= 0 && ahead <= 2);  // one for each target that was let through
+    bench.run(5 * kSecondUs);
+    CHECK(bench.last.receipts.finished().value == 399);
+    CHECK(bench.board.axes()[1].position() == 100);
+}
+
+TEST(a_held_back_target_dies_with_a_halt) {
+    Bench bench;
+    bench.send(Channel::kJoints, kMove);
+    bench.run(50000);
+    bench.send(Channel::kJoints, R"({"q1":-45,"q2":0,"q3":0,"seq":2,"epoca":5})");
+    bench.send(Channel::kStop, R"({"paro":2,"seq":3,"epoca":5})");
+    bench.run(5 * kSecondUs);
+    CHECK(bench.board.state() == State::kStopped);
+    CHECK(bench.board.axes()[0].position() > 0 && bench.board.axes()[0].position() < 200);
+}
+
+TEST(an_effector_keeps_its_state_on_a_stop) {
+    Bench bench;
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":1,"epoca":5})");
+    bench.send(Channel::kStop, R"({"paro":1,"seq":2,"epoca":5})");
+    CHECK(bench.world.effector() && bench.board.state() == State::kLatched);
+}
+
+TEST(an_effector_lets_go_on_a_stop_where_it_is_configured) {
+    Config config = scara_config();
+    config.effector_on_stop = OnStop::kRelease;
+    Bench bench(config);
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":1,"epoca":5})");
+    bench.send(Channel::kStop, R"({"paro":2,"seq":2,"epoca":5})");
+    CHECK(bench.world.effector());
+    bench.send(Channel::kStop, R"({"paro":1,"seq":3,"epoca":5})");
+    CHECK(!bench.world.effector());
+}
+
+}  // namespace arboleda

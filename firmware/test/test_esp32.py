@@ -1,0 +1,43 @@
+"""The ESP32 port's project file: what it names is there, and each library with its licence."""
+
+from __future__ import annotations
+
+import re
+from configparser import ConfigParser
+from pathlib import Path
+
+import pytest
+
+PORT = Path(__file__).parents[1] / "esp32"
+TEXT = (PORT / "platformio.ini").read_text(encoding="ascii")
+
+
+@pytest.fixture
+def project() -> ConfigParser:
+    parsed = ConfigParser(interpolation=None, strict=True)
+    parsed.read_string(TEXT)
+    return parsed
+
+
+def test_every_library_has_a_version_and_a_licence(project: ConfigParser) -> None:
+    libraries = project["env"]["lib_deps"].split("\n")[1:]
+    assert libraries
+    for library in libraries:
+        name = re.fullmatch(r"\w+/(\w+) @ ~\d+\.\d+\.\d+", library)
+        assert name, f"{library} is not OWNER/NAME @ ~VERSION"
+        assert re.search(rf"^; {name[1]} +(MIT|Apache-2\.0|BSD-\S+) ", TEXT, re.MULTILINE)
+
+
+def test_no_library_is_under_the_gpl() -> None:
+    assert not re.search(r"\b(?<!L)GPL|AccelStepper|PubSubClient", TEXT)
+
+
+def test_the_core_is_built_with_the_ramps_flags(project: ConfigParser) -> None:
+    env = project["env"]
+    assert {"-std=gnu++17", "-ffp-contract=off", "-I../core"} <= set(env["build_flags"].split())
+    assert "+<../../core/*.cpp>" in env["build_src_filter"].split()
+    assert list((PORT / "src" / "../../core").glob("*.cpp"))
+
+
+def test_the_default_environment_is_one_of_the_file(project: ConfigParser) -> None:
+    assert f"env:{project['platformio']['default_envs']}" in project.sections()
