@@ -4,7 +4,7 @@
 
 export PYTHON
 BIN := .venv/bin
-PYTEST_ARGS ?= -n 6 --dist worksteal
+PYTEST_ARGS ?= -n 4 --dist worksteal
 CYCLES ?= 15
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C

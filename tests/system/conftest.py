@@ -43,14 +43,14 @@ class Process:
     def output(self) -> str:
         return "\n".join(self.lines)
 
-    def wait_for(self, text: str, *, times: int = 1) -> None:
+    def wait_for(self, text: str, *, times: int = 1, patience_s: float = PATIENCE_S) -> None:
         """Wait until a line holds `text`."""
 
         def seen() -> bool:
             return sum(text in line for line in self.lines) >= times
 
         with self._changed:
-            if not self._changed.wait_for(lambda: seen() or not self._running, PATIENCE_S) or not seen():
+            if not self._changed.wait_for(lambda: seen() or not self._running, patience_s) or not seen():
                 pytest.fail(f"no {text!r} in:\n{self.output}")
 
     def interrupt(self) -> int:
@@ -104,7 +104,7 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
     """`arboleda("run", "sis_a 0B 7")`: the command, with a state directory of the test's own."""
 
     def go(verb: str, *args: str) -> Process:
-        own = verb not in ("check", "tree") and "--state" not in args
+        own = verb not in ("check", "conformance", "tree") and "--state" not in args
         state = ("--state", str(tmp_path / "state")) if own else ()
         main = "from arboleda.app.cli import main; main()"
         return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})
@@ -143,6 +143,15 @@ def mosquitto(
         return broker
 
     return go
+
+
+@pytest.fixture
+def board() -> str:
+    """The firmware's board as a program; `make firmware` builds it."""
+    program = Path(__file__).parents[2] / "firmware" / "build" / "board"
+    if not os.access(program, os.X_OK):
+        pytest.skip("firmware/build/board is not built")
+    return str(program)
 
 
 class Observer:

@@ -20,6 +20,7 @@ from arboleda.core.model import Link, PlantModel
 from .parts.bridge import BridgePart
 from .parts.broker import MQTT_PORT, OtherBroker, OwnBroker, address
 from .parts.devices import DevicesPart
+from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .rate import at_rate
@@ -29,7 +30,7 @@ from .web_options import WebOptions
 if TYPE_CHECKING:  # its libraries are needed only where this part is
     from .parts.web import WebPart
 
-PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
+PARTS = ("broker", "devices", "linux", "bridge", "orchestrator", "web")
 STORE = "plant.sqlite"
 MQTT_311 = 4  # paho's number of the protocol
 LOG = logging.getLogger(__name__)
@@ -181,10 +182,7 @@ class App:
             bridge = self._bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
             self._parts.append(bridge)
         if virtual:
-            joined = bridge.join if bridge is not None and scout else _nothing
-            self._parts.append(
-                DevicesPart(self.model, now, self._broker, self._crash, scout=scout, joined=joined)
-            )
+            self._parts += self._boards(now, bridge, scout=scout, linux="linux" in parts)
         if "orchestrator" in parts:
             epoch = self._state.next_epoch(now)
             self.orchestrator = Orchestrator(self.model, epoch, self._crash, self._store)
@@ -193,6 +191,17 @@ class App:
             self.watch(self._web.side.saw)
             self._parts.append(self._web)
         self._join(bridge, self._link)
+
+    def _boards(self, first_boot: int, bridge: BridgePart | None, *, scout: bool, linux: bool) -> list[Part]:
+        """The boards that play the real ones, those of the firmware where `linux` asks for them."""
+        robots = on_linux(self.model) if linux else ()
+        firmware = [LinuxBoards(self.model, robots, self._broker, self._crash, scout=scout)] if linux else []
+        joined = bridge.join if bridge is not None and scout else _nothing
+        elsewhere = [robot.name for robot in robots]
+        virtual = DevicesPart(
+            self.model, first_boot, self._broker, self._crash, scout=scout, joined=joined, elsewhere=elsewhere
+        )
+        return [virtual, *firmware]
 
     def _let_go(self) -> None:
         """Give back what only one process may have; idempotent."""

@@ -22,6 +22,7 @@ from arboleda.core.model import PlantModel
 from . import config, session, token_command, tree_command, verbs
 from .build import PARTS, Options, build
 from .client import Refused
+from .conformance import command as conformance
 from .parts.broker import PASSWORD, USER, address, login
 from .rate import check_rate
 from .screen import table
@@ -46,6 +47,7 @@ class Boards(str, Enum):
     """Who answers on MQTT."""
 
     VIRTUAL = "virtual"
+    LINUX = "linux"
     REAL = "real"
 
 
@@ -103,7 +105,8 @@ BoardsOption = Annotated[
     Boards | None,
     typer.Option(
         "--boards",
-        help="Start virtual boards or expect real ones. [default: virtual; real with --broker-host]",
+        help="Start virtual boards, the firmware's as programs (SCARA), or expect real ones. "
+        "[default: virtual; real with --broker-host]",
     ),
 ]
 Rate = Annotated[
@@ -212,6 +215,7 @@ def status(
 
 token_command.add_to(cli)
 simulate.add_to(cli)
+conformance.add_to(cli)
 verbs.add_to(cli)
 
 
@@ -312,10 +316,11 @@ def _run(
     stay: bool,
 ) -> None:
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
-    if boards is Boards.REAL and options.rate != 1.0:
-        raise typer.BadParameter("--rate is for virtual boards; real ones have the speed they have")
+    if boards is not Boards.VIRTUAL and options.rate != 1.0:
+        raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
+    left_out |= {"linux"} if boards is not Boards.LINUX else set()
     link = session.ros_link(lan=lan) if ros else None
     app = build(model, set(PARTS) - left_out, replace(options, link=link, page=stay))
     raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())

@@ -159,9 +159,14 @@ def _axis(joint: Joint) -> Axis:
     )
 
 
-def _within(joint: Joint, angle: float) -> bool:
-    """Whether a target lies within the limits, or on the motor step that stands for one."""
+def limits_deg(joint: Joint) -> tuple[float, float]:
+    """The least and the greatest target on the wire: a limit, or the motor step that stands for it."""
     lower = min(joint.lower, joint.quantised(joint.lower))
     upper = max(joint.upper, joint.quantised(joint.upper))
     least, most = units.to_wire(joint, lower), units.to_wire(joint, upper)
-    return least - WIRE_ROUNDING_DEG <= angle <= most + WIRE_ROUNDING_DEG
+    return least - WIRE_ROUNDING_DEG, most + WIRE_ROUNDING_DEG
+
+
+def _within(joint: Joint, angle: float) -> bool:
+    least, most = limits_deg(joint)
+    return least <= angle <= most

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from arboleda.core.model import Arm, Link, Mobile, PlantModel, Robot
@@ -39,14 +39,24 @@ class FromBoard:
 
 
 class Devices:
-    """The boards of every robot with `link: mqtt`; `boot_ids` gives each boot its id (uint32)."""
+    """The boards of every robot with `link: mqtt`; `boot_ids` gives each boot its id (uint32).
 
-    def __init__(self, model: PlantModel, *, now: float, boot_ids: Callable[[], int]) -> None:
+    The robots named `elsewhere` have boards of another kind.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        *,
+        now: float,
+        boot_ids: Callable[[], int],
+        elsewhere: Collection[str] = (),
+    ) -> None:
         self._boot_ids = boot_ids
         self.boards: dict[str, Board] = {
             robot.mqtt: Board(robot, _body(model, robot), boot_id=boot_ids(), now_us=_us(now))
             for robot in model.robots.values()
-            if robot.link is Link.MQTT
+            if robot.link is Link.MQTT and robot.name not in elsewhere
         }
 
     def subscriptions(self, board: str) -> tuple[str, ...]:

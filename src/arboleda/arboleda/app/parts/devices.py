@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import replace
 from itertools import count
@@ -37,13 +37,15 @@ class DevicesPart:
         *,
         scout: bool,
         joined: Callable[[], None],
+        elsewhere: Collection[str] = (),
     ) -> None:
         self._joined = joined
         self._broker = broker
         self._crash = crash
         self._scout = scout
         self._version = model.mqtt_version
-        self._devices = Devices(model, now=time.monotonic(), boot_ids=count(first_boot).__next__)
+        boot_ids = count(first_boot).__next__
+        self._devices = Devices(model, now=time.monotonic(), boot_ids=boot_ids, elsewhere=elsewhere)
         self._clients: dict[str, MqttClient] = {}
         self._lock = threading.Lock()
         self._lookout: Lookout | None = None

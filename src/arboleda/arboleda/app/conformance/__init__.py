@@ -1,0 +1,1 @@
+"""Runs the contract against any arm's board: a pure judge, and its way over MQTT."""

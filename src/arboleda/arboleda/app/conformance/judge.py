@@ -1,0 +1,162 @@
+"""The judge: a pure machine that makes one check after the other and keeps what came of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.core.model import Arm, Evidence
+from arboleda.wire.payloads import Beat, encode
+from arboleda.wire.topics import Channel
+from arboleda.wire.transport import Delivery
+
+from . import motion_checks as motion
+from . import number_checks as number
+from .bench import Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
+from .ways import ready, settle
+
+BEAT_S = 0.25
+LEVELS = (Evidence.STATE, Evidence.JOINTS, Evidence.IDS)  # each includes those before it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """What is looked at, and the level that needs it; its docstring is what a board has to do."""
+
+    name: str
+    level: Evidence
+    steps: Callable[[Bench], Steps]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What came of a check: `wrong` speaks against the board, `untried` is why it was not made."""
+
+    check: Check
+    wrong: str | None = None
+    untried: str | None = None
+
+
+CHECKS = (
+    Check(name="telemetry", level=Evidence.STATE, steps=motion.telemetry),
+    Check(name="moves", level=Evidence.STATE, steps=motion.moves),
+    Check(name="rhythm", level=Evidence.JOINTS, steps=motion.rhythm),
+    Check(name="reaches", level=Evidence.JOINTS, steps=motion.reaches),
+    Check(name="rounds", level=Evidence.JOINTS, steps=motion.rounds),
+    Check(name="halts", level=Evidence.JOINTS, steps=motion.halts),
+    Check(name="malformed", level=Evidence.JOINTS, steps=motion.malformed),
+    Check(name="limits", level=Evidence.JOINTS, steps=motion.limits),
+    Check(name="numbers", level=Evidence.IDS, steps=number.numbers),
+    Check(name="telling", level=Evidence.IDS, steps=number.telling),
+    Check(name="duplicate", level=Evidence.IDS, steps=number.duplicate),
+    Check(name="old", level=Evidence.IDS, steps=number.old),
+    Check(name="old epoch", level=Evidence.IDS, steps=number.old_epoch),
+    Check(name="new epoch", level=Evidence.IDS, steps=number.new_epoch),
+    Check(name="stamped", level=Evidence.IDS, steps=number.stamped),
+    Check(name="words", level=Evidence.IDS, steps=number.words),
+    Check(name="retained", level=Evidence.IDS, steps=number.retained),
+    Check(name="halted", level=Evidence.IDS, steps=number.halted),
+    Check(name="stop from anybody", level=Evidence.IDS, steps=number.stop_from_anybody),
+    Check(name="latch", level=Evidence.IDS, steps=number.latch),
+    Check(name="retarget", level=Evidence.IDS, steps=number.retarget),
+    Check(name="silence", level=Evidence.IDS, steps=number.silence),
+    Check(name="effector", level=Evidence.IDS, steps=number.effector),
+    Check(name="homing", level=Evidence.IDS, steps=number.homing),
+)
+
+
+class Judge:
+    """Events are what the board published; messages are `Send` and `Jostle`. `over` when all is known."""
+
+    def __init__(self, arm: Arm, *, epoch: int, now: float) -> None:
+        self.bench = Bench(arm, epoch)
+        self.findings: list[Finding] = []
+        self.current: Check | None = None
+        self.over = False
+        self._course = self._all()
+        self._wait = Wait(seconds=0.0)
+        self._deadline = self._beat_at = now
+
+    @property
+    def next_deadline(self) -> float | None:
+        if self.over:
+            return None
+        return min(self._deadline, self._beat_at) if self.bench.beating else self._deadline
+
+    @property
+    def spoken(self) -> Evidence:
+        """The level that the board's reports belong to."""
+        said = self.bench.said[-1] if self.bench.said else None
+        if said is None or said.q is None:
+            return Evidence.STATE
+        return Evidence.JOINTS if said.boot_id is None else Evidence.IDS
+
+    @property
+    def reached(self) -> Evidence | None:
+        """The highest level whose checks, and those of the levels below, speak for the board."""
+        wrong = [LEVELS.index(finding.check.level) for finding in self.findings if finding.wrong]
+        lowest = min([*wrong, LEVELS.index(self.spoken) + 1])
+        return LEVELS[lowest - 1] if lowest > 0 else None
+
+    def step(self, now: float, events: Sequence[Delivery]) -> list[Send | Jostle]:
+        """Hear, and do what is due."""
+        for event in events:
+            self.bench.hear(event)
+        self.bench.now = max(self.bench.now, now)
+        out = self._beat(now)
+        while not self.over:
+            met = self._wait.until()
+            if not met and now < self._deadline:
+                break
+            out += self._resume(now, met)
+        return out
+
+    def _beat(self, now: float) -> list[Send | Jostle]:
+        if not self.bench.beating or now < self._beat_at:
+            return []
+        self._beat_at = now + BEAT_S
+        return [Send(channel=Channel.BEAT, payload=encode(Beat(epoch=self.bench.epoch)))]
+
+    def _resume(self, now: float, met: bool) -> list[Send | Jostle]:
+        """Go on to the next wait; whatever is asked for on the way."""
+        out: list[Send | Jostle] = []
+        try:
+            asked = self._course.send(met if self.current else None)  # type: ignore[arg-type]
+            while not isinstance(asked, Wait):
+                out += [*self._beat(now), asked]
+                asked = next(self._course)
+            self._wait, self._deadline = asked, now + asked.seconds
+        except StopIteration:
+            self.over = True
+        return out
+
+    def _all(self) -> Generator[Send | Jostle | Wait, Any, None]:
+        for check in CHECKS:
+            self.current = check
+            if LEVELS.index(check.level) > LEVELS.index(self.spoken):
+                return
+            yield from self._try(check)
+            if not self.bench.said:
+                return
+
+    def _try(self, check: Check) -> Generator[Send | Jostle | Wait, Any, None]:
+        """One check, and back to where the next may begin."""
+        wrong = untried = None
+        try:
+            yield from check.steps(self.bench)
+        except Wrong as found:
+            wrong = str(found)
+        except NotTried as reason:
+            untried = str(reason)
+        if self.bench.said:
+            wrong = (yield from self._settled(check)) or wrong
+        self.findings.append(Finding(check=check, wrong=wrong, untried=untried))
+
+    def _settled(self, check: Check) -> Generator[Send | Jostle | Wait, Any, str | None]:
+        try:
+            yield from settle(self.bench)
+            yield from ready(self.bench)
+        except Wrong as found:
+            return f"afterwards {found}"
+        return None

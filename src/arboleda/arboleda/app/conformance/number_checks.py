@@ -1,0 +1,200 @@
+"""What only boards with command numbers can do: prove which command they accepted, refused and finished."""
+
+from __future__ import annotations
+
+from arboleda.wire.topics import Channel
+
+from .bench import MOVING, Bench, Jostle, NotTried, Send, Steps, Wait
+from .ways import REST_S, accepted, answer, demand, drive, refused, rest, set_off, stop, unmoved
+
+SILENCE_S = 1.0
+RAMP_S = 1.5  # to come to rest after that, and to be heard
+BACK_S = 10.0
+
+
+def numbers(bench: Bench) -> Steps:
+    """A goal is acknowledged by its number, and done by the same number when it rests on it."""
+    goal = bench.away(0.1)
+    bench.beating = True
+    yield from accepted(bench, bench.goal(goal))
+    demand(bench.last.done != bench.seq or bench.at(goal), "it says hecho before it stands on the goal")
+    yield from rest(bench)
+    demand(bench.last.done == bench.seq, f"it rests, and hecho is {bench.last.done}, not {bench.seq}")
+    demand(bench.last.ack == bench.seq, "ack has changed without a command")
+
+
+def telling(bench: Bench) -> Steps:
+    """Reports are numbered upwards in one boot, and say all that belongs to this level."""
+    before = len(bench.said)
+    yield Wait(seconds=1.0)
+    fresh = bench.said[before:]
+    rising = [said.number for said in fresh if said.number is not None]
+    demand(rising == sorted(set(rising)) and len(rising) == len(fresh), "seq of its reports does not rise")
+    demand(len({said.boot_id for said in fresh}) == 1, "arranque changes without a reboot")
+    demand(bench.last.homed is not None and bench.last.effector is not None, "ref or efector is missing")
+
+
+def duplicate(bench: Bench) -> Steps:
+    """The last command once more (QoS 1 may deliver twice) is neither refused nor carried out again."""
+    goal = bench.goal(bench.away(0.1))
+    bench.beating = True
+    yield from accepted(bench, goal)
+    yield from rest(bench)
+    before, number = bench.steps, bench.seq
+    yield goal
+    yield from unmoved(bench, before, "the same command came twice")
+    demand(bench.last.refused != number, f"it refuses the second delivery with {bench.last.refusal}")
+    demand(bench.last.done == number, "the second delivery took its hecho away")
+
+
+def old(bench: Bench) -> Steps:
+    """A number that is not greater than the last one is refused with viejo."""
+    yield from drive(bench, bench.away(0.05))
+    here, there = bench.steps, bench.away(0.1)
+    yield from drive(bench, there)
+    yield from refused(bench, bench.goal(here, seq=bench.seq - 1), "viejo", bench.seq - 1)
+
+
+def old_epoch(bench: Bench) -> Steps:
+    """A lower epoca is refused with viejo, whatever its seq."""
+    yield from accepted(bench, stop(bench, 2))
+    number = bench.seq + 100
+    yield from refused(
+        bench, bench.goal(bench.away(0.05), seq=number, epoch=bench.epoch - 1), "viejo", number
+    )
+
+
+def new_epoch(bench: Bench) -> Steps:
+    """A higher epoca begins numbers of its own, and the old ones disappear."""
+    yield from drive(bench, bench.away(0.05))
+    bench.epoch, bench.seq = bench.epoch + 1, 0
+    yield from accepted(bench, stop(bench, 2))
+    demand(bench.last.done is None, f"hecho {bench.last.done} of the older epoca is still there")
+
+
+def stamped(bench: Bench) -> Steps:
+    """A goal without seq and epoca is refused with formato."""
+    before, payload = bench.steps, b'{"efector":0}'
+    yield Send(channel=Channel.EFFECTOR, payload=payload)
+    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(bench.last.refusal == "formato", f"{payload.decode()} without numbers is not refused with formato")
+    yield from unmoved(bench, before, "a command without numbers")
+
+
+def retained(bench: Bench) -> Steps:
+    """What a broker kept for it is refused with retenido when it comes back."""
+    yield from accepted(bench, stop(bench, 2))
+    before, goal = bench.steps, bench.goal(bench.away(0.05), seq=bench.seq)
+    # an old number: heard while it is connected, the goal is harmless
+    kept = Send(channel=goal.channel, payload=goal.payload, retain=True)
+    yield kept
+    yield Wait(seconds=0.5)
+    arrivals = bench.arrivals
+    yield Jostle()
+    back = yield Wait(seconds=BACK_S, until=lambda: bench.arrivals > arrivals)
+    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "retenido")
+    refusal = bench.last.refusal
+    yield Send(channel=goal.channel, payload=b"", retain=True)
+    yield Wait(seconds=0.3)
+    if not back:
+        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
+    demand(refusal == "retenido", f"it came back, heard a retained goal and says rechazo {refusal}")
+    yield from unmoved(bench, before, "a retained goal")
+
+
+def words(bench: Bench) -> Steps:
+    """Damaged commands are refused with formato, goals beyond a limit with limite."""
+    yield Send(channel=Channel.STOP, payload=b'{"paro":3}')
+    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(said, 'it does not refuse {"paro":3} with formato')
+    q = {f"q{at + 1}": 0.0 for at in range(len(bench.step_deg))}
+    yield from refused(bench, bench.send(Channel.JOINTS, **{**q, "q1": 5000.0}), "limite")
+
+
+def halted(bench: Bench) -> Steps:
+    """A halted move never appears as done."""
+    yield from set_off(bench, bench.away(0.4))
+    number = bench.seq
+    yield from accepted(bench, stop(bench, 2))
+    yield from rest(bench)
+    demand(bench.last.done != number, "it says hecho for a move that paro 2 has ended")
+
+
+def stop_from_anybody(bench: Bench) -> Steps:
+    """`paro` 2 is obeyed whatever its numbers are."""
+    goal = bench.away(0.4)
+    yield from set_off(bench, goal)
+    yield stop(bench, 2, seq=1, epoch=1)
+    yield from rest(bench)
+    demand(not bench.at(goal), "it went on to its goal: a halt with old numbers has to be obeyed too")
+
+
+def latch(bench: Bench) -> Steps:
+    """`paro` 1 stops and latches; until `paro` 0 neither goals nor effector on; clearing moves nothing."""
+    goal = bench.away(0.4)
+    yield from set_off(bench, goal)
+    yield from accepted(bench, stop(bench, 1))
+    yield from rest(bench)
+    demand(bench.last.state == 4, f"after paro 1 its estado is {bench.last.state}, not 4")
+    yield from refused(bench, bench.goal(bench.away(0.05)), "paro")
+    yield from refused(bench, bench.send(Channel.EFFECTOR, efector=1), "paro")
+    before = bench.steps
+    yield from accepted(bench, stop(bench, 0))
+    yield from unmoved(bench, before, "paro 0")
+    demand(bench.last.state == 0, f"after paro 0 its estado is {bench.last.state}, not 0")
+
+
+def retarget(bench: Bench) -> Steps:
+    """A second goal in the middle of a move replaces the first, which is never done."""
+    first = bench.away(0.4)
+    here = bench.steps
+    yield from set_off(bench, first)
+    replaced = bench.seq
+    yield from accepted(bench, bench.goal(here))
+    yield from rest(bench)
+    demand(bench.at(here), f"it stands at {bench.steps}, not at its second goal {here}")
+    demand(all(said.done != replaced for said in bench.said[-50:]), "it says hecho for the first goal")
+    demand(bench.last.done == bench.seq, "it does not say hecho for the second goal")
+
+
+def silence(bench: Bench) -> Steps:
+    """Once it has heard a beat, 1 s without beat or command ends a move."""
+    yield from drive(bench, _end(bench, upper=False))
+    far = _end(bench, upper=True)
+    yield from set_off(bench, far)
+    bench.beating = False
+    yield Wait(seconds=SILENCE_S + RAMP_S, until=lambda: bench.last.state != MOVING)
+    if bench.at(far):
+        raise NotTried("its longest way takes too little time to tell")
+    demand(bench.last.state != MOVING, f"it still moves {SILENCE_S + RAMP_S:g} s after the last beat")
+    demand(bench.last.done != bench.seq, "it says hecho for a move that silence has ended")
+
+
+def effector(bench: Bench) -> Steps:
+    """It reports its effector as it was commanded."""
+    for wanted in (1, 0):
+        yield from accepted(bench, bench.send(Channel.EFFECTOR, efector=wanted))
+        demand(bench.last.effector == bool(wanted), f"efector is not {wanted} after the command was accepted")
+
+
+def homing(bench: Bench) -> Steps:
+    """Homing: not homed and busy on the way, homed, done and at the reference in the end."""
+    bench.beating = True
+    yield from accepted(bench, bench.send(Channel.HOME, ref=1))
+    number = bench.seq
+    demand(bench.last.homed is False, "it says ref 1 while it looks for its reference")
+    yield from answer(bench, bench.goal(bench.steps))
+    demand(bench.last.refusal == "ocupado", f"a goal during homing is refused with {bench.last.refusal}")
+    done = yield Wait(seconds=2 * REST_S, until=lambda: bench.last.done == number)
+    demand(done, f"homing has no hecho within {2 * REST_S:g} s")
+    demand(bench.last.homed is True and bench.last.state == 0, "homing is done, and it says it is not homed")
+    demand(bench.at(tuple(0 for _ in bench.step_deg)), f"after homing it stands at {bench.steps} motor steps")
+
+
+def _end(bench: Bench, *, upper: bool) -> tuple[int, ...]:
+    """The far end of the joint that takes longest; the others stay."""
+    joints = bench.arm.joints
+    slowest = max(range(len(joints)), key=lambda at: joints[at].travel_s(joints[at].upper - joints[at].lower))
+    joint, steps = joints[slowest], list(bench.steps)
+    steps[slowest] = joint.steps(joint.upper if upper else joint.lower)
+    return tuple(steps)

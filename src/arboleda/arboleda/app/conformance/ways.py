@@ -1,0 +1,128 @@
+"""What several checks do: send and wait for an answer, wait for rest, drive somewhere."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arboleda.wire.topics import Channel
+
+from .bench import MOVING, NOT_HOMED, Bench, Send, Steps, Wait, Wrong
+
+ANSWER_S = 2.0
+REST_S = 30.0
+NOTHING_S = 0.4  # so long a board that does nothing is watched
+
+
+def demand(truth: bool, sentence: str) -> None:
+    """Wrong with this sentence, unless it is true."""
+    if not truth:
+        raise Wrong(sentence)
+
+
+def rest(bench: Bench) -> Steps:
+    """Wait until two new reports say that it stands still at one place."""
+    count = len(bench.said)
+
+    def resting() -> bool:
+        last = bench.said[max(count, len(bench.said) - 2) :]
+        return len(last) == 2 and all(said.state != MOVING and said.q == last[0].q for said in last)
+
+    rested = yield Wait(seconds=REST_S, until=resting)
+    demand(rested, f"it was not seen standing still within {REST_S:g} s")
+
+
+def answer(bench: Bench, send: Send, seq: int | None = None) -> Steps:
+    """Send it, and wait until the board accepts or refuses its number."""
+    yield send
+    number, epoch = bench.seq if seq is None else seq, bench.epoch
+    count = len(bench.said)
+
+    def answered() -> bool:
+        fresh = bench.said[count:]
+        return any(said.epoch == epoch and number in (said.ack, said.refused) for said in fresh)
+
+    yield Wait(seconds=ANSWER_S, until=answered)
+
+
+def accepted(bench: Bench, send: Send) -> Steps:
+    """Send a command that the board has to accept."""
+    yield from answer(bench, send)
+    demand(
+        bench.last.ack == bench.seq and bench.last.epoch == bench.epoch,
+        f"it does not accept {send.payload.decode()}; it says {_answer(bench)}",
+    )
+
+
+def refused(bench: Bench, send: Send, word: str, seq: int | None = None) -> Steps:
+    """Send a command that the board has to refuse with this word, and without moving."""
+    before = bench.steps
+    yield from answer(bench, send, seq)
+    number = bench.seq if seq is None else seq
+    said = bench.last
+    demand(
+        (said.refusal, said.refused) == (word, number),
+        f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}",
+    )
+    yield from unmoved(bench, before, send.payload.decode())
+
+
+def unmoved(bench: Bench, before: tuple[int, ...], after: str) -> Steps:
+    """Watch that the arm stays where it was."""
+    moved = yield Wait(seconds=NOTHING_S, until=lambda: bench.steps != before or bench.last.state == MOVING)
+    demand(not moved, f"it moves after {after}")
+
+
+def drive(bench: Bench, steps: tuple[int, ...]) -> Steps:
+    """Drive somewhere, and wait until it rests."""
+    bench.beating = True
+    yield bench.goal(steps)
+    yield Wait(seconds=1.0, until=lambda: bench.last.state == MOVING or bench.at(steps))
+    yield from rest(bench)
+    bench.beating = False
+
+
+def set_off(bench: Bench, steps: tuple[int, ...]) -> Steps:
+    """Begin a long way, beating, and wait until it is well under way."""
+    before = bench.steps
+    bench.beating = True
+    yield bench.goal(steps)
+    moving = yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
+    demand(moving, "it does not begin to move")
+    yield Wait(seconds=0.3, until=lambda: False)
+    demand(bench.steps != before or bench.last.q is None, "its joints do not change while it moves")
+
+
+def stop(bench: Bench, mode: int, **numbers: int) -> Send:
+    """`paro`: 1 stop and latch, 2 halt, 0 clear."""
+    return bench.send(Channel.STOP, paro=mode, **numbers)
+
+
+def settle(bench: Bench) -> Steps:
+    """After a check, whatever came of it: halted, cleared, still."""
+    bench.beating = False
+    for mode in (2, 0):
+        yield stop(bench, mode)
+        yield Wait(seconds=0.05)
+    yield from rest(bench)
+
+
+def ready(bench: Bench) -> Steps:
+    """Have a board that can look for its reference do so, if it has to."""
+    if bench.last.state == NOT_HOMED and bench.last.boot_id is not None:
+        bench.beating = True
+        yield bench.send(Channel.HOME, ref=1)
+        homed = yield Wait(seconds=2 * REST_S, until=lambda: bench.last.homed is True)
+        bench.beating = False
+        demand(homed, "it is not homed, and homing does not help")
+
+
+def _answer(bench: Bench) -> str:
+    said: dict[str, Any] = {
+        "epoca_ack": bench.last.epoch,
+        "ack": bench.last.ack,
+        "rechazo": bench.last.refusal,
+        "rechazo_seq": bench.last.refused,
+    }
+    return (
+        ", ".join(f"{key} {value}" for key, value in said.items() if value is not None) or "nothing about it"
+    )

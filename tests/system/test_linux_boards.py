@@ -1,0 +1,166 @@
+"""The firmware's board as a program: in the plant in place of the virtual ones, and with what goes wrong."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters.mqtt import Address, MqttClient
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+pytestmark = pytest.mark.system
+
+PATIENCE_S = 20.0
+EPOCH = 7
+
+
+class Desk:
+    """A board's program with its console at hand, and a client that hears what it says."""
+
+    def __init__(self, program: str, port: int) -> None:
+        self.heard: list[Delivery] = []
+        self._seq = 0
+        topics = ("ra_1/sensores", "ra_1/conexion")
+        address = Address(host="127.0.0.1", port=port)
+        self._client = MqttClient("desk", address, subscriptions=topics, on_event=self._hear)
+        self._client.start()
+        self.program = subprocess.Popen(
+            [program, "--robot", "ra_1", "--broker", f"127.0.0.1:{port}"], stdin=subprocess.PIPE, text=True
+        )
+
+    def type(self, line: str) -> None:
+        assert self.program.stdin is not None
+        print(line, file=self.program.stdin, flush=True)
+
+    def send(self, channel: str, **body: float) -> None:
+        self._seq += 1
+        payload = json.dumps({**body, "seq": self._seq, "epoca": EPOCH}).encode()
+        self._client.publish(Publication(topic=f"ra_1/{channel}", payload=payload))
+
+    def wait(self, such: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        """The first telemetry from now on that is such."""
+        begin, until = len(self.heard), time.monotonic() + PATIENCE_S
+        while time.monotonic() < until:
+            for delivery in self.heard[begin:]:
+                if delivery.topic.endswith("sensores") and such(said := json.loads(delivery.payload)):
+                    return said
+            time.sleep(0.01)
+        return pytest.fail(f"never heard; last: {self.heard[-1:]}")
+
+    def presence(self) -> bytes:
+        return [each.payload for each in self.heard if each.topic.endswith("conexion")][-1]
+
+    def close(self) -> None:
+        self.program.terminate()
+        self.program.wait(PATIENCE_S)
+        assert self.program.stdin is not None
+        self.program.stdin.close()
+        self._client.close()
+
+    def _hear(self, event: Delivery | Connection) -> None:
+        if isinstance(event, Delivery):
+            self.heard.append(event)
+
+
+@pytest.fixture
+def desk(board: str, mosquitto: Callable[[int], Any], free_port: int) -> Iterator[Desk]:
+    mosquitto(free_port)
+    made = Desk(board, free_port)
+    yield made
+    made.close()
+
+
+def test_tasks_are_done_with_the_firmwares_boards(arboleda: Callable[..., Any], board: str) -> None:
+    run = arboleda("run", "sis_a 0B 7", "sis_b 1C 3", "--no-ros", "--boards", "linux")
+    assert run.wait() == 0, run.output
+    assert run.output.count("│ done") == 2
+
+
+def test_boards_that_were_not_built_are_one_sentence(
+    arboleda: Callable[..., Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ARBOLEDA_BOARD", str(tmp_path / "board"))
+    run = arboleda("run", "sis_a 0B 7", "--no-ros", "--boards", "linux")
+    assert run.wait() == 1
+    assert run.output == f"arboleda: the firmware's board is not at {tmp_path / 'board'}; type: make firmware"
+
+
+def test_the_boards_end_with_a_plant_that_was_killed(
+    arboleda: Callable[..., Any],
+    mosquitto: Callable[[int], Any],
+    free_port: int,
+    board: str,
+) -> None:
+    broker = mosquitto(free_port)
+    plant = arboleda(
+        "run", "sis_a 0B 7", "--no-ros", "--boards", "linux", "--broker", f"127.0.0.1:{free_port}"
+    )
+    broker.wait_for("PUBLISH from ra_1")
+    plant.kill()
+    broker.wait_for("Received DISCONNECT from ra_1")
+
+
+def test_a_reboot_is_another_boot_and_not_homed_until_homing_is_done(desk: Desk) -> None:
+    before = desk.wait(lambda said: True)
+    desk.type("reboot")
+    after = desk.wait(lambda said: said["arranque"] != before["arranque"])
+    assert (after["estado"], after["ref"]) == (3, 0)
+    desk.send("referencia", ref=1)
+    homed = desk.wait(lambda said: said.get("hecho") == 1)
+    assert (homed["estado"], homed["ref"], homed["q1_mov"]) == (0, 1, 0.0)
+
+
+def test_a_loop_that_hangs_at_speed_loses_steps_and_asks_for_homing(desk: Desk) -> None:
+    desk.wait(lambda said: True)
+    desk.send("juntas", q1=90, q2=0, q3=0)
+    desk.wait(lambda said: said["q1_mov"] > 10)
+    desk.type("stall 300")
+    lost = desk.wait(lambda said: said["estado"] != 1)
+    assert (lost["estado"], lost["ref"], "hecho" in lost) == (3, 0, False)
+
+
+def test_a_mute_board_goes_on_moving(desk: Desk) -> None:
+    desk.wait(lambda said: True)
+    desk.send("juntas", q1=45, q2=0, q3=0)
+    desk.wait(lambda said: said["estado"] == 1)
+    desk.type("mute 2")
+    said = desk.wait(lambda said: said["estado"] != 1)
+    assert said["hecho"] == 1
+    gap = max(b.at - a.at for a, b in zip(desk.heard, desk.heard[1:], strict=False))
+    assert gap > 1.5
+
+
+def test_steps_that_an_axis_loses_show_nowhere_but_on_its_console(desk: Desk) -> None:
+    desk.wait(lambda said: True)
+    desk.type("lose 1 500")
+    desk.send("juntas", q1=9, q2=0, q3=0)
+    said = desk.wait(lambda said: said.get("hecho") == 1)
+    assert said["q1_mov"] == pytest.approx(9, abs=0.01)
+
+
+def test_a_board_leaves_the_broker_with_a_word(desk: Desk) -> None:
+    desk.wait(lambda said: True)
+    assert desk.presence() == b"1"
+    desk.type("quit")
+    assert desk.program.wait(PATIENCE_S) == 0
+    until = time.monotonic() + PATIENCE_S
+    while desk.presence() != b"0" and time.monotonic() < until:
+        time.sleep(0.01)
+    assert desk.presence() == b"0"
+
+
+def test_a_board_that_was_there_before_its_broker_joins_it(
+    board: str, mosquitto: Callable[[int], Any], free_port: int
+) -> None:
+    desk = Desk(board, free_port)
+    try:
+        mosquitto(free_port)
+        assert desk.wait(lambda said: True)["estado"] == 0
+    finally:
+        desk.close()

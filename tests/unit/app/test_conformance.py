@@ -1,0 +1,246 @@
+"""The conformance kit: good boards pass at their level, bad ones fail by name; time moved by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.app.conformance.bench import Jostle, Send
+from arboleda.app.conformance.judge import CHECKS, Judge
+from arboleda.core.messages import StopMode
+from arboleda.core.model import Arm, Evidence, Joint
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.board import Board
+from arboleda.testing import shipped
+from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal
+from arboleda.wire.topics import topic
+from arboleda.wire.transport import Delivery
+
+PLANT = shipped("sis_a", "sis_c")
+LONGEST_S = 600.0
+
+
+class Trial:
+    """A judge and a board joined by hand, from deadline to deadline."""
+
+    def __init__(self, arm: Arm, board: Board) -> None:
+        self.arm, self.board = arm, board
+        self.now = 1000.0
+        self.judge = Judge(arm, epoch=50, now=self.now)
+        self.kept: dict[str, bytes] = {}
+        board.connect(self._us, True)
+
+    @property
+    def _us(self) -> int:
+        return round(self.now * 1e6)
+
+    def run(self) -> Judge:
+        while not self.judge.over and self.now < 1000.0 + LONGEST_S:
+            for message in self.judge.step(self.now, self._heard()):
+                self._carry_out(message)
+            times = [self.judge.next_deadline, (self.board.next_deadline_us or math.inf) / 1e6]
+            self.now = max(self.now, min(time for time in times if time is not None))
+            self.board.advance(self._us)
+        assert self.judge.over
+        return self.judge
+
+    def _heard(self) -> list[Delivery]:
+        return [Delivery(at=self.now, topic=sent.topic, payload=sent.payload) for sent in self.board.take()]
+
+    def _carry_out(self, message: Send | Jostle) -> None:
+        if isinstance(message, Jostle):
+            self.board.connect(self._us, False)
+            self.board.connect(self._us, True)
+            for where, payload in self.kept.items():
+                self._deliver(where, payload, retain=True)
+            return
+        where = topic(self.arm.mqtt, message.channel)
+        if message.retain:
+            self.kept.pop(where, None)
+            self.kept.update({where: message.payload} if message.payload else {})
+        self._deliver(where, message.payload, retain=False)
+
+    def _deliver(self, where: str, payload: bytes, *, retain: bool) -> None:
+        self.board.receive(self._us, Delivery(at=self.now, topic=where, payload=payload, retain=retain))
+
+
+def trial(kind: Callable[..., Board] = Board, cell: str = "sis_a", **declared: Any) -> Judge:
+    arm = replace(PLANT.cell(cell).arm, **declared)
+    board = kind(arm, ArmBody(arm, start=arm.reference, pickups=()), boot_id=9, now_us=1_000_000_000)
+    return Trial(arm, board).run()
+
+
+def wrong(judge: Judge) -> dict[str, str]:
+    return {finding.check.name: finding.wrong for finding in judge.findings if finding.wrong}
+
+
+@pytest.mark.parametrize("cell", ["sis_a", "sis_c"], ids=["scara", "cr10a"])
+def test_the_virtual_board_passes_at_the_top(cell: str) -> None:
+    judge = trial(cell=cell)
+    assert wrong(judge) == {}
+    assert [finding.check.name for finding in judge.findings] == [check.name for check in CHECKS]
+    assert [finding.untried for finding in judge.findings if finding.untried] == []
+    assert judge.reached is Evidence.IDS
+
+
+def test_a_board_without_numbers_reaches_joints() -> None:
+    judge = trial(evidence=Evidence.JOINTS)
+    assert wrong(judge) == {}
+    assert judge.reached is judge.spoken is Evidence.JOINTS
+
+
+def test_a_board_that_is_not_homed_is_homed_first() -> None:
+    def not_homed(*args: Any, **how: Any) -> Board:
+        board = Board(*args, **how)
+        board.homed = False
+        return board
+
+    assert trial(not_homed).reached is Evidence.IDS
+
+
+class OnlyCodes(Board):
+    """Says its code and nothing else."""
+
+    def take(self) -> list:
+        said = super().take()
+        return [replace(sent, payload=_code(sent.payload)) for sent in said]
+
+
+def _code(payload: bytes) -> bytes:
+    at = payload.find(b'"estado":')
+    return b"{" + payload[at : at + 10] + b"}" if at >= 0 else payload
+
+
+class Forgetful(Board):
+    """Obeys old numbers as well."""
+
+    def _obey(self, goal: Goal) -> None:
+        last = (self._receipts.epoch or 0, self._receipts.accepted or 0)
+        old = isinstance(goal, JointsGoal) and goal.seq is not None and (goal.epoch, goal.seq) < last
+        if old and self._refusal(goal) is None:
+            self._accept(goal)
+        else:
+            super()._obey(goal)
+
+
+class Truncating(ArmBody):
+    """Cuts targets off to whole motor steps."""
+
+    def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
+        return tuple(_cut(joint, value) for joint, value in zip(self._joints, q, strict=True))
+
+
+def _cut(joint: Joint, value: float) -> int:
+    return math.trunc(value / joint.step + math.copysign(0.05, value))
+
+
+class Eager(Board):
+    """Takes what a broker kept for a command of now."""
+
+    def receive(self, now_us: int, delivery: Delivery) -> None:
+        super().receive(now_us, replace(delivery, retain=False))
+
+
+class Deaf(Board):
+    """Does not mind whether anybody beats."""
+
+    def _hear(self, beat: object) -> None:
+        pass
+
+
+class Unlatched(Board):
+    """Stops, and forgets that it should stay so."""
+
+    def _stop(self, *, latch: bool) -> None:
+        super()._stop(latch=False)
+
+
+class Boastful(Board):
+    """Says done for whatever has come to rest."""
+
+    def _stop(self, *, latch: bool) -> None:
+        job = self._job
+        super()._stop(latch=latch)
+        if job is not None:
+            self._receipts.finish(job)
+
+
+class Believing(Board):
+    """Takes a damaged goal for what can be read of it."""
+
+    def receive(self, now_us: int, delivery: Delivery) -> None:
+        if delivery.payload == b'{"q1":9}':
+            self.body.start(now_us, JointsGoal(q=(9.0, 0.0, 0.0), seq=None, epoch=None))
+        super().receive(now_us, delivery)
+
+
+class Unhalting(Board):
+    """Obeys a halt only with good numbers."""
+
+    def _obey(self, goal: Goal) -> None:
+        if isinstance(goal, StopGoal) and goal.epoch == 1:
+            self._refuse("viejo", goal.seq, goal.epoch)
+        else:
+            super()._obey(goal)
+
+
+class Unlimited(Board):
+    """Goes wherever it is sent, its limits or not."""
+
+    def _refusal(self, goal: Goal) -> str | None:
+        word = super()._refusal(goal)
+        return None if word == "limite" else word
+
+
+class Dropping(Board):
+    """Lets go at whatever comes."""
+
+    def _act(self, goal: Goal) -> None:
+        super()._act(goal)
+        if isinstance(goal, (EffectorGoal, HomeGoal)) or getattr(goal, "mode", None) is StopMode.HALT:
+            self.body.switch_effector(False)
+
+
+def truncating(robot: Arm, body: ArmBody, **how: Any) -> Board:
+    return Board(robot, Truncating(robot, start=robot.reference, pickups=()), **how)
+
+
+BAD = [
+    pytest.param(Forgetful, {"old", "old epoch"}, Evidence.JOINTS, id="obeys old numbers"),
+    pytest.param(truncating, {"rounds"}, Evidence.STATE, id="cuts off"),
+    pytest.param(Eager, {"retained"}, Evidence.JOINTS, id="obeys retained"),
+    pytest.param(Deaf, {"silence"}, Evidence.JOINTS, id="deaf to beats"),
+    pytest.param(Unlatched, {"latch"}, Evidence.JOINTS, id="no latch"),
+    pytest.param(Boastful, {"halted", "silence"}, Evidence.JOINTS, id="done when halted"),
+    pytest.param(Believing, {"malformed"}, Evidence.STATE, id="half a goal"),
+    pytest.param(Unhalting, {"stop from anybody"}, Evidence.JOINTS, id="no halt from others"),
+    pytest.param(Unlimited, {"limits", "words"}, Evidence.STATE, id="no limits"),
+    pytest.param(Dropping, {"effector"}, Evidence.JOINTS, id="effector never on"),
+]
+
+
+@pytest.mark.parametrize(("kind", "names", "level"), BAD)
+def test_a_bad_board_fails_by_name(kind: Callable[..., Board], names: set[str], level: Evidence) -> None:
+    judge = trial(kind)
+    assert set(wrong(judge)) == names, wrong(judge)
+    assert judge.reached is level
+
+
+def test_a_board_that_says_only_its_code_reaches_state() -> None:
+    judge = trial(OnlyCodes)
+    assert wrong(judge) == {}
+    assert judge.reached is Evidence.STATE
+
+
+def test_silence_is_one_finding_and_no_level() -> None:
+    arm = PLANT.cell("sis_a").arm
+    judge, now = Judge(arm, epoch=50, now=0.0), 0.0
+    while not judge.over:
+        judge.step(now, [])
+        now = judge.next_deadline or now
+    assert list(wrong(judge)) == ["telemetry"]
+    assert judge.reached is None
