@@ -36,6 +36,14 @@ class Found:
 
 
 FOUND = {
+    "positions of a bridge that stalled while its broker was away were taken for invented": Found(
+        seed=344,
+        seconds=120,
+        faults=(
+            Fault(kind="bridge_stall", at=66.59, seconds=2.167, target="bridge", seed=148631179),
+            Fault(kind="broker_restart", at=66.625, seconds=4.202, target="broker", seed=316738146),
+        ),
+    ),
     "after a hold, a piece check woke its tree for ever, one rounding step apart": Found(
         seed=16,
         seconds=240,

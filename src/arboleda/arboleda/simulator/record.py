@@ -84,6 +84,9 @@ class Record:
             self._clear_news()
         if moment.delivered or moment.executed:
             self._look_at_boards()
+        inbox, now = self.world.broker.clients[BRIDGE].inbox, self.world.now
+        if self.world.to_plant.troubles or (inbox and inbox[0].at < now):  # also while nothing is delivered
+            self.slow_until = now + SLOW_S
         if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
             self._look_at_plant(plant)
         elif self.stepped:
@@ -132,11 +135,7 @@ class Record:
         boards.executed.clear()
         for name, goal in moment.executed:
             boards.execute(name, goal)
-        clients = self.world.broker.clients
-        boards.forget_read(clients)
-        inbox, now = clients[BRIDGE].inbox, self.world.now
-        if self.world.to_plant.troubles or (inbox and inbox[0].at < now):
-            self.slow_until = now + SLOW_S
+        boards.forget_read(self.world.broker.clients)
 
     def _look_at_plant(self, plant: Plant) -> None:
         moment = self.world.moment
