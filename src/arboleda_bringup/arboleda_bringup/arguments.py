@@ -41,7 +41,7 @@ ARGUMENTS = (
         name="dashboard",
         default="true",
         choices=SWITCH,
-        description="the HTTP side, in the process of the orchestrator",
+        description="the page, in the process of the orchestrator",
     ),
     Argument(name="rviz", default="true", choices=SWITCH, description="RViz2 with the shipped view"),
     Argument(
