@@ -19,7 +19,7 @@ from arboleda.core import text
 from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
 from arboleda.core.model import PlantModel
 
-from . import config, session, token_command, tree_command, verbs
+from . import bench_command, config, session, token_command, tree_command, verbs
 from .build import PARTS, Options, build
 from .client import Refused
 from .conformance import command as conformance
@@ -216,6 +216,7 @@ def status(
 token_command.add_to(cli)
 simulate.add_to(cli)
 conformance.add_to(cli)
+bench_command.add_to(cli)
 verbs.add_to(cli)
 
 

@@ -1,0 +1,24 @@
+"""Every benchmark by name: a module of that name with `run(scene) -> Result`.
+
+The first line of its docstring says what it measures.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from importlib.resources import files
+from types import ModuleType
+
+NAMES: tuple[str, ...] = ()
+
+
+def module(name: str) -> ModuleType:
+    """The benchmark of that name; its libraries are imported only now."""
+    return importlib.import_module(f".{name}", __package__)
+
+
+def about(name: str) -> str:
+    """The first line of the benchmark's docstring; nothing is imported for it."""
+    source = (files(__package__ or "") / f"{name}.py").read_text(encoding="utf-8")
+    return (ast.get_docstring(ast.parse(source)) or "").partition("\n")[0]

@@ -1,0 +1,80 @@
+"""Runs benchmarks one after the other and shows what they found."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from arboleda.app.simulate.screen import console, progress
+from arboleda.core.errors import ConfigError
+
+from . import catalog, report
+from .result import Result
+from .scene import Scene
+
+DONE, INTERRUPTED = 0, 130
+
+
+def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -> int:
+    """Run the named benchmarks, all where there are none; the figures go to the screen and to `file`.
+
+    The exit status; ConfigError for a name that is not one, or a file that cannot be written.
+    """
+    screen = console()
+    if listed:
+        for name in catalog.NAMES:
+            screen.print(Text(f"{name:<10} {catalog.about(name)}"), soft_wrap=True)
+        return DONE
+    _check(names, file)
+    try:
+        _all(names or catalog.NAMES, screen, quick, file)
+    except KeyboardInterrupt:
+        screen.print("interrupted; what was measured so far is above")
+        return INTERRUPTED
+    return DONE
+
+
+def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) -> None:
+    results: dict[str, Result] = {}
+    for name in names:
+        results[name] = _one(name, screen, quick)
+        _show(name, results[name], screen)
+        if file is not None:
+            _write(file, report.as_json(results, quick=quick))
+
+
+def _one(name: str, screen: Console, quick: bool) -> Result:
+    bench = catalog.module(name)
+    with progress(screen, name, None) as show, Scene(quick=quick, say=lambda said: show(said, 0)) as scene:
+        return bench.run(scene)
+
+
+def _show(name: str, result: Result, screen: Console) -> None:
+    screen.print(Text.assemble((name, "bold"), f": {catalog.about(name)}"), soft_wrap=True)
+    screen.print(report.table(result))
+    for line in result.notes:
+        screen.print(Text(line, style="dim"), soft_wrap=True)
+    screen.print()
+
+
+def _check(names: Sequence[str], file: Path | None) -> None:
+    unknown = [name for name in names if name not in catalog.NAMES]
+    for name in unknown:
+        near = get_close_matches(name, catalog.NAMES, 1)
+        meant = f" (did you mean {near[0]}?)" if near else ""
+        raise ConfigError((f"there is no benchmark '{name}'{meant}; there are {', '.join(catalog.NAMES)}",))
+    if file is not None:
+        _write(file, {})
+
+
+def _write(file: Path, content: dict[str, Any]) -> None:
+    try:
+        file.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise ConfigError((f"{file}: cannot be written: {error.strerror}",)) from None

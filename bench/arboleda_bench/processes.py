@@ -1,0 +1,93 @@
+"""Other processes of a benchmark: what they cost, and that none is left behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import IO
+
+from arboleda.core.errors import ArboledaError
+
+PATIENCE_S = 15.0
+TICKS = os.sysconf("SC_CLK_TCK")
+PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+class Process:
+    """A program that runs beside the benchmark; what it says goes to `log`, except what `read` takes."""
+
+    def __init__(self, command: Sequence[str], log: Path, environ: Mapping[str, str] | None = None) -> None:
+        self.name = log.stem
+        self._log = log
+        with log.open("wb") as errors:
+            self._popen = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                env={**os.environ, **(environ or {})},
+                text=True,
+                start_new_session=True,  # Ctrl-C is for the benchmark, which ends them in order
+            )
+
+    @classmethod
+    def python(cls, module: str, *args: str, log: Path) -> Process:
+        """A Python module run as a program, by this interpreter."""
+        return cls([sys.executable, "-m", module, *args], log)
+
+    @property
+    def pid(self) -> int:
+        return self._popen.pid
+
+    @property
+    def cpu_s(self) -> float:
+        """Seconds of processor time that it has had so far, all its threads."""
+        fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / TICKS
+
+    @property
+    def memory(self) -> int:
+        """Bytes of memory that are its own: resident, not shared with a file."""
+        _, resident, shared, *_ = Path(f"/proc/{self.pid}/statm").read_text().split()
+        return (int(resident) - int(shared)) * PAGE
+
+    def read(self) -> str:
+        """The next line that it prints; ArboledaError where it has ended instead."""
+        line = _pipe(self._popen.stdout).readline()
+        if not line:
+            self._popen.wait(PATIENCE_S)
+            raise ArboledaError(f"{self.name} ended early: {self._last_words()}")
+        return line.rstrip("\n")
+
+    def write(self, line: str) -> None:
+        """Hand it a line."""
+        pipe = _pipe(self._popen.stdin)
+        pipe.write(line + "\n")
+        pipe.flush()
+
+    def check(self) -> None:
+        """ArboledaError where it has ended."""
+        if self._popen.poll() is not None:
+            raise ArboledaError(f"{self.name} ended early: {self._last_words()}")
+
+    def end(self) -> None:
+        """Interrupt it and wait for its end."""
+        self._popen.send_signal(signal.SIGINT)
+        try:
+            self._popen.communicate(timeout=PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self._popen.kill()
+            self._popen.communicate()
+
+    def _last_words(self) -> str:
+        lines = self._log.read_text(errors="replace").strip().splitlines()
+        return lines[-1] if lines else f"exit status {self._popen.returncode}"
+
+
+def _pipe(pipe: IO[str] | None) -> IO[str]:
+    assert pipe is not None
+    return pipe

@@ -1,0 +1,94 @@
+"""What was measured: a table for people, JSON for programs."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import platform
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from arboleda import __version__
+
+from .result import Figure, Result
+
+COLUMNS = ("figure", "ours", "floor", "ratio", "aim", "")
+
+
+def table(result: Result) -> Table:
+    """The figures of one benchmark; what falls short of its aim is marked."""
+    made = Table(box=None, pad_edge=False)
+    for column in COLUMNS:
+        made.add_column(column, justify="left" if column in ("figure", "aim", "") else "right")
+    for figure in result.figures:
+        made.add_row(*_cells(figure), style="yellow" if figure.reached is False else "")
+    return made
+
+
+def as_json(results: Mapping[str, Result], *, quick: bool) -> dict[str, Any]:
+    """Every figure, and the machine it was measured on."""
+    return {
+        "arboleda": __version__,
+        "date": datetime.date.today().isoformat(),
+        "machine": machine(),
+        "quick": quick,
+        "benches": {name: _plain(result) for name, result in results.items()},
+    }
+
+
+def machine() -> dict[str, Any]:
+    """What one must know of a machine to compare its figures."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "system": f"{platform.system()} {platform.release()}",
+        "python": platform.python_version(),
+    }
+
+
+def _cells(figure: Figure) -> tuple[str, ...]:
+    ratio = figure.ratio
+    return (
+        figure.name,
+        f"{number(figure.ours)} {figure.unit}".strip(),
+        "-" if figure.floor is None else f"{number(figure.floor)} {figure.unit}".strip(),
+        "-" if ratio is None else f"{number(ratio)}x",
+        str(figure.aim or "-"),
+        {True: "reached", False: "falls short", None: ""}[figure.reached],
+    )
+
+
+def number(value: float) -> str:
+    """Three digits that mean something, without an exponent."""
+    if value == int(value) or abs(value) >= 100:
+        return f"{value:.0f}"
+    return f"{value:.3g}" if abs(value) >= 0.001 else f"{value:.6f}"
+
+
+def _plain(result: Result) -> dict[str, Any]:
+    figures = [
+        {
+            "name": each.name,
+            "unit": each.unit,
+            "ours": each.ours,
+            "floor": each.floor,
+            "ratio": each.ratio,
+            "aim": str(each.aim) if each.aim else None,
+            "reached": each.reached,
+        }
+        for each in result.figures
+    ]
+    return {"figures": figures, "notes": list(result.notes)}
+
+
+def _processor() -> str:
+    """The name that Linux knows the processor by."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.machine()
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()

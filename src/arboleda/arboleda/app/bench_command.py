@@ -1,0 +1,45 @@
+"""The command `arboleda bench`: its options; the benchmarks themselves are in bench/."""
+
+from __future__ import annotations
+
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.core.errors import StartError
+
+GROUP = "arboleda.bench"
+MISSING = "the benchmarks are not installed here; they come with the whole of Arboleda: pip install arboleda"
+HELP = """Measure this machine: ours against a floor of the same run, so that figures of two machines compare.
+
+\b
+arboleda bench                   all of them, about ten minutes
+arboleda bench --quick           all of them, under two minutes, figures less certain
+arboleda bench reaction chain    these two
+arboleda bench --list            which there are
+
+Leave the machine alone meanwhile. What falls short of its aim is marked.
+What the figures mean: docs/performance.md.
+
+Exit status: 0 measured, 1 a benchmark could not run, 2 bad input, 130 Ctrl-C."""
+
+Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="Benchmarks. [default: all]")]
+Json = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write every figure and the machine there.")
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Short runs: under two minutes for all of them.")]
+Listed = Annotated[bool, typer.Option("--list", help="Name the benchmarks and what they measure, and exit.")]
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+
+    def bench(names: Names = None, json: Json = None, quick: Quick = False, listed: Listed = False) -> None:
+        found = entry_points(group=GROUP)
+        if not found:
+            raise StartError(MISSING)
+        raise typer.Exit(next(iter(found)).load()(names or [], quick=quick, file=json, listed=listed))
+
+    cli.command("bench", help=HELP, short_help=HELP.partition("\n")[0])(bench)
