@@ -10,7 +10,7 @@ import importlib
 from importlib.resources import files
 from types import ModuleType
 
-NAMES: tuple[str, ...] = ()
+NAMES: tuple[str, ...] = ("step",)
 
 
 def module(name: str) -> ModuleType:
