@@ -10,7 +10,7 @@ import importlib
 from importlib.resources import files
 from types import ModuleType
 
-NAMES: tuple[str, ...] = ("step", "simulate")
+NAMES: tuple[str, ...] = ("bridge", "step", "simulate")
 
 
 def module(name: str) -> ModuleType:

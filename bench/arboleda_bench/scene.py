@@ -19,6 +19,7 @@ LAST_DOMAIN = 101  # the DDS ports of higher ROS domains lie among the ports tha
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
 START_S = 10.0
 POLL_S = 0.02
+MOSQUITTO = "allow_anonymous true\nset_tcp_nodelay true\n"  # the latter as docs/how-to/real-boards.md asks
 
 
 class Scene:
@@ -68,7 +69,7 @@ class Scene:
             raise ArboledaError("this benchmark needs the MQTT broker mosquitto: apt install mosquitto")
         port = free_port()
         config = self.folder / f"mosquitto_{port}.conf"
-        config.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+        config.write_text(f"listener {port} 127.0.0.1\n{MOSQUITTO}")
         process = Process([program, "-c", str(config)], config.with_suffix(".log"))
         self._processes.append(process)
         wait_for(lambda: _answers(port), "mosquitto", process.check)
