@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from builtin_interfaces.msg import Time
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
 
@@ -76,14 +75,13 @@ def joints_report(at: float, robot: Robot, message: JointState) -> Report:
     return Report(at=at, robot=robot.name, q=measured)
 
 
-def joint_state(robot: Robot, report: Report, stamp: Time) -> JointState | None:
-    """The measured joints of a report; None where it holds none, or nobody hears the robot."""
-    measured = _measured(robot, report)
-    if measured is None or report.state is MotionState.NO_LINK:
+def measured_joints(robot: Robot, report: Report) -> tuple[float, ...] | None:
+    """The joints of a report, x and y of a mobile; None where it holds none, or nobody hears the robot."""
+    if report.state is MotionState.NO_LINK:
         return None
-    message = JointState(name=list(joint_names(robot)), position=list(measured))
-    message.header.stamp = stamp
-    return message
+    if isinstance(robot, Mobile):
+        return None if report.node is None else robot.grid.position(report.node)
+    return report.q
 
 
 def joint_names(robot: Robot) -> tuple[str, ...]:
@@ -161,9 +159,3 @@ def _nearest(mobile: Mobile, x: float, y: float) -> int | None:
     distances = [math.dist((x, y), grid.position(node)) for node in range(grid.size)]
     node = min(range(grid.size), key=distances.__getitem__)
     return node if distances[node] <= _AT_NODE * grid.pitch else None
-
-
-def _measured(robot: Robot, report: Report) -> tuple[float, ...] | None:
-    if isinstance(robot, Mobile):
-        return None if report.node is None else robot.grid.position(report.node)
-    return report.q

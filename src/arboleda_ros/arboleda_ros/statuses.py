@@ -1,4 +1,4 @@
-"""`/{robot}/status`: what the wire says of a report, as a DiagnosticStatus and back."""
+"""DiagnosticStatus: plain data made into one, and what the `status` of a robot reports."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import Robot
-from arboleda.wire.status import Status, from_status, to_status
+from arboleda.wire.status import Status, from_status
 
 
 def diagnostic(
@@ -20,12 +20,6 @@ def diagnostic(
     return DiagnosticStatus(
         level=bytes([level]), name=name, hardware_id=hardware_id, message=message, values=pairs
     )
-
-
-def status_of(robot: Robot, report: Report) -> DiagnosticStatus:
-    """The message the bridge publishes for one report."""
-    plain = to_status(robot, report)
-    return diagnostic(plain.name, plain.hardware_id, plain.level, plain.message, plain.values)
 
 
 def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:

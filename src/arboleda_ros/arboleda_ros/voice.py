@@ -1,0 +1,96 @@
+"""What one robot reports, on its topics.
+
+Publishing copies a message, and to make one takes longer than to fill it: so each is made once, and changed
+from report to report by the one thread that publishes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from operator import attrgetter
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.clock import Clock
+from rclpy.publisher import Publisher
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, UInt8
+
+from arboleda.core.messages import Report
+from arboleda.core.model import Arm, MotionState, Robot
+from arboleda.wire.status import to_status
+
+from . import convert
+
+Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there
+_STATES = {state: UInt8(data=int(state)) for state in MotionState}
+_PIECES = {piece: Bool(data=piece) for piece in (False, True)}
+_all_but_at = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
+
+
+class Voice:
+    """The publishers of one robot; only arms have a piece sensor."""
+
+    def __init__(self, robot: Robot, speak: Speak, clock: Clock) -> None:
+        self._words, self._position, self._clock = StatusMessage(robot), JointsMessage(robot), clock
+        self.status = speak(DiagnosticStatus, f"{robot.name}/status", alone=True)
+        self.state = speak(UInt8, f"{robot.name}/motion_state")
+        self.joints = speak(JointState, convert.joint_states_topic(robot))
+        self.piece = speak(Bool, f"{robot.name}/piece_detected") if isinstance(robot, Arm) else None
+
+    def say(self, report: Report) -> None:
+        """Publish one report on every topic that carries a part of it."""
+        self.status.publish(self._words.of(report))
+        if report.state is not None:
+            self.state.publish(_STATES[report.state])
+        position = self._position.of(report, self._clock)
+        if position is not None:
+            self.joints.publish(position)
+        if self.piece is not None and report.piece is not None:
+            self.piece.publish(_PIECES[report.piece])
+
+
+class StatusMessage:
+    """A robot's `status`."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._message = DiagnosticStatus()
+        self._pairs: dict[str, KeyValue] = {}
+        self._said: tuple[object, ...] = ()
+
+    def of(self, report: Report) -> DiagnosticStatus:
+        """The message for one report; the next call changes it."""
+        said = _all_but_at(report)
+        if said != self._said:
+            self._write(report)
+            self._said = said
+        return self._message
+
+    def _write(self, report: Report) -> None:
+        plain, message = to_status(self._robot, report), self._message
+        message.name, message.hardware_id, message.message = plain.name, plain.hardware_id, plain.message
+        message.level = bytes([plain.level])
+        if plain.values.keys() != self._pairs.keys():
+            self._pairs = {key: KeyValue(key=key) for key in plain.values}
+            message.values = list(self._pairs.values())
+        for key, value in plain.values.items():
+            self._pairs[key].value = value
+
+
+class JointsMessage:
+    """A robot's `joint_states`: only measured values."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._message = JointState(name=list(convert.joint_names(robot)))
+
+    def of(self, report: Report, clock: Clock) -> JointState | None:
+        """The message for one report, which the next call changes; None where nothing was measured."""
+        measured = convert.measured_joints(self._robot, report)
+        if measured is None:
+            return None
+        self._message.position = measured
+        stamp = self._message.header.stamp
+        stamp.sec, stamp.nanosec = clock.now().seconds_nanoseconds()
+        return self._message

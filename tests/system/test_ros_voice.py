@@ -1,0 +1,69 @@
+"""Messages that are made once and changed from report to report."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import permutations
+
+import pytest
+
+pytest.importorskip("rclpy", reason="rclpy is not installed")
+
+from rclpy.clock import Clock
+
+from arboleda.core.messages import Report
+from arboleda.core.model import MotionState
+from arboleda.testing import shipped
+from arboleda_ros import statuses
+from arboleda_ros.voice import JointsMessage, StatusMessage
+
+PLANT = shipped("sis_a")
+ARM, MOBILE = PLANT.robots["ra1"], PLANT.robots["rm_sis_a"]
+MOVING = Report(
+    at=0.0, robot="ra1", epoch=9, boot_id=4, state=MotionState.MOVING, q=(0.1, -0.2, 0.03), piece=True
+)
+FURTHER = replace(MOVING, q=(0.2, -0.2, 0.03), accepted="7-2")
+REFUSED = Report(at=0.0, robot="ra1", epoch=9, rejected="7-0", refusal="limite")
+GONE = Report(at=0.0, robot="ra1", epoch=9, state=MotionState.NO_LINK, q=(0.2, -0.2, 0.03))
+REPORTS = [MOVING, FURTHER, REFUSED, GONE]
+
+
+@pytest.mark.parametrize("reports", permutations(REPORTS))
+def test_a_status_holds_nothing_of_the_reports_before(reports):
+    status = StatusMessage(ARM)
+    for report in reports:
+        message = status.of(report)
+        assert message == StatusMessage(ARM).of(report)
+        assert statuses.report_of(0.0, ARM, message) == report
+
+
+def test_a_report_that_repeats_the_last_has_the_same_status():
+    status = StatusMessage(ARM)
+    assert statuses.report_of(0.0, ARM, status.of(MOVING)) == MOVING
+    assert statuses.report_of(0.0, ARM, status.of(MOVING.again(1.0))) == MOVING
+
+
+def test_joints_are_those_of_the_last_report_and_stamped_anew():
+    joints, clock = JointsMessage(ARM), Clock()
+    first = joints.of(MOVING, clock)
+    assert (list(first.name), list(first.position)) == (
+        ["r1_brazo_joint", "r1_antebrazo_joint", "r1_efector_joint"],
+        list(MOVING.q),
+    )
+    stamp = (first.header.stamp.sec, first.header.stamp.nanosec)
+    second = joints.of(FURTHER, clock)
+    assert list(second.position) == list(FURTHER.q)
+    assert (second.header.stamp.sec, second.header.stamp.nanosec) > stamp
+
+
+@pytest.mark.parametrize("report", [REFUSED, GONE], ids=["not measured", "nobody hears it"])
+def test_joints_that_were_not_measured_make_no_message(report):
+    joints = JointsMessage(ARM)
+    joints.of(MOVING, Clock())
+    assert joints.of(report, Clock()) is None
+
+
+def test_a_mobile_stands_where_its_node_is():
+    report = Report(at=0.0, robot="rm_sis_a", state=MotionState.STOPPED, node=4)
+    message = JointsMessage(MOBILE).of(report, Clock())
+    assert tuple(message.position) == MOBILE.grid.position(4)
