@@ -10,12 +10,18 @@ import importlib
 from importlib.resources import files
 from types import ModuleType
 
-NAMES: tuple[str, ...] = ("bridge", "step", "simulate")
+from arboleda.core.errors import ArboledaError
+from arboleda_ros import missing
+
+NAMES = ("reaction", "chain", "polling", "cycle", "bridge", "step", "simulate")
 
 
 def module(name: str) -> ModuleType:
-    """The benchmark of that name; its libraries are imported only now."""
-    return importlib.import_module(f".{name}", __package__)
+    """The benchmark of that name; ArboledaError where a library of it is missing."""
+    try:
+        return importlib.import_module(f".{name}", __package__)
+    except ImportError as error:
+        raise ArboledaError(missing.sentence(error)) from error
 
 
 def about(name: str) -> str:

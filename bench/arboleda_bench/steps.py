@@ -1,0 +1,49 @@
+"""The storage recipe as a plain list of commands, for the floors and for trees of other making."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import count
+
+from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.model import Cell
+
+PATH, STATION = "0B", 1
+GOLDEN = 0.6180339887498949  # its multiples fall evenly into any interval
+
+
+def task(cell: Cell) -> str:
+    """The task that all benchmarks give."""
+    return f"{cell.name} {PATH} {STATION}"
+
+
+def storage(cell: Cell, epoch: int = 1) -> list[Command]:
+    """What the cell's robots are told in one storage task; the mobile robot stands where the last one ended.
+
+    The pauses of the recipe are left out: one after the task's start and one after each effector command.
+    """
+    arm, mobile, path = cell.arm.name, cell.mobile.name, cell.path(PATH)
+    back = cell.mobile.grid.route(path.nodes[-1], path.nodes[0])
+    names = (f"{epoch}-{number}" for number in range(1, 8))
+    return [
+        FollowPath(id=next(names), robot=mobile, nodes=back),
+        FollowPath(id=next(names), robot=mobile, nodes=path.nodes),
+        MoveJoints(id=next(names), robot=arm, q=cell.pickup.q),
+        SetEffector(id=next(names), robot=arm, on=True),
+        MoveJoints(id=next(names), robot=arm, q=cell.stations[STATION].q),
+        SetEffector(id=next(names), robot=arm, on=False),
+        MoveJoints(id=next(names), robot=arm, q=cell.home.q),
+    ]
+
+
+def end(cell: Cell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
+    """Where a move ends, as the robot's joint states say it: rad and m."""
+    if isinstance(step, FollowPath):
+        return cell.mobile.grid.position(step.nodes[-1])
+    return cell.arm.quantised(step.q)
+
+
+def lengths(shortest_s: float, longest_s: float) -> Callable[[], float]:
+    """How long each further move takes: even over the interval, and never in step with anything periodic."""
+    number = count()
+    return lambda: shortest_s + (longest_s - shortest_s) * (next(number) * GOLDEN % 1.0)

@@ -1,0 +1,59 @@
+"""The storage recipe as a list: what the floors say is what the plant says."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.core.messages import Command, FollowPath, MoveJoints, TaskState
+from arboleda.core.model import Cell
+from arboleda.testing.rig import Rig
+from arboleda_bench import plants, steps
+
+
+@pytest.fixture
+def model(tmp_path):
+    return load(plants.write(tmp_path / "plant.yaml", 1, near=True, link="mqtt", evidence="ids"))
+
+
+def without_ids(commands: Iterable[object]) -> list[Command]:
+    return [replace(each, id="") for each in commands if isinstance(each, Command)]
+
+
+def test_the_floors_say_what_the_plant_says(model):
+    rig, cell = Rig(model), model.cells[0]
+    for _ in range(2):  # the first one begins where the mobile robot stands at the start
+        rig.wait(1.0)
+        del rig.sent[:]
+        task = rig.submit(steps.task(cell)).task
+        assert rig.wait(60.0, until=lambda task=task: rig.outcomes()[task].state is TaskState.DONE)
+    assert without_ids(rig.sent) == without_ids(steps.storage(cell))
+
+
+def test_goals_differ_in_their_first_coordinate_so_that_a_floor_may_look_at_that_alone(model):
+    cell = model.cells[0]
+    moves = [step for step in steps.storage(cell) if isinstance(step, FollowPath | MoveJoints)]
+    for robot in cell.robots:
+        firsts = [steps.end(cell, move)[0] for move in moves if move.robot == robot.name]
+        assert all(abs(a - b) > 5e-3 for a in firsts for b in firsts if a is not b)
+
+
+def test_lengths_fall_evenly_into_every_part_of_their_interval():
+    length = steps.lengths(0.25, 0.75)
+    found = sorted(length() for _ in range(100))
+    tenths = [sum(0.25 + 0.05 * k <= each < 0.30 + 0.05 * k for each in found) for k in range(10)]
+    assert min(tenths) >= 9 and max(tenths) <= 11
+
+
+def test_a_plant_for_short_moves_has_cells_that_are_alike(tmp_path):
+    cells = load(plants.write(tmp_path / "two.yaml", 2, near=True, link="ros", evidence="joints")).cells
+    assert [(cell.name, cell.arm.name, cell.mobile.name) for cell in cells] == [
+        ("c1", "a1", "m1"),
+        ("c2", "a2", "m2"),
+    ]
+    assert _poses(cells[0]) == _poses(cells[1])
+
+
+def _poses(cell: Cell) -> list[tuple[float, ...]]:
+    return [pose.q for pose in cell.poses]
