@@ -56,6 +56,7 @@ class Store:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._opened: sqlite3.Connection | None = None
+        self._durable: bool | None = None  # what commits are now; None: not said yet
 
     def open(self) -> None:
         """Open the file, a new one where there is none; StartError; idempotent."""
@@ -68,7 +69,7 @@ class Store:
             except BaseException:  # whatever it is, Ctrl-C too, the file is not left open
                 db.close()
                 raise
-        self._opened = db
+        self._opened, self._durable = db, None
 
     def close(self) -> None:
         """Give the file back; idempotent."""
@@ -122,7 +123,9 @@ class Store:
 
     def _commit(self, statement: str, values: tuple[object, ...], *, durable: bool) -> None:
         with self._explained(ArboledaError):
-            self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
+            if durable is not self._durable:  # most commits are as the one before: a command waits for them
+                self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
+                self._durable = durable
             self._db.execute(statement, values)
 
     def _prepare(self, db: sqlite3.Connection) -> None:
