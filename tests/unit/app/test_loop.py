@@ -222,6 +222,25 @@ def test_an_observer_sees_every_step(make):
     assert seen == [(10.0, ("a",), ["a"])]
 
 
+def test_an_observer_may_ask_for_another_step_before_the_next_deadline(make, machine, clock, sent):
+    def wait(condition, timeout):
+        if timeout is None:
+            condition.wait()
+        else:
+            clock.now += timeout
+
+    def ask(now, events, messages):
+        if now < 11.0:
+            loop.wake_by(11.0)
+
+    machine.alarm = 12.5
+    loop = make(wait=wait, on_step=ask)
+    loop.post("a")
+    loop.start()
+    sent.wait("a", "ring")
+    assert machine.steps == [(10.0, ("a",)), (11.0, ()), (12.5, ())]
+
+
 def test_reading_happens_between_two_steps(make, machine, sent):
     loop = make()
     loop.start()

@@ -139,6 +139,48 @@ def answer(event: OperatorRequest, refusal: str | None = None) -> OperatorAnswer
     return OperatorAnswer(verb=event.verb, scope=event.scope, refusal=refusal, request=event.request)
 
 
+@pytest.fixture
+def shows(plant, monkeypatch):
+    """The versions that were shown, while the plant's clock says what `now[0]` is."""
+    now, shown = [100.0], []
+    monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
+    monkeypatch.setattr(orchestrator.view, "snapshot", lambda plant: plant.version)
+    monkeypatch.setattr(Script, "version", 1, raising=False)
+    plant.watchers.append(shown.append)
+    return now, shown
+
+
+def test_a_change_is_shown_a_little_later_with_what_followed_at_once(plant, shows, monkeypatch):
+    now, shown = shows
+    turn(plant, ON)
+    now[0] += orchestrator.SETTLE_S / 2
+    monkeypatch.setattr(Script, "version", 2)
+    turn(plant)
+    assert shown == []
+    now[0] += orchestrator.SETTLE_S
+    turn(plant)
+    assert shown == [2]
+    turn(plant)
+    assert shown == [2]
+
+
+def test_without_a_change_it_is_shown_now_and_then(plant, shows):
+    now, shown = shows
+    for _ in range(2):
+        now[0] += orchestrator.VIEW_S
+        turn(plant)
+        now[0] += orchestrator.SETTLE_S
+        turn(plant)
+    assert shown == [1, 1]
+
+
+def test_the_last_change_is_shown_before_the_end(plant, shows):
+    _, shown = shows
+    turn(plant, ON)
+    plant.stop()
+    assert shown == [1]
+
+
 def test_an_operators_request_is_answered(plant):
     future = plant.operate(Verb.HOME, "ra1", by_hand=True)
     plant.plant.says = lambda events: [answer(events[0], "ra1 moves")]

@@ -67,6 +67,7 @@ class Loop(Generic[Event, Message]):
         self._inbox: deque[Event] = deque()
         self._awake = threading.Condition()
         self._ending = False
+        self._step_by: float | None = None
         self._between_steps = threading.Lock()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
@@ -90,6 +91,10 @@ class Loop(Generic[Event, Message]):
         with self._between_steps:
             return fn(self._machine)
 
+    def wake_by(self, at: float) -> None:
+        """Step by `at` at the latest, even without an event; from `on_step` only."""
+        self._step_by = at
+
     def stop(self) -> None:
         """Step what was posted so far, end, and wait for the end; idempotent."""
         self._end()
@@ -101,6 +106,7 @@ class Loop(Generic[Event, Message]):
         with self._awake:
             events = tuple(self._inbox)
             self._inbox.clear()
+            self._step_by = None
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
@@ -127,12 +133,16 @@ class Loop(Generic[Event, Message]):
         """Whether there is something to step; False at the end."""
         with self._awake:
             while not self._inbox and not self._ending:
-                deadline = self._machine.next_deadline
+                deadline = self._deadline()
                 timeout = None if deadline is None else deadline - self._clock()
                 if timeout is not None and timeout <= 0:
                     return True
                 self._wait(self._awake, timeout)
             return bool(self._inbox)
+
+    def _deadline(self) -> float | None:
+        due = self._machine.next_deadline
+        return self._step_by if due is None else due if self._step_by is None else min(due, self._step_by)
 
     def _end(self) -> None:
         with self._awake:

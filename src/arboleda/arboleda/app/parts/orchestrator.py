@@ -37,6 +37,8 @@ from .part import Crash
 
 TASKS = logging.getLogger("arboleda.tasks")
 VIEW_S = 1.0
+# A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
+SETTLE_S = 0.01
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
 
 
@@ -80,6 +82,7 @@ class Orchestrator:
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
+        self._show_at: float | None = None  # while there is a change that nobody was shown
         self._waiting: dict[str, Future[Any]] = {}
         self._at_rest = threading.Event()
 
@@ -126,6 +129,8 @@ class Orchestrator:
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
+        if self._show_at is not None:
+            self._show(time.monotonic())
 
     def _send(self, message: Command | Notice) -> None:
         if isinstance(message, Remember | Journal):
@@ -181,7 +186,15 @@ class Orchestrator:
         version, shown_at = self._shown
         if version == self.plant.version and now - shown_at < VIEW_S:
             return
-        self._shown = (self.plant.version, now)
+        if self._show_at is None:
+            self._show_at = now + SETTLE_S
+        if now < self._show_at:
+            self.loop.wake_by(self._show_at)
+        else:
+            self._show(now)
+
+    def _show(self, now: float) -> None:
+        self._shown, self._show_at = (self.plant.version, now), None
         snapshot = view.snapshot(self.plant)
         for watcher in self.watchers:
             watcher(snapshot)
