@@ -13,7 +13,7 @@ from types import ModuleType
 from arboleda.core.errors import ArboledaError
 from arboleda_ros import missing
 
-NAMES = ("reaction", "chain", "polling", "cycle", "bridge", "step", "simulate")
+NAMES = ("reaction", "chain", "polling", "cycle", "idle", "scale", "burst", "bridge", "step", "simulate")
 
 
 def module(name: str) -> ModuleType:

@@ -1,0 +1,108 @@
+"""Played robots over ROS 2, through the topics of the shipped bridge, and tasks as a user asks for them."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from arboleda.app.config import load
+from arboleda.core.errors import ArboledaError, StartError
+
+from .played import Crew
+from .processes import Process
+from .scene import wait_for
+
+NEEDS = "this benchmark needs ROS 2 for Python: pip install arboleda[ros], or source a ROS 2 installation"
+DISCOVERY_S = 20.0
+DEPTH = 1000  # of the user's publisher: DDS forgets what it cannot send as fast as it is asked
+HEARD = 10_000  # lines of /task_status that may wait to be read
+
+
+class CrewOnRos:
+    """The robots of a plant file in this process, and a user; made before the plant's node answers.
+
+    `changes` is what /task_status told, in order.
+    """
+
+    def __init__(self, plant: Path, *, move_s: float = 1.0) -> None:
+        try:
+            from rclpy.qos import DurabilityPolicy, QoSProfile
+            from std_msgs.msg import String
+
+            from arboleda_ros.link import connect
+        except ImportError as error:
+            raise StartError(NEEDS) from error
+        model = load(plant)
+        self.cells = [cell.name for cell in model.cells]
+        self.changes: list[dict[str, Any]] = []
+        self._text = String
+        self._link = connect()
+        self._heard_plant = False
+        self._busy = False
+        self._number = count()
+        self._port = self._link.bridge(model, self._on_message, time.monotonic)
+        self.crew = Crew(model, self._port.send, move_s=move_s)
+        user = self._link.node("user")
+        self._tasks = user.create_publisher(String, "task_request", DEPTH)
+        deep = QoSProfile(depth=HEARD, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        user.create_subscription(String, "task_status", self._on_status, deep)
+        self._node = user
+
+    def __enter__(self) -> CrewOnRos:
+        self._link.start()
+        self.crew.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.crew.stop()
+        self._link.close()
+
+    def wait_for_the_plant(self, node: Process) -> None:
+        """Wait until the plant hears this process, and all its robots."""
+        wait_for(lambda: self._heard_plant, "the orchestrator", node.check, DISCOVERY_S)
+        wait_for(lambda: self._tasks.get_subscription_count(), "task_request", node.check, DISCOVERY_S)
+        wait_for(lambda: self._node.count_publishers("task_status"), "task_status", node.check, DISCOVERY_S)
+
+    def fall_silent(self) -> None:
+        """No robot says anything any more."""
+        self.crew.stop()
+
+    def ask(self, text: str) -> None:
+        self._tasks.publish(self._text(data=text))
+
+    def keep_busy(self) -> None:
+        """Ask for a task of every cell, and for its next one whenever one begins."""
+        self._busy = True
+        for cell in self.cells:
+            self._ask_cell(cell)
+
+    def reactions_in(self, seconds: float) -> Sequence[float]:
+        """The reactions of so many seconds, once every cell has begun; ArboledaError where a task fails."""
+        wait_for(lambda: len(self._begun()) == len(self.cells), "a cell")
+        self.crew.reactions.clear()
+        time.sleep(seconds)
+        found = list(self.crew.reactions)
+        bad = [each for each in self.changes if each["state"] not in ("queued", "running", "done")]
+        if bad or not found:
+            raise ArboledaError(f"a task did not end well: {bad[0] if bad else 'none moved'}")
+        return found
+
+    def _begun(self) -> set[str]:
+        return {each["cell"] for each in self.changes if each["state"] == "running"}
+
+    def _ask_cell(self, cell: str) -> None:
+        self.ask(f"{cell} 0B {next(self._number) % 9}")
+
+    def _on_message(self, event: Any) -> None:
+        self._heard_plant = True
+        self.crew.send(event.message)
+
+    def _on_status(self, message: Any) -> None:
+        change = json.loads(message.data)
+        self.changes.append(change)
+        if self._busy and change["state"] == "running":
+            self._ask_cell(change["cell"])
