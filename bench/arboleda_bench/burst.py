@@ -22,7 +22,7 @@ CELLS = 10
 MOVE_S = 0.01
 TIMING = {"dwell_s": 0.0}
 PACE_HZ = 20.0
-QUIET_S = 3.0  # without a word about any task: no more will come
+QUIET_S = 10.0  # without a word about any task: no more will come
 LIMIT_S = 120.0
 ENDED = frozenset({"done", "failed", "cancelled"})
 OVER = ENDED | {"refused"}
@@ -88,7 +88,7 @@ def _measured(burst: Burst, user: CrewOnRos, node: Process) -> list[Figure]:
 def _asked(burst: Burst, user: CrewOnRos) -> Sequence[str]:
     """Ask for all tasks of a burst; their ids."""
     began = time.monotonic()
-    ids = [f"b{len(user.changes)}-{number}" for number in range(burst.tasks)]
+    ids = [f"b{time.monotonic_ns()}-{number}" for number in range(burst.tasks)]
     for number, id in enumerate(ids):
         if burst.pace_hz is not None:
             time.sleep(max(0.0, began + number / burst.pace_hz - time.monotonic()))

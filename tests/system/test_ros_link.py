@@ -53,6 +53,8 @@ BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATE = QoSProfile(
     depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
+MANY = 1000
+DEEP = QoSProfile(depth=MANY, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PLANT = shipped("sis_a")
 MOVE = MoveJoints(id="7-1", robot="ra1", q=(0.5, -0.25, 0.0625))
 DRIVE = FollowPath(id="7-2", robot="rm_sis_a", nodes=(0, 3, 4))
@@ -304,6 +306,37 @@ def answered(side: Side, refusal: str | None = None) -> OperatorRequest:
     asked = eventually(lambda: side.events.pop() if side.events else None)
     side.port.send(OperatorAnswer(verb=asked.verb, scope="", request=asked.request, refusal=refusal))
     return asked
+
+
+def test_no_task_of_a_burst_is_lost_while_the_plant_is_busy(links):
+    free, texts = threading.Event(), []
+
+    def on_event(event: TaskRequest) -> None:
+        free.wait(WAIT_S)
+        texts.append(event.text)
+
+    plant = links()
+    plant.orchestrator(PLANT, on_event, time.monotonic)
+    plant.start()
+    asked = [f"sis_a 0B 7 #{number}" for number in range(MANY)]
+    user = Stranger(links())
+    for text in asked:
+        user.say("task_request", String(data=text), DEEP)
+    free.set()
+    eventually(lambda: len(texts) == MANY)
+    assert texts == asked
+
+
+def test_no_line_of_a_burst_of_changes_is_lost(links):
+    plant, user = Side(links(), "orchestrator", PLANT), Stranger(links())
+    heard = user.hear(String, "task_status", DEEP)
+    ids = [f"t-7-{number}" for number in range(MANY)]
+    for id in ids:
+        plant.port.send(TaskChanged(task=id, text="sis_a 0B 7", cell="sis_a", state=TaskState.QUEUED))
+        if id == ids[0]:
+            eventually(lambda: heard)
+    eventually(lambda: len(heard) == MANY)
+    assert [json.loads(line.data)["id"] for line in heard] == ids
 
 
 def test_every_verb_is_a_service_for_the_whole_plant(links):

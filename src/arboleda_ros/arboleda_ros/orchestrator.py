@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
@@ -37,6 +38,8 @@ if TYPE_CHECKING:  # it is there only where arboleda_interfaces is built
     from .typed.offer import Offer
 
 LOG = logging.getLogger("arboleda.ros")
+UNHEARD = qos.TASK_STATUS.depth // 2
+CATCH_UP = Duration(seconds=0.02)  # who hears later than that loses the oldest
 TYPES = "arboleda_interfaces"
 Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
 
@@ -64,9 +67,10 @@ class OrchestratorPort(Port):
         }
         self._heartbeat = self._speak(UInt32, "plant/heartbeat", qos.COMMAND, alone=True)
         self._start = self._speak(UInt8, "system/start", qos.COMMAND)
+        self._unheard = 0
         self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
         self._view = self._speak(String, "plant/view", qos.VIEW)
-        self._listen(String, "task_request", self._on_request, qos.COMMAND)
+        self._listen(String, "task_request", self._on_request, qos.TASK_REQUEST)
         self._asker = Asker(on_event, clock)
         self._verbs = VerbServices(node, self._asker)
         self._offer = self._offered([cell.name for cell in model.cells])
@@ -118,10 +122,18 @@ class OrchestratorPort(Port):
         return Offer(self._node, self._speak, cells, self._asker)
 
     def _task_changed(self, change: TaskChanged) -> None:
+        self._keep_room()
         self._task_status.publish(String(data=json.dumps(view.change(change), ensure_ascii=False)))
         self._asker.answered(change)
         if self._offer is not None:
             self._offer.changed(change)
+
+    def _keep_room(self) -> None:
+        """Let listeners catch up before a burst of changes pushes those out that they have not heard yet."""
+        self._unheard += 1
+        if self._unheard > UNHEARD:
+            self._task_status.wait_for_all_acked(CATCH_UP)
+            self._unheard = 0
 
     def _command(self, command: Command) -> None:
         publisher = self._commands[command.robot, type(command)]

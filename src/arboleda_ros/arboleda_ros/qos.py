@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_policy_name_from_kind
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
 
 try:
     from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -18,6 +24,12 @@ def _reliable(depth: int, durability: DurabilityPolicy) -> QoSProfile:
 
 
 COMMAND = _reliable(10, DurabilityPolicy.VOLATILE)
+# whoever sends faster than the plant reads must lose no task, so that it keeps all that wait
+TASK_REQUEST = QoSProfile(
+    history=HistoryPolicy.KEEP_ALL,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
 TASK_STATUS = _reliable(100, DurabilityPolicy.TRANSIENT_LOCAL)
 VIEW = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
 SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
