@@ -104,7 +104,7 @@ def _measured(scene: Scene, ends: Sequence[Ends], processes: Sequence[Process]) 
 
 
 def _measure(scene: Scene, name: str, ours: Way, floor: Way) -> None:
-    turns, seconds = (2, 0.4) if scene.quick else (4, 2.0)
+    turns, seconds = (1, 0.5) if scene.quick else (4, 1.5)
     for turn in range(turns):
         scene.say(f"{name}, turn {turn + 1} of {turns}")
         floor.saturate(seconds)

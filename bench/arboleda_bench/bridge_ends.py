@@ -28,6 +28,7 @@ from .flow import NUMBERS, Flow
 PLANT_EPOCH = 1000
 BEAT_S = 0.25
 WORD_S = 0.5  # between two words of a board of which nothing is measured; silent, it would count as gone
+WAKE_S = 0.2  # for boards that were silent to count as there again
 DEG = 0.1  # between the first joint of one message and that of the next
 
 
@@ -43,7 +44,9 @@ class Ends:
         self._heart = node.create_publisher(UInt32, f"{space}plant/heartbeat", qos.COMMAND)
         names = tuple(self._arms)
         self.telemetry = Flow(names, send=self._tell, pump=time.sleep, number_of=_number_of_status)
-        self.goals = Flow(names, send=self._command, pump=self._pump, number_of=_number_of_goal)
+        self.goals = Flow(
+            names, send=self._command, pump=self._pump, number_of=_number_of_goal, wake_s=WAKE_S
+        )
         self._due = dict.fromkeys((self._beat, self._all_tell), 0.0)
         self._word = 0
         for arm in arms:  # as bytes: to unpack them takes longer than all that a bridge does

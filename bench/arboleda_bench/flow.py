@@ -23,7 +23,8 @@ class Flow:
     """One direction of a bridge, from each of `sources` to the other end.
 
     `send(source, number)` pushes one message in; what comes out is handed to `arrive`, and `number_of` finds
-    its number in it, modulo NUMBERS. `pump(seconds)` is called while nothing is to be sent.
+    its number in it, modulo NUMBERS. `pump(seconds)` is called while nothing is to be sent, and for `wake_s`
+    before each measurement.
     """
 
     def __init__(
@@ -33,12 +34,14 @@ class Flow:
         send: Callable[[str, int], None],
         pump: Callable[[float], object],
         number_of: Callable[[Any], int],
+        wake_s: float = 0.0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._sources = sources
         self._send = send
         self._pump = pump
         self._number_of = number_of
+        self._wake_s = wake_s
         self._clock = clock
         self._numbers = count(1)
         self.sent = self.arrived = 0  # since the way is open
@@ -59,6 +62,7 @@ class Flow:
 
     def rate(self, seconds: float) -> float:
         """Messages per second, with WINDOW of every source always under way."""
+        self._wait(self._wake_s)
         self._then = self._answer
         for source in [*self._sources] * WINDOW:
             self._push(source)
@@ -82,6 +86,7 @@ class Flow:
             self.arrived += 1
             took.append(now - pushed[source, self._number_of(message)])
 
+        self._wait(self._wake_s)
         self._then = arrived
         begin = self._clock()
         for turn, source in zip(range(int(per_second * seconds)), cycle(self._sources), strict=False):
