@@ -458,7 +458,7 @@ def test_a_second_commander_at_start_is_refused_by_name(links):
         StartError, match="another node already commands /ra1/joint_goals_q: /other_plant; stop"
     ):
         side.port.check_alone(WAIT_S)
-    assert side.port.foreign_publishers() == [("/ra1/joint_goals_q", "/other_plant")]
+    assert side.port._alone.others() == [("/ra1/joint_goals_q", "/other_plant")]
 
 
 def test_a_second_orchestrator_of_the_same_name_is_another_node(links):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -14,21 +13,17 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 
-from arboleda.core.errors import PayloadError, StartError
+from arboleda.core.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses
+from .alone import DISCOVERY_S, Alone
 
 LOG = logging.getLogger("arboleda.ros")
 
 _REPEAT_S = 5.0  # the same sentence about the same topic is logged at most this often
 _REMEMBERED = 200  # sentences; a stranger must not fill the memory
-_POLL_S = 0.02
 _DIAGNOSTICS_S = 1.0
-# Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
-_DISCOVERY_S = 3.2
-_NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
-_UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,36 +42,17 @@ class Port:
     def __init__(self, node: Node, clock: Callable[[], float]) -> None:
         self._node = node
         self._clock = clock
-        self._mine: list[str] = []
+        self._alone = Alone(node)
         self._refused = 0
         self._failures = 0
         self._warnings: dict[str, None] = {}
         self._logged: dict[tuple[str, str], float] = {}
-        self._born = time.monotonic()
         self._diagnostics = self._speak(DiagnosticArray, "diagnostics", qos.COMMAND)
         node.create_timer(_DIAGNOSTICS_S, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def foreign_publishers(self) -> list[tuple[str, str]]:
-        """(topic, node name) of every other publisher on a topic that this port must have to itself."""
-        return [(self._absolute(topic), name) for topic in self._mine for name in self._others(topic)]
-
-    def check_alone(self, wait_s: float = _DISCOVERY_S) -> None:
-        """Raise StartError as soon as discovery names another publisher.
-
-        Returns `wait_s` after the port was made; a shorter one than the default misses publishers
-        that were there before, about one in two.
-        """
-        until = self._born + wait_s
-        while not _named(found := self.foreign_publishers()):
-            patience_s = _NAME_S if found else 0.0
-            if time.monotonic() >= until + patience_s:
-                break
-            time.sleep(_POLL_S)
-        for topic, name in _named(found) or found:
-            raise StartError(
-                f"another node already commands {topic}: {name}; stop it, "
-                "or give this plant a ROS_DOMAIN_ID of its own"
-            )
+    def check_alone(self, wait_s: float = DISCOVERY_S) -> None:
+        """Raise StartError as soon as another node is found that publishes what only this one may."""
+        self._alone.check(wait_s)
 
     def close(self) -> None:
         """End what others still wait for; the executor runs on until they are told."""
@@ -86,10 +62,7 @@ class Port:
 
     def health(self) -> PortHealth:
         """The health now; a node that joined topics of this port's own is logged once."""
-        topics: dict[str, list[str]] = {}
-        for topic, name in self.foreign_publishers():
-            topics.setdefault(name, []).append(topic)
-        errors = tuple(_intrusion(name, found) for name, found in topics.items())
+        errors = self._alone.look()
         for sentence in errors:
             self._log_once(sentence, logging.ERROR)
         return PortHealth(
@@ -123,7 +96,7 @@ class Port:
     def _speak(self, kind: type, topic: str, profile: QoSProfile, *, alone: bool = False) -> Publisher:
         """A publisher; `alone` where a second publisher of the topic is a fault."""
         if alone:
-            self._mine.append(topic)
+            self._alone.topics.append(topic)
         events = qos.publisher_events(lambda policy: self._incompatible(topic, "subscription", policy))
         return self._node.create_publisher(kind, topic, profile, event_callbacks=events)
 
@@ -163,27 +136,5 @@ class Port:
             self._log_once(sentence, logging.WARNING)
             self._tell_health()
 
-    def _others(self, topic: str) -> list[str]:
-        names = [_full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]
-        own = self._node.get_fully_qualified_name()
-        if own in names:  # once: a second node of the same name is another one
-            names.remove(own)
-        return names
-
     def _absolute(self, topic: str) -> str:
         return self._node.resolve_topic_name(topic)
-
-
-def _intrusion(name: str, topics: list[str]) -> str:
-    more = f" and {len(topics) - 1} more topics" if len(topics) > 1 else ""
-    return f"another node commands {topics[0]}{more}: {name}"
-
-
-def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    return [(topic, name) for topic, name in publishers if name != _UNNAMED]
-
-
-def _full_name(info: Any) -> str:
-    if "_UNKNOWN_" in info.node_name:
-        return _UNNAMED
-    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"

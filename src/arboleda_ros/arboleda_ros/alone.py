@@ -1,0 +1,92 @@
+"""The topics that a node must have to itself, and who else publishes there."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rclpy.node import Node
+
+from arboleda.core.errors import StartError
+
+_POLL_S = 0.02
+# Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
+DISCOVERY_S = 3.2
+_NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
+_UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
+_LOOKED_AT = 100  # topics in one look: each takes its time, and a plant may have hundreds
+
+
+class Alone:
+    """`topics` are relative names; to be watched from their node's own making on."""
+
+    def __init__(self, node: Node) -> None:
+        self.topics: list[str] = []
+        self._node = node
+        self._born = time.monotonic()
+        self._intruders: dict[str, list[str]] = {}  # by topic, as of the last look at it
+        self._next = 0
+
+    def others(self) -> list[tuple[str, str]]:
+        """(topic, node name) of every other publisher now."""
+        return [(self._absolute(topic), name) for topic in self.topics for name in self._others(topic)]
+
+    def check(self, wait_s: float) -> None:
+        """Raise StartError as soon as discovery names another publisher.
+
+        Returns `wait_s` after this was made; one shorter than DISCOVERY_S misses publishers that were there
+        before, about one in two.
+        """
+        until = self._born + wait_s
+        while not _named(found := self.others()):
+            patience_s = _NAME_S if found else 0.0
+            if time.monotonic() >= until + patience_s:
+                break
+            time.sleep(_POLL_S)
+        for topic, name in _named(found) or found:
+            raise StartError(
+                f"another node already commands {topic}: {name}; stop it, "
+                "or give this plant a ROS_DOMAIN_ID of its own"
+            )
+
+    def look(self) -> tuple[str, ...]:
+        """A sentence for each other node that publishes; every call looks at _LOOKED_AT topics, in turn."""
+        begin, self._next = self._next, self._next + _LOOKED_AT
+        if self._next >= len(self.topics):
+            self._next = 0
+        for topic in self.topics[begin : begin + _LOOKED_AT]:
+            alone = self._node.count_publishers(topic) <= 1  # a quarter of the price of asking for names
+            self._intruders[topic] = [] if alone else self._others(topic)
+        return tuple(_intrusion(name, topics) for name, topics in self._by_name().items())
+
+    def _by_name(self) -> dict[str, list[str]]:
+        found: dict[str, list[str]] = {}
+        for topic, names in self._intruders.items():
+            for name in names:
+                found.setdefault(name, []).append(self._absolute(topic))
+        return found
+
+    def _others(self, topic: str) -> list[str]:
+        names = [_full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]
+        own = self._node.get_fully_qualified_name()
+        if own in names:  # once: a second node of the same name is another one
+            names.remove(own)
+        return names
+
+    def _absolute(self, topic: str) -> str:
+        return self._node.resolve_topic_name(topic)
+
+
+def _intrusion(name: str, topics: list[str]) -> str:
+    more = f" and {len(topics) - 1} more topics" if len(topics) > 1 else ""
+    return f"another node commands {topics[0]}{more}: {name}"
+
+
+def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    return [(topic, name) for topic, name in publishers if name != _UNNAMED]
+
+
+def _full_name(info: Any) -> str:
+    if "_UNKNOWN_" in info.node_name:
+        return _UNNAMED
+    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
