@@ -181,6 +181,22 @@ def test_a_report_comes_back_equal(pair, report):
     assert replace(event, at=0.0) == report
 
 
+@pytest.mark.parametrize("fallback", [False, True], ids=["EventsExecutor", "SingleThreadedExecutor"])
+def test_a_report_that_repeats_the_last_comes_at_its_own_time(links, monkeypatch, fallback):
+    if fallback:
+        monkeypatch.setitem(__import__("sys").modules, "rclpy.experimental", None)
+    plant, bridge = Side(links(), "orchestrator", PLANT), Side(links(), "bridge", PLANT)
+    eventually(bridge.port._voices["ra1"].status.get_subscription_count)
+    report = Report(at=0.0, robot="ra1", epoch=9, state=MotionState.STOPPED, q=(0.1, -0.2, 0.03))
+    said = []
+    for count in (1, 2, 3):
+        said.append(time.monotonic())
+        bridge.port.send(report)
+        eventually(lambda: len(plant.events) == count)  # noqa: B023 - it is called at once
+    assert all(replace(event, at=0.0) == report for event in plant.events)
+    assert all(event.at >= at for event, at in zip(plant.events, said, strict=True))
+
+
 def test_the_bridge_publishes_what_existing_tools_read(links):
     side, tool = Side(links(), "bridge", PLANT), Stranger(links())
     states, pieces = tool.hear(UInt8, "/ra1/motion_state"), tool.hear(Bool, "/ra1/piece_detected")

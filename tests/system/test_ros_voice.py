@@ -10,7 +10,9 @@ import pytest
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 
 from rclpy.clock import Clock
+from rclpy.serialization import serialize_message
 
+from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState
 from arboleda.testing import shipped
@@ -41,6 +43,29 @@ def test_a_report_that_repeats_the_last_has_the_same_status():
     status = StatusMessage(ARM)
     assert statuses.report_of(0.0, ARM, status.of(MOVING)) == MOVING
     assert statuses.report_of(0.0, ARM, status.of(MOVING.again(1.0))) == MOVING
+
+
+def test_a_status_is_heard_as_the_report_it_was_made_of_again_and_again():
+    said, heard, now = StatusMessage(ARM), [], [0.0]
+    ear = statuses.Ear(ARM, lambda: now[0], heard.append)
+    for number, report in enumerate([MOVING, MOVING, FURTHER, MOVING, MOVING, GONE]):
+        now[0] = float(number)
+        ear(serialize_message(said.of(report)))
+        assert heard[-1] == replace(report, at=float(number))
+    assert len(heard) == 6
+
+
+def test_a_bad_status_is_refused_each_time_it_comes():
+    heard = []
+    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    good = serialize_message(StatusMessage(ARM).of(MOVING))
+    bad = serialize_message(StatusMessage(MOBILE).of(MOVING))
+    ear(good)
+    for _ in range(2):
+        with pytest.raises(PayloadError, match="status name"):
+            ear(bad)
+    ear(good)
+    assert heard == [MOVING, MOVING]
 
 
 def test_joints_are_those_of_the_last_report_and_stamped_anew():

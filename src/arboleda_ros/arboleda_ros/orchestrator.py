@@ -147,8 +147,8 @@ class OrchestratorPort(Port):
         if isinstance(robot, Arm):
             self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS:
-            on_status = self._reporting(statuses.report_of, robot)
-            self._listen(DiagnosticStatus, f"{robot.name}/status", on_status, qos.COMMAND)
+            ear = statuses.Ear(robot, self._clock, self._on_event)
+            self._listen(DiagnosticStatus, f"{robot.name}/status", ear, qos.COMMAND, raw=True)
             return
         on_state = self._reporting(convert.state_report, robot)
         self._listen(UInt8, f"{robot.name}/motion_state", on_state, qos.COMMAND)

@@ -87,10 +87,19 @@ class Port:
         here = statuses.diagnostic(name, "ros", level, sentence, counts)
         self._publish_diagnostics([here, *self._links()])
 
-    def _listen(self, kind: type, topic: str, handle: Callable[[Any], None], profile: QoSProfile) -> None:
+    def _listen(
+        self,
+        kind: type,
+        topic: str,
+        handle: Callable[[Any], None],
+        profile: QoSProfile,
+        *,
+        raw: bool = False,
+    ) -> None:
+        """Have `handle` called with each message, `raw` ones as bytes."""
         events = qos.subscription_events(lambda policy: self._incompatible(topic, "publisher", policy))
         self._node.create_subscription(
-            kind, topic, self._guarded(topic, handle), profile, event_callbacks=events
+            kind, topic, self._guarded(topic, handle), profile, event_callbacks=events, raw=raw
         )
 
     def _speak(self, kind: type, topic: str, profile: QoSProfile, *, alone: bool = False) -> Publisher:

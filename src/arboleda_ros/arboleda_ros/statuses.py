@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from rclpy.serialization import deserialize_message
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
@@ -35,3 +36,23 @@ def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
         values=values,
     )
     return from_status(at, robot, plain)
+
+
+class Ear:
+    """Hears a robot's `status` as bytes: what only repeats the last one, as at rest, is not read again."""
+
+    def __init__(self, robot: Robot, clock: Callable[[], float], on_report: Callable[[Report], None]) -> None:
+        self._robot = robot
+        self._clock = clock
+        self._on_report = on_report
+        self._heard: tuple[bytes, Report] | None = None
+
+    def __call__(self, data: bytes) -> None:
+        """Tell of the report in one message; PayloadError for one that the bridge does not send."""
+        at = self._clock()
+        if self._heard is not None and self._heard[0] == data:
+            report = self._heard[1].again(at)
+        else:
+            report = report_of(at, self._robot, deserialize_message(data, DiagnosticStatus))
+            self._heard = (data, report)
+        self._on_report(report)
