@@ -44,11 +44,10 @@ class PlayedRobot:
         """Accept a move, and be on the way."""
         self._move, self._accepted, self._began, self._lasts = command, command.id, now, lasts
 
-    def end(self) -> None:
-        """Be where the move leads."""
-        move = self._move
-        assert move is not None
-        self._at, self._done, self._move = self._goal(move), move.id, None
+    def end(self, move: MoveJoints | FollowPath) -> None:
+        """Be where the move leads, unless it was halted meanwhile."""
+        if move is self._move:
+            self._at, self._done, self._move = self._goal(move), move.id, None
 
     def switch(self, command: SetEffector) -> None:
         self._effector = command.on
@@ -162,7 +161,7 @@ class Crew:
         self._post(robot.report(now))
 
     def _arrive(self, robot: PlayedRobot, command: MoveJoints | FollowPath) -> None:
-        robot.end()
+        robot.end(command)
         report = robot.report(time.monotonic())
         self._ended[self._cell_of[command.robot]] = (time.perf_counter(), type(command))
         self._post(report)
