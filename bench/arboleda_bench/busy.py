@@ -70,7 +70,7 @@ def main(plant: str, state: str, move_s: str, seconds: str) -> None:
     app = build(model, {"orchestrator"}, Options(state_dir=Path(state)))
     orchestrator = app.orchestrator
     assert orchestrator is not None
-    crew = Crew(model, orchestrator.loop.post, move_s=float(move_s))
+    crew = Crew(model, orchestrator.hear, move_s=float(move_s))
     customers = Customers(app)
     orchestrator.connect(crew)
     app.listen(customers.heard)

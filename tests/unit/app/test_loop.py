@@ -98,6 +98,32 @@ def test_one_step_takes_everything_that_waits_at_one_time(make, machine, clock, 
     assert sent == ["a", "b"]
 
 
+def test_an_event_that_may_wait_is_stepped_with_the_next_one_in_its_place(make, sent, machine):
+    loop = make(wait=lambda condition, timeout: condition.wait())
+    loop.start()
+    loop.post("a", within_s=60.0)
+    loop.post("b", within_s=60.0)
+    loop.post("c")
+    sent.wait("a", "b", "c")
+    assert machine.steps == [(10.0, ("a", "b", "c"))]
+
+
+def test_an_event_waits_no_longer_than_it_may(make, machine, clock, sent):
+    def wait(condition, timeout):
+        if timeout is None:
+            condition.wait()
+        else:
+            clock.now += timeout
+
+    loop = make(wait=wait)
+    loop.post("a", within_s=0.5)
+    loop.post("b", within_s=0.25)
+    loop.post("c", within_s=0.75)
+    loop.start()
+    sent.wait("a", "b", "c")
+    assert machine.steps == [(10.25, ("a", "b", "c"))]
+
+
 def test_an_event_wakes_it(make, sent):
     loop = make()
     loop.start()

@@ -215,13 +215,13 @@ class App:
             if plant is not None and bridge is not None:
                 _refuse_ros_robots(self.model)
                 plant.connect(bridge)
-                bridge.connect(plant.loop.post)
+                bridge.connect(plant.hear)
             return
         if bridge is not None:
             port = link.bridge(self.model, bridge.loop.post, time.monotonic)
             bridge.connect(port.send, port.mqtt_link)
         if plant is not None:
-            plant.connect_ros(link.orchestrator(self.model, plant.loop.post, time.monotonic))
+            plant.connect_ros(link.orchestrator(self.model, plant.hear, time.monotonic))
         self._parts.insert(1, RosPart(link))
 
     def _crash(self, name: str, error: BaseException) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from collections import deque
@@ -67,6 +68,7 @@ class Loop(Generic[Event, Message]):
         self._inbox: deque[Event] = deque()
         self._awake = threading.Condition()
         self._ending = False
+        self._inbox_due = math.inf
         self._step_by: float | None = None
         self._between_steps = threading.Lock()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
@@ -79,11 +81,18 @@ class Loop(Generic[Event, Message]):
         """Whether the loop was started and has not ended."""
         return self._thread.is_alive()
 
-    def post(self, event: Any) -> None:
-        """Put an event into the inbox; from any thread, never blocks; after the end it is dropped."""
+    def post(self, event: Any, within_s: float = 0.0) -> None:
+        """Put an event into the inbox; from any thread, never blocks; after the end it is dropped.
+
+        It is stepped with the next step, within `within_s` at the latest.
+        """
+        due = self._clock() + within_s if within_s else -math.inf
         with self._awake:
-            if not self._ending:
-                self._inbox.append(event)
+            if self._ending:
+                return
+            self._inbox.append(event)
+            if due < self._inbox_due:
+                self._inbox_due = due
                 self._awake.notify()
 
     def read(self, fn: Callable[[Any], Result]) -> Result:
@@ -106,7 +115,7 @@ class Loop(Generic[Event, Message]):
         with self._awake:
             events = tuple(self._inbox)
             self._inbox.clear()
-            self._step_by = None
+            self._inbox_due, self._step_by = math.inf, None
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
@@ -132,17 +141,17 @@ class Loop(Generic[Event, Message]):
     def _sleep(self) -> bool:
         """Whether there is something to step; False at the end."""
         with self._awake:
-            while not self._inbox and not self._ending:
+            while not self._ending:
                 deadline = self._deadline()
-                timeout = None if deadline is None else deadline - self._clock()
+                timeout = None if deadline == math.inf else deadline - self._clock()
                 if timeout is not None and timeout <= 0:
                     return True
                 self._wait(self._awake, timeout)
             return bool(self._inbox)
 
-    def _deadline(self) -> float | None:
-        due = self._machine.next_deadline
-        return self._step_by if due is None else due if self._step_by is None else min(due, self._step_by)
+    def _deadline(self) -> float:
+        due = (self._inbox_due, self._machine.next_deadline, self._step_by)
+        return min(at for at in due if at is not None)
 
     def _end(self) -> None:
         with self._awake:

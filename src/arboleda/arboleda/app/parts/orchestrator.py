@@ -14,12 +14,14 @@ from arboleda.adapters.store import Store
 from arboleda.core import twin_view, view
 from arboleda.core.messages import (
     Command,
+    Event,
     Fact,
     Journal,
     Notice,
     OperatorAnswer,
     OperatorRequest,
     Remember,
+    Report,
     Shutdown,
     Stop,
     StopMode,
@@ -34,6 +36,7 @@ from arboleda.core.plant import Plant
 
 from ..loop import Loop
 from .part import Crash
+from .urgency import Urgency
 
 TASKS = logging.getLogger("arboleda.tasks")
 VIEW_S = 1.0
@@ -83,8 +86,13 @@ class Orchestrator:
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
         self._show_at: float | None = None  # while there is a change that nobody was shown
+        self._urgency = Urgency(self.plant)
         self._waiting: dict[str, Future[Any]] = {}
         self._at_rest = threading.Event()
+
+    def hear(self, event: Event) -> None:
+        """What comes in by the port, from its thread; a report that is no news may wait for others."""
+        self.loop.post(event, self._urgency.within_s(event) if isinstance(event, Report) else 0.0)
 
     def connect(self, port: PlantPort) -> None:
         self._port = port

@@ -1,0 +1,86 @@
+"""Reports that are news are stepped at once, all others with the next step."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.app.parts.urgency import COMPANY_S, Urgency
+from arboleda.core.ledger import Entry
+from arboleda.core.messages import MoveJoints, Report
+from arboleda.core.model import Evidence, MotionState
+from arboleda.core.plant import Plant
+from arboleda.testing.plants import shipped
+
+REST = Report(
+    at=0.0, robot="ra1", epoch=9, boot_id=4, state=MotionState.STOPPED, q=(0.0, 0.0, 0.0), piece=False
+)
+MOVES = replace(REST, state=MotionState.MOVING, accepted="7-1")
+FURTHER = (0.1, 0.0, 0.0)
+
+
+def plant_of(**declared) -> Plant:
+    return Plant(shipped("sis_a", **declared), epoch=7, now=0.0)
+
+
+@pytest.fixture
+def plant():
+    return plant_of()
+
+
+def patience(plant: Plant, *reports: Report) -> list[float]:
+    urgency = Urgency(plant)
+    return [urgency.within_s(report) for report in reports]
+
+
+@pytest.mark.parametrize(
+    "news",
+    [
+        {"state": MotionState.MOVING},
+        {"accepted": "7-2"},
+        {"done": "7-1"},
+        {"rejected": "7-1", "refusal": "limite"},
+        {"boot_id": 5},
+        {"epoch": 10},
+        {"plant": 7},
+        {"homed": False},
+        {"effector": True},
+        {"piece": True},
+    ],
+    ids=lambda news: next(iter(news)),
+)
+def test_news_are_urgent(plant, news):
+    assert patience(plant, REST, REST, replace(REST, **news)) == [0.0, COMPANY_S, 0.0]
+
+
+def test_a_repetition_or_a_position_alone_may_wait(plant):
+    assert patience(plant, REST, REST.again(0.1), replace(REST, q=FURTHER)) == [0.0, COMPANY_S, COMPANY_S]
+
+
+def test_each_robot_has_its_own_last_words(plant):
+    other = replace(REST, robot="rm_sis_a", q=None, node=3)
+    assert patience(plant, REST, other, REST, other) == [0.0, 0.0, COMPANY_S, COMPANY_S]
+
+
+@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
+def test_where_a_position_proves_something_it_is_urgent(evidence):
+    assert patience(plant_of(evidence=evidence), REST, REST) == [0.0, 0.0]
+
+
+def test_a_robot_that_moves_is_not_at_its_end_but_one_that_stands_may_be(plant):
+    move = MoveJoints(id="7-1", robot="ra1", q=FURTHER)
+    plant.dispatcher.ledger.open(Entry(move, cell="sis_a", doing="moving", sent_at=0.0, deadline=9.0))
+    assert patience(plant, MOVES, replace(MOVES, q=FURTHER), REST, REST) == [0.0, COMPANY_S, 0.0, 0.0]
+
+
+def test_a_tree_that_awaits_the_piece_sensor_is_not_kept_waiting(plant):
+    plant.cells["sis_a"].context.awaits_piece = True
+    silent = replace(REST, piece=None)
+    assert patience(plant, REST, REST) == [0.0, 0.0]
+    assert patience(plant, silent, silent) == [0.0, COMPANY_S]
+
+
+def test_a_stranger_is_not_asked_to_wait(plant):
+    stranger = replace(REST, robot="nobody")
+    assert patience(plant, stranger, stranger) == [0.0, 0.0]
