@@ -87,13 +87,10 @@ class Broker:
 
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Somebody publishes; None: somebody who is no part of the plant, or the broker for a lost client."""
-        if sender is None:
-            self._spread(publication)
+        now = self._clock()
+        if sender is None or (sender.connected and sender.up.is_clear(now)):
+            self._spread(publication, now)
         elif sender.connected:
-            now = self._clock()
-            if sender.up.is_clear(now):
-                self._spread(publication)
-                return
             for at in sender.up.carry(now, publication):
                 self._when(at, self._arrive, (self._lives, publication))
 
@@ -101,7 +98,7 @@ class Broker:
         """What a client hears right after it subscribed."""
         for publication in self.retained.values():
             if publication.topic in client.topics:
-                self._send(client, publication, retained=True)
+                self._send(client, publication, self._clock(), retained=True)
 
     def die(self) -> None:
         """Every connection ends, and what was retained or under way is gone."""
@@ -120,22 +117,22 @@ class Broker:
     def _arrive(self, carried: tuple[int, Publication]) -> None:
         life, publication = carried
         if life == self._lives:
-            self._spread(publication)
+            self._spread(publication, self._clock())
 
-    def _spread(self, publication: Publication) -> None:
+    def _spread(self, publication: Publication, now: float) -> None:
         if not self.is_up:
             return
+        topic, payload = publication.topic, publication.payload
         if publication.retain:
-            self.retained[publication.topic] = publication
-        for client in self._listeners.get(publication.topic, ()):
-            self._send(client, publication, retained=False)
+            self.retained[topic] = publication
+        for client in self._listeners.get(topic, ()):
+            if client.connected and client.down.is_clear(now):
+                self._heard(client, Delivery(at=now, topic=topic, payload=payload, retain=False))
+            else:
+                self._send(client, publication, now, retained=False)
 
-    def _send(self, client: Client, publication: Publication, *, retained: bool) -> None:
+    def _send(self, client: Client, publication: Publication, now: float, *, retained: bool) -> None:
         if not client.connected:
-            return
-        now = self._clock()
-        if client.down.is_clear(now):
-            self._deliver(client, publication, retained, now)
             return
         carried = (client, client.connection, client.queue, publication, retained)
         for at in client.down.carry(now, publication):
@@ -144,8 +141,6 @@ class Broker:
     def _hand_over(self, carried: tuple[Client, int, int, Publication, bool]) -> None:
         client, connection, queue, publication, retained = carried
         if client.connection == connection and (client.queue == queue or keeps_its_place(publication)):
-            self._deliver(client, publication, retained, self._clock())
-
-    def _deliver(self, client: Client, publication: Publication, retained: bool, now: float) -> None:
-        topic, payload = publication.topic, publication.payload
-        self._heard(client, Delivery(at=now, topic=topic, payload=payload, retain=retained))
+            topic, payload = publication.topic, publication.payload
+            delivery = Delivery(at=self._clock(), topic=topic, payload=payload, retain=retained)
+            self._heard(client, delivery)

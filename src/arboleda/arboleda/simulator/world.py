@@ -51,16 +51,13 @@ class Moment:
     put_right: list[str] = field(default_factory=list)  # boards whose robots somebody moved by hand
 
     def clear(self) -> None:
-        for happened in (
-            self.asked,
-            self.heard,
-            self.sent,
-            self.published,
-            self.delivered,
-            self.executed,
-            self.put_right,
-        ):
-            happened.clear()
+        self.asked.clear()
+        self.heard.clear()
+        self.sent.clear()
+        self.published.clear()
+        self.delivered.clear()
+        self.executed.clear()
+        self.put_right.clear()
 
 
 class World:
@@ -183,7 +180,8 @@ class World:
         now_us = _us(self.now)
         self.boards[board].connect(now_us, False)
         self.boards[board].reboot(now_us, next(self._boot_ids))
-        self._take(board)
+        self.boards[board].take()
+        self._due[board] = math.inf
         client.connect(False)
         will = (client, client.connection)
         if will_after_s:
@@ -286,7 +284,7 @@ class World:
         if self._plant_inbox and self._awake(PLANT):
             return True
         full = [client.name for client in self.broker.clients.values() if client.inbox]
-        return any(self._awake(name) for name in full)
+        return bool(full) and any(self._awake(name) for name in full)
 
     def _awake(self, process: str) -> bool:
         return process not in self._off and process not in self._stalled
@@ -300,43 +298,44 @@ class World:
             _, _, call, argument = heappop(self._agenda)
             call(argument)
         now, due, bridge = self.now, self._due, self.broker.clients[BRIDGE]
+        now_us = _us(now)
         if bridge.inbox:  # what the plant said
             self._step_bridge(bridge)
         for name, board, client in self._stations:
             if (client.inbox or due[name] <= now) and self._awake(name):
-                self._step_board(name, board, client)
+                self._step_board(now_us, name, board, client)
         if bridge.inbox or due.get(BRIDGE, math.inf) <= now:  # what the boards said
             self._step_bridge(bridge)
-        if (self._plant_inbox or self._due[PLANT] <= self.now) and self._awake(PLANT):
+        if (self._plant_inbox or due[PLANT] <= now) and self._awake(PLANT):
             self._step_plant()
 
-    def _step_board(self, name: str, board: Board, client: Client) -> None:
-        now_us = _us(self.now)
-        inbox, client.inbox = client.inbox, []
-        for event in inbox:
-            if isinstance(event, Delivery):
-                board.receive(now_us, event)
-            else:
-                board.connect(now_us, event.up)
+    def _step_board(self, now_us: int, name: str, board: Board, client: Client) -> None:
+        if client.inbox:
+            inbox, client.inbox = client.inbox, []
+            for event in inbox:
+                if isinstance(event, Delivery):
+                    board.receive(now_us, event)
+                else:
+                    board.connect(now_us, event.up)
         board.advance(now_us)
-        for publication in self._take(name):
+        due_us = board.next_deadline_us
+        self._due[name] = math.inf if due_us is None else due_us / 1e6
+        for publication in board.take():
             self.publish(publication, client)
-
-    def _take(self, name: str) -> list[Publication]:
-        due_us = self.boards[name].next_deadline_us
-        self._due[name] = math.inf if due_us is None or name in self._off else due_us / 1e6
-        return self.boards[name].take()
 
     def _step_bridge(self, client: Client) -> None:
         bridge = self.bridge
         if bridge is None or not self._awake(BRIDGE):
             return
         inbox, client.inbox = client.inbox, []
+        clear = self.to_plant.is_clear(self.now)
         for message in bridge.step(self.now, inbox):
-            if isinstance(message, Report):
-                self._carry(self.to_plant, self._to_plant, message)
-            else:
+            if not isinstance(message, Report):
                 self.publish(message, client)
+            elif clear:
+                self._to_plant(message)
+            else:
+                self._carry(self.to_plant, self._to_plant, message)
         due = bridge.next_deadline
         self._due[BRIDGE] = math.inf if due is None else due
 
@@ -353,9 +352,6 @@ class World:
         self._due[PLANT] = self.plant.next_deadline
 
     def _carry(self, line: Line, call: Callable[[Any], None], message: Any) -> None:
-        if line.is_clear(self.now):
-            call(message)
-            return
         for at in line.carry(self.now, message):
             if at <= self.now:
                 call(message)
