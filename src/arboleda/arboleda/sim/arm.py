@@ -36,6 +36,9 @@ class ArmBody:
         self.stuck = False
         self._axes = tuple(_axis(joint) for joint in arm.joints)
         self._drift = self._steps(start)  # true position minus counted position, per joint
+        self._seen: tuple[tuple[int, ...], ...] = ()  # what the next two were made of
+        self._q: tuple[float, ...] = ()
+        self._is_at_a_pickup = False
         self.reset()
         self._count_anew()
 
@@ -43,17 +46,13 @@ class ArmBody:
         """Position counters 0, effector off, as a board comes up; the axes stay where they are."""
         self._drift = self.true_position
         self._axes = tuple(_axis(joint) for joint in self._joints)
-        self._still_us: int | None = None
+        self.next_change_us: int | None = None
         self.effector = False
         self.holding = False
 
     @property
     def moving(self) -> bool:
-        return self._still_us is not None
-
-    @property
-    def next_change_us(self) -> int | None:
-        return self._still_us
+        return self.next_change_us is not None
 
     @property
     def position(self) -> tuple[int, ...]:
@@ -93,12 +92,12 @@ class ArmBody:
         self._plan(now_us)
 
     def advance(self, now_us: int) -> None:
-        if self._still_us is None:
+        if self.next_change_us is None:
             return
         for axis in self._axes:
             axis.advance(now_us)
-        if now_us >= self._still_us:
-            self._still_us = None
+        if now_us >= self.next_change_us:
+            self.next_change_us = None
             self._grip()
 
     def switch_effector(self, on: bool) -> None:
@@ -123,9 +122,13 @@ class ArmBody:
         self._drift = (0,) * len(self._joints)
 
     def tell(self) -> Told:
-        q = tuple([axis.position * step for axis, step in zip(self._axes, self._step_deg, strict=True)])
-        piece = self.holding or self._piece_lies_here()
-        return Told(q=q, effector=self.effector, piece=piece)
+        seen = self.position, self._drift
+        if seen != self._seen:
+            self._seen = seen
+            self._q = tuple([steps * step for steps, step in zip(seen[0], self._step_deg, strict=True)])
+            self._is_at_a_pickup = self.true_position in self._pickups
+        piece = self.holding or (self._is_at_a_pickup and self.supplied and not self.moving)
+        return Told(self._q, None, self.effector, piece)
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))
@@ -137,7 +140,7 @@ class ArmBody:
 
     def _plan(self, now_us: int) -> None:
         """Work out when the slowest axis comes to rest; even no way at all takes a moment."""
-        self._still_us = max(now_us + 1, *(axis.still_at_us for axis in self._axes))
+        self.next_change_us = max(now_us + 1, *(axis.still_at_us for axis in self._axes))
 
     def _count_anew(self) -> None:
         """Have the counters say where the axes are."""

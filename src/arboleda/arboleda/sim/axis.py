@@ -108,9 +108,10 @@ class Axis:
         """Take every step that is due."""
         stepper, course = self._stepper, self._course
         if course is None:
-            stepper.advance(self._now_us, now_us)
-            self.position = stepper.position
-        elif now_us < self.still_at_us:
+            if stepper.interval:
+                stepper.advance(self._now_us, now_us)
+                self.position = stepper.position
+        elif now_us < self._first_step_us + course.duration_us:
             steps = course.steps(now_us - self._first_step_us)
             self.position = stepper.position + (steps if stepper.target > stepper.position else -steps)
         else:

@@ -47,7 +47,8 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
-        self._said: tuple[object, ...] | None = None  # what the last telemetry was made of
+        self._said: tuple[object, ...] | None = None  # what the last telemetry was made of, joints apart
+        self._q: tuple[float, ...] | None = None  # the joints in it
         self._boot(boot_id, homed=True)
 
     def _boot(self, boot_id: int, *, homed: bool) -> None:
@@ -67,7 +68,7 @@ class Board:
 
     @property
     def state(self) -> MotionState:
-        if self.body.moving:
+        if self.body.next_change_us is not None:
             return MotionState.MOVING
         if self.faulted:
             return MotionState.FAULT
@@ -77,10 +78,11 @@ class Board:
 
     @property
     def next_deadline_us(self) -> int | None:
-        motion_us, telemetry_us = self._next_motion_us(), self._uplink.due_us
-        if motion_us is None or telemetry_us is None:
-            return telemetry_us if motion_us is None else motion_us
-        return min(motion_us, telemetry_us)
+        telemetry_us = self._uplink.due_us
+        if self.body.next_change_us is None:
+            return telemetry_us
+        motion_us = self._next_motion_us()
+        return motion_us if telemetry_us is None or motion_us < telemetry_us else telemetry_us
 
     def take(self) -> list[Publication]:
         """What the board published since the last call, in order."""
@@ -114,12 +116,11 @@ class Board:
 
     def advance(self, now_us: int) -> None:
         """Let time pass; a time before the last one seen counts as that."""
-        now_us = max(now_us, self._now_us)
-        while (due := self._next_motion_us()) is not None and due <= now_us:
-            self._now_us = max(due, self._now_us)
-            self._move_on()
+        if now_us < self._now_us:
+            now_us = self._now_us
+        if self.body.next_change_us is not None:
+            self._move(now_us)
         self._now_us = now_us
-        self.body.advance(now_us)
         if self._uplink.period_over(now_us):
             self._tell()
 
@@ -202,25 +203,26 @@ class Board:
         if self.body.moving and job is not None:  # told again, a ramp on its way down would begin anew
             self.body.stop(self._now_us)
 
-    @property
-    def _silence_us(self) -> int | None:
-        """When the silence gets too long; None unless it is watched."""
-        watched = self._beaten and self._job is not None and self.body.moving
-        return self._alive_us + SILENCE_US if watched else None
-
-    def _next_motion_us(self) -> int | None:
+    def _next_motion_us(self) -> int:
+        """When a moving body arrives somewhere, or the silence, where it is watched, gets too long."""
         change_us = self.body.next_change_us
-        if change_us is None:
-            return None
-        silence_us = self._silence_us
-        return change_us if silence_us is None else min(change_us, silence_us)
+        assert change_us is not None
+        if not self._beaten or self._job is None:
+            return change_us
+        return min(change_us, self._alive_us + SILENCE_US)
+
+    def _move(self, until_us: int) -> None:
+        while self.body.next_change_us is not None and (due := self._next_motion_us()) <= until_us:
+            self._now_us = max(due, self._now_us)
+            self._move_on()
+        self.body.advance(until_us)
 
     def _move_on(self) -> None:
         """An arrival or the end of patience, at the time the board has reached."""
         self.body.advance(self._now_us)
         if not self.body.moving:
             self._finish()
-        elif self._silence_us is not None and self._silence_us <= self._now_us:
+        elif self._next_motion_us() <= self._now_us:
             self._stop(latch=False)
         self._tell()
 
@@ -243,12 +245,17 @@ class Board:
     def _tell(self) -> None:
         """Telemetry; most of it says what the one before said, and is not written anew."""
         told, receipts = self.body.tell(), self._receipts
-        said = (*told, self.state, self.boot_id, self.homed, *receipts.told)
-        if said == self._said:
+        said = (told[1:], self.state, self.boot_id, self.homed, receipts.told)
+        if not self._uplink.connected:
+            self._said = None
+        elif said != self._said:
+            self._said, self._q = said, told.q
+            self._uplink.tell(self._telemetry(told))
+        elif told.q is None or told.q == self._q:
             self._uplink.tell_again()
         else:
-            self._said = said if self._uplink.connected else None
-            self._uplink.tell(self._telemetry(told))
+            self._q = told.q
+            self._uplink.tell_angles(told.q)
 
     def _telemetry(self, told: Told) -> Telemetry:
         receipts = self._receipts

@@ -17,17 +17,17 @@ class Told(NamedTuple):
 
 
 class Body(Protocol):
-    """Every time is in microseconds and never earlier than the one before."""
+    """Every time is in microseconds and never earlier than the one before.
+
+    `next_change_us`: when it arrives somewhere if nobody interferes; None while still.
+    """
 
     axes: int | None
     channels: frozenset[Channel]
+    next_change_us: int | None
 
     @property
     def moving(self) -> bool: ...
-
-    @property
-    def next_change_us(self) -> int | None:
-        """When it arrives somewhere if nobody interferes; None while still."""
 
     def admits(self, goal: Any) -> bool:
         """Whether a goal, of the type that `decode` makes for this body, is within its limits."""

@@ -22,6 +22,7 @@ class MobileBody:
 
     def __init__(self, mobile: Mobile, *, start_node: int) -> None:
         self._grid = mobile.grid
+        self._told = tuple(Told(node=node) for node in range(mobile.grid.size))
         self._edge_us = max(1, round(mobile.grid.pitch / mobile.speed * 1e6))
         self._start_node = self.true_node = start_node
         self.reset()
@@ -30,15 +31,11 @@ class MobileBody:
         """At its start node, as a board comes up that knows no better; the robot stays where it is."""
         self.node = self._start_node
         self._way: tuple[int, ...] = ()  # nodes ahead; the first one ends the edge it is on
-        self._arrival_us: int | None = None
+        self.next_change_us: int | None = None
 
     @property
     def moving(self) -> bool:
-        return self._arrival_us is not None
-
-    @property
-    def next_change_us(self) -> int | None:
-        return self._arrival_us
+        return self.next_change_us is not None
 
     def admits(self, goal: PathGoal) -> bool:
         """Whether the path starts here or next door and never leaves the grid's edges."""
@@ -63,18 +60,18 @@ class MobileBody:
         self._way = self._way[:1]
 
     def advance(self, now_us: int) -> None:
-        while self._arrival_us is not None and self._arrival_us <= now_us:
+        while self.next_change_us is not None and self.next_change_us <= now_us:
             if self._way:
                 self._pass(self._way[0])
                 _, *ahead = self._way
                 self._way = tuple(ahead)
-            self._arrival_us = self._arrival_us + self._edge_us if self._way else None
+            self.next_change_us = self.next_change_us + self._edge_us if self._way else None
 
     def switch_effector(self, on: bool) -> None:
         raise NotImplementedError("a mobile robot has no effector and no topic for one")
 
     def tell(self) -> Told:
-        return Told(node=self.node)
+        return self._told[self.node]
 
     @property
     def _next_node(self) -> int:
@@ -106,4 +103,4 @@ class MobileBody:
             self._way = (self._way[0], *ahead)
             return
         self._way = ahead
-        self._arrival_us = now_us + (self._edge_us if ahead else 1)
+        self.next_change_us = now_us + (self._edge_us if ahead else 1)

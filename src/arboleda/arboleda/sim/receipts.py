@@ -8,7 +8,10 @@ UNKNOWN_SEQ = 0  # senders count from 1
 
 
 class Receipts:
-    """The numbers of the last accepted, finished and refused command; all count only for `epoch`."""
+    """The numbers of the last accepted, finished and refused command; all count only for `epoch`.
+
+    `told` is all of it.
+    """
 
     def __init__(self) -> None:
         self._enter(None)
@@ -20,11 +23,10 @@ class Receipts:
         self.finished: int | None = None
         self.refusal: str | None = None
         self.refused: int | None = None
+        self._note()
 
-    @property
-    def told(self) -> tuple[object, ...]:
-        """All of it."""
-        return (self.epoch, self.accepted, self.finished, self.refusal, self.refused)
+    def _note(self) -> None:
+        self.told = (self.epoch, self.accepted, self.finished, self.refusal, self.refused)
 
     def repeats(self, goal: Goal) -> bool:
         """Whether this is the last accepted command once more (QoS 1 may deliver twice)."""
@@ -42,11 +44,13 @@ class Receipts:
 
     def accept(self, goal: Goal) -> None:
         self.accepted = goal.seq
+        self._note()
 
     def finish(self, goal: Goal) -> None:
         """A motion ended by itself; one of an older epoch is nobody's news any more."""
         if goal.epoch == self.epoch:
             self.finished = goal.seq
+            self._note()
 
     def refuse(self, word: str, seq: int | None, epoch: int | None) -> None:
         """Note a refusal; under a foreign epoch its number could be taken for one of the current sender."""
@@ -54,3 +58,4 @@ class Receipts:
         ours = word == "viejo" or self.epoch in (None, epoch)
         self.refusal = word
         self.refused = seq if ours and seq is not None else UNKNOWN_SEQ
+        self._note()

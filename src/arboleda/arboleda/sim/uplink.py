@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from arboleda.wire.payloads import Presence, Telemetry, encode
+from arboleda.wire.payloads import Presence, Telemetry, angles, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 PERIOD_US = 100_000
 UNNUMBERED = b'"seq":0,'
+STATE = b',"estado":'  # what follows the joints
 
 
 class Uplink:
@@ -44,6 +45,13 @@ class Uplink:
         if self.connected:
             self._frame = encode(said).partition(UNNUMBERED)
             self.tell_again()
+
+    def tell_angles(self, q: tuple[float, ...]) -> None:
+        """What the last telemetry said, but for the joints, under the next number."""
+        before, number, after = self._frame
+        _, estado, rest = before.partition(STATE)
+        self._frame = (angles(q) + estado + rest, number, after)
+        self.tell_again()
 
     def tell_again(self) -> None:
         """What the last telemetry said, under the next number."""

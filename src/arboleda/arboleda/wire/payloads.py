@@ -36,6 +36,7 @@ __all__ = [
     "Presence",
     "StopGoal",
     "Telemetry",
+    "angles",
     "decode",
     "encode",
 ]
@@ -66,6 +67,11 @@ def encode(payload: Payload) -> bytes:
         return b"1" if payload.online else b"0"
     body = _WRITERS[type(payload)](payload)
     return strict.write({key: value for key, value in body.items() if value is not None})
+
+
+def angles(q: tuple[float, ...]) -> bytes:
+    """How telemetry of an arm begins, up to its last joint."""
+    return strict.write(_angles(q, "_mov"))[:-1]
 
 
 def _presence(raw: bytes) -> Presence:
