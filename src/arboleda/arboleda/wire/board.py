@@ -189,7 +189,8 @@ class Board:
     def _joints(self, said: Telemetry) -> tuple[float, ...] | None:
         if said.q is None or not isinstance(self.robot, Arm):
             return None
-        return tuple(from_wire(joint, value) for joint, value in zip(self.robot.joints, said.q, strict=True))
+        rows = zip(self.robot.joints, said.q, strict=True)
+        return tuple([from_wire(joint, value) for joint, value in rows])
 
     def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None) -> Report:
         return self._report(

@@ -65,8 +65,8 @@ class Labels:
         ours = said.ack_epoch == self.epoch
         self.accepted = self._name(said.ack) if ours else None
         self.done = self._name(said.done) if ours else None
-        done = {said.done} if ours and said.done is not None else set()
-        return frozenset(done | ({refused} if refused is not None else set()))
+        done = said.done if ours else None
+        return frozenset([seq for seq in (done, refused) if seq is not None])
 
     def _refused(self, said: Telemetry) -> int | None:
         """The seq of ours that is newly rejected; a board repeats its last refusal in every message."""

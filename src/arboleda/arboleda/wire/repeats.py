@@ -9,6 +9,7 @@ from .strict import LIMIT_BYTES, UINT32
 
 NAME, KEY = b'"seq"', b'"seq":'
 DIGITS = b"0123456789"
+LONGEST = len(str(UINT32))
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +39,7 @@ class Words:
         if not raw.startswith(before) or not raw.endswith(after) or len(raw) > LIMIT_BYTES:
             return None
         digits = raw[len(before) : len(raw) - len(after)]
-        return int(digits) if digits.isdigit() and _is_canonical(digits) else None
-
-
-def _is_canonical(digits: bytes) -> bool:
-    """Whether JSON allows this spelling, and the contract this number."""
-    return (digits[0] != ord("0") or len(digits) == 1) and len(digits) <= 10 and int(digits) <= UINT32
+        if not digits.isdigit() or len(digits) > LONGEST:
+            return None
+        number = int(digits)
+        return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON

@@ -89,11 +89,15 @@ class Fields:
 
     def optional(self, key: str, top: int = UINT32) -> int | None:
         """An integer that may be absent; `null` is not absent."""
-        return integer(key, self._values[key], top) if key in self._values else None
+        value = self._values.get(key)
+        if type(value) is int and 0 <= value <= top:
+            return value
+        return integer(key, value, top) if key in self._values else None
 
     def flag(self, key: str) -> bool | None:
         """0 or 1 that may be absent."""
-        return integer(key, self._values[key], 1) == 1 if key in self._values else None
+        value = self.optional(key, 1)
+        return None if value is None else value == 1
 
     def together(self, first: str, second: str) -> None:
         """Two keys that only make sense as a pair."""
