@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from operator import attrgetter
 
 from .messages import Failure, Reason, Report
@@ -11,7 +10,6 @@ from .model import Arm, Evidence, Link, MotionState, Robot
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 RATE_S = 2.0  # the telemetry rate is counted over at least this long
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
-_words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
 _merged = attrgetter(*MERGED)
 
 
@@ -27,6 +25,8 @@ class Belief:
         self.stale_after_s = stale_after_s
         self.plant_epoch = plant_epoch
         self.supervised = robot.evidence is not Evidence.STATE
+        self._is_arm = isinstance(robot, Arm)
+        self._is_drawn = robot.link is Link.NONE
         self.heard_at: float | None = None
         self.stale = False
         self.stale_at: float | None = None
@@ -53,9 +53,11 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        if _words(report) != self._said or not self.online or report.at < self.position_at:
+        if report.words != self._said or not self.online or report.at < self.position_at:
             return False
         self._count(report)
+        if report.at - self._counted[0] >= RATE_S:
+            self._count_rate(report.at)
         self._hear(report)
         return True
 
@@ -67,7 +69,9 @@ class Belief:
                 setattr(self, name, value)
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
-        self._said = _words(report)
+        self._said = report.words
+        if report.state is not MotionState.NO_LINK:
+            self._count_rate(report.at)
         self._hear(report)
 
     def _hear(self, report: Report) -> None:
@@ -75,7 +79,6 @@ class Belief:
         if report.q is not None or report.node is not None:
             self.position_at = report.at
         if report.state is not MotionState.NO_LINK:
-            self._count_rate(report.at)
             self.heard_at = report.at
             self.stale = False
             self.stale_at = report.at + self.stale_after_s if self.supervised else None
@@ -96,9 +99,9 @@ class Belief:
         """Number the reports, so that "since" never hangs on two clocks agreeing."""
         self.reports += 1
         self.state_no = self.reports if report.state is not None else self.state_no
-        said = report.q if isinstance(self.robot, Arm) else report.node
+        said, before = (report.q, self.q) if self._is_arm else (report.node, self.node)
         if said is not None:
-            moved = said != self.position
+            moved = said != before
             self._rested_from = self.reports if moved or not self._rested_from else self.position_no
             self.position_no = self.reports
         if report.piece is not None:
@@ -119,7 +122,7 @@ class Belief:
 
     @property
     def online(self) -> bool:
-        if self.robot.link is Link.NONE or self.state is MotionState.NO_LINK or self.stale:
+        if self.stale or self.state is MotionState.NO_LINK or self._is_drawn:
             return False
         return self.heard_at is not None or not self.supervised
 
@@ -130,7 +133,7 @@ class Belief:
 
     @property
     def position(self) -> tuple[float, ...] | int | None:
-        return self.q if isinstance(self.robot, Arm) else self.node
+        return self.q if self._is_arm else self.node
 
     @property
     def known_q(self) -> tuple[float, ...] | None:

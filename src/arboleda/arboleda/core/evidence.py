@@ -42,13 +42,7 @@ class Before(NamedTuple):
 
     @classmethod
     def of(cls, belief: Belief) -> Before:
-        return cls(
-            epoch=belief.epoch,
-            boot_id=belief.boot_id,
-            q=belief.q,
-            position_at=belief.position_at,
-            online=belief.online,
-        )
+        return cls(belief.epoch, belief.boot_id, belief.q, belief.position_at, belief.online)
 
 
 def judge(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
@@ -124,7 +118,7 @@ def strayed(before: Before, belief: Belief, report: Report, goal: tuple[float, .
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
     """Whether the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
-    if None in (before.boot_id, report.boot_id) or before.boot_id == report.boot_id:
+    if before.boot_id == report.boot_id or None in (before.boot_id, report.boot_id):
         return False
     evidence = belief.robot.evidence
     return evidence is Evidence.IDS or (evidence is Evidence.JOINTS and before.epoch == report.epoch)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
+from functools import cached_property
+from operator import attrgetter
 
 from .model import MotionState
 
@@ -210,11 +212,21 @@ class Report:
     effector: bool | None = None
     piece: bool | None = None
 
+    @cached_property
+    def words(self) -> tuple[object, ...]:
+        """All that it says, when apart."""
+        return _words(self)
+
     def again(self, at: float) -> Report:
         """The same words, said once more."""
-        report = object.__new__(Report)  # several times as fast as `replace`, and most reports are repeats
-        vars(report).update(vars(self), at=at)
+        said = vars(self).copy()  # several times as fast as `replace`, and most reports are repeats
+        said["at"] = at
+        report = object.__new__(Report)
+        object.__setattr__(report, "__dict__", said)
         return report
+
+
+_words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
 
 
 @dataclass(frozen=True, kw_only=True)
