@@ -63,7 +63,7 @@ class Record:
         self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
         self.differences: list[str] = []
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
-        self.idle: list[KnownCell] = []  # with tasks in the queue
+        self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
         self.stepped = self.news = self.born = self.told = False
         self._cells = tuple(self.cells.values())
         self._look_again_at = 0.0
@@ -173,7 +173,8 @@ class Record:
             self._look_at_zones(plant)
         changed = self._look_at_cells()
         if changed:
-            self.idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
+            idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
+            self.idle = [cell for cell in idle if not cell.paused]
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
         self.told = bool(self.tasks.changes or self.tasks.refused or self.answers or self.transitions)
         if self.news or plant.now >= self._look_again_at:
@@ -190,7 +191,7 @@ class Record:
             if asked or (known.robot.home_at_start and self.world.moment.sent):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
             known.hear(report)
-            if report.rejected is not None:
+            if report.rejected in self.commands.open:
                 self.commands.hear(report)
 
     def _ask(self, asked: list[Any]) -> None:

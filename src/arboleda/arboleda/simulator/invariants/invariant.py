@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from itertools import compress
 from operator import attrgetter
@@ -16,16 +16,15 @@ from ..world import Moment, World
 
 @dataclass(kw_only=True)
 class Look:
-    """The world after one step, what is true in it, and what was said and done so far."""
+    """The world after one step, what is true in it, what was said and done so far; `moment`: in this step."""
 
     world: World
     truth: Truth
     record: Record
+    moment: Moment = field(init=False)
 
-    @property
-    def moment(self) -> Moment:
-        """What happened in this step."""
-        return self.world.moment
+    def __post_init__(self) -> None:
+        self.moment = self.world.moment
 
 
 class When(Enum):
@@ -33,13 +32,13 @@ class When(Enum):
 
     ALWAYS = "world"
     DEEDS = "truth.deeds"
-    ASKED = "world.moment.asked"
-    HEARD = "world.moment.heard"
-    SENT = "world.moment.sent"
+    ASKED = "moment.asked"
+    HEARD = "moment.heard"
+    SENT = "moment.sent"
     COMMANDED = "record.commands.new"
     TOLD = "record.told"
-    PUBLISHED = "world.moment.published"
-    EXECUTED = "world.moment.executed"
+    PUBLISHED = "moment.published"
+    EXECUTED = "moment.executed"
     STEPPED = "record.stepped"
     NEWS = "record.news"
     BORN = "record.born"
@@ -85,7 +84,8 @@ class Judges:
             self._benches[each.when].rules.append((each.name, each.rule))
         used = [when for when, bench in self._benches.items() if bench.rules and when is not When.END]
         self._after_a_step = [self._benches[when] for when in used]
-        self._signs = [attrgetter(when.value) for when in used]
+        # the first two are there because of one name alone attrgetter makes no tuple
+        self._signs = attrgetter("world", "world", *(when.value for when in used))
 
     @property
     def looks(self) -> Counter[str]:
@@ -94,7 +94,8 @@ class Judges:
 
     def after_a_step(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach that a step gives reason to look for: the invariant's name, and its sentence."""
-        for bench in compress(self._after_a_step, [sign(look) for sign in self._signs]):
+        _, _, *signs = self._signs(look)
+        for bench in compress(self._after_a_step, signs):
             bench.looks += 1
             for name, rule in bench.rules:
                 for sentence in rule(look):

@@ -55,11 +55,11 @@ def no_starvation(look: Look) -> Iterable[str]:
 
 def _ready(look: Look, cell: KnownCell) -> bool:
     plant, robots = look.world.plant, look.record.robots
-    if cell.paused or cell.stopped or plant.intake.closed:
+    if cell.stopped or plant.intake.closed:
         return False
     for robot in cell.cell.robots:
         known = robots[robot.name]
-        if known.state is MotionState.MOVING or known.obstacles(plant.now, plant.epoch):
+        if known.state is MotionState.MOVING or known.is_unfit(plant.now, plant.epoch):
             return False
         # whether a jump of its joints was a reboot is for the plant's evidence to judge
         if robot.evidence is Evidence.JOINTS and plant.dispatcher.beliefs[robot.name].displaced:

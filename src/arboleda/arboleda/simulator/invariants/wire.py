@@ -120,10 +120,11 @@ def payload_size(look: Look) -> Iterable[str]:
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
     record, wrong = look.record, []
+    shown = record.shown
     for report in look.moment.heard:
-        if report.robot not in record.shown:
+        if report.robot not in shown:
             continue
-        known, board, belief = record.shown[report.robot]
+        known, board, belief = shown[report.robot]
         if belief.q != known.q or belief.node != known.node:
             wrong.append(f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}")
         if board.is_news(report) and not board.said(report.q, report.node, record.told_since(report.at)):

@@ -8,14 +8,14 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
-from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Joint, Robot
 from arboleda.sim.board import Board
-from arboleda.wire.payloads import Goal, decode
-from arboleda.wire.topics import Channel, parse, topic
+from arboleda.wire.payloads import Goal
+from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery
 
+from ..commands import goal as goal_of
 from ..network import Client
 
 RECENT = 512  # telemetry messages, more than the bridge or a line keep
@@ -39,6 +39,7 @@ class KnownBoard:
         self._reported_q: tuple[float, ...] | None = None
         self._reported_node: int | None = None
         self._look_at = 0.0
+        self._written: tuple[tuple[float, ...] | None, int | None, bytes] | None = None
         joints = robot.joints if isinstance(robot, Arm) else ()
         self._axes = len(joints) or None
         self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
@@ -80,7 +81,9 @@ class KnownBoard:
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """How telemetry of our boards begins where it says this."""
-        return (self._form % tuple(self._on_wire(q, node))).encode()
+        if self._written is None or self._written[:2] != (q, node):
+            self._written = (q, node, (self._form % tuple(self._on_wire(q, node))).encode())
+        return self._written[2]
 
     def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> list[Any]:
         if q is None:
@@ -92,16 +95,10 @@ class KnownBoard:
     def _was_delivered(self, goal: Goal) -> bool:
         """Retained ones do not count: nobody knows how old they are."""
         for delivery in self.inbox:
-            if not delivery.retain and self._decoded(delivery) == goal:
+            if not delivery.retain and goal_of(delivery.topic, delivery.payload, self._axes) == goal:
                 self.inbox.remove(delivery)
                 return True
         return False
-
-    def _decoded(self, delivery: Delivery) -> object:
-        try:
-            return decode(parse(delivery.topic)[1], delivery.payload, axes=self._axes)
-        except PayloadError:
-            return None
 
 
 class Boards:

@@ -41,6 +41,7 @@ class KnownRobot:
 
     def forget(self) -> None:
         """A plant that starts has heard nothing."""
+        self._words: tuple[object, ...] = ()  # of the last report
         self.heard_at: float | None = None
         self.state: MotionState | None = None
         self.homed: bool | None = None
@@ -54,6 +55,15 @@ class KnownRobot:
 
     def hear(self, report: Report) -> None:
         """Take over what it says now."""
+        if report.words != self._words:
+            self._words = report.words
+            self._take_over(report)
+        if report.state is not MotionState.NO_LINK:
+            self.heard_at = report.at
+        if self.unnamed is not None and self.unnamed in (report.accepted, report.done, report.rejected):
+            self.unnamed = None
+
+    def _take_over(self, report: Report) -> None:
         if report.boot_id is not None:
             self._hear_boot(report)
         if report.epoch is not None:
@@ -66,10 +76,6 @@ class KnownRobot:
             self.node = report.node
         if report.state is not None:
             self.state = report.state
-        if report.state is not MotionState.NO_LINK:
-            self.heard_at = report.at
-        if self.unnamed in (report.accepted, report.done, report.rejected):
-            self.unnamed = None
 
     def _hear_boot(self, report: Report) -> None:
         changed = self.boot is not None and self.boot != report.boot_id
@@ -87,6 +93,10 @@ class KnownRobot:
             return True
         never = self.heard_at is None and self._patience_s < math.inf
         return never or self.stale_at <= now
+
+    def is_unfit(self, now: float, plant_epoch: int) -> bool:
+        """Whether anything speaks against a command to it."""
+        return any(is_so(self, now, plant_epoch) for is_so in OBSTACLES.values())
 
     def obstacles(self, now: float, plant_epoch: int) -> frozenset[Obstacle]:
         """Everything that speaks against a command to it."""

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.core.errors import PayloadError
 from arboleda.core.messages import StopMode
 from arboleda.core.model import Cell, Robot
 from arboleda.sim.board import Board
-from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal, decode
-from arboleda.wire.topics import Channel, parse
+from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
+from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery, Publication
 
+from ..commands import goal as goal_of
 from ..network import Client
 
 MOTIONS = (JointsGoal, PathGoal, HomeGoal)
@@ -167,7 +167,7 @@ class RobotTruth:
         waiting = sum(map(_is_command, self._client.inbox)) if self._ahead else 0
         heard = len(self._ahead) - waiting
         for delivery in self._ahead[:heard]:
-            goal = None if delivery.retain else _goal(delivery, self.body.axes)
+            goal = None if delivery.retain else goal_of(delivery.topic, delivery.payload, self.body.axes)
             if goal is not None:
                 self._obeyed(goal)
             if executed and goal == executed[0]:
@@ -205,13 +205,3 @@ def _is_over(due: tuple[int | None, ...], now_us: int) -> bool:
 
 def _is_command(event: object) -> bool:
     return isinstance(event, Delivery) and not event.topic.endswith(BEATS)
-
-
-def _goal(delivery: Delivery, axes: int | None) -> Goal | None:
-    """The command in a message to a board; None for a beat and for what nobody can read."""
-    try:
-        _, channel = parse(delivery.topic)
-        said = decode(channel, delivery.payload, axes=axes)
-    except PayloadError:
-        return None
-    return said if isinstance(said, Goal) else None

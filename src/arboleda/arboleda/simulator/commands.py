@@ -1,0 +1,21 @@
+"""What a message to a board asks it to do."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from arboleda.core.errors import PayloadError
+from arboleda.wire.payloads import Goal, decode
+from arboleda.wire.topics import parse
+
+RECENT = 64  # each message is read by all who follow its board
+
+
+@lru_cache(maxsize=RECENT)
+def goal(topic: str, payload: bytes, axes: int | None) -> Goal | None:
+    """The command in a message to a board; None for a beat and for what nobody can read."""
+    try:
+        said = decode(parse(topic)[1], payload, axes=axes)
+    except PayloadError:
+        return None
+    return said if isinstance(said, Goal) else None
