@@ -19,13 +19,15 @@ __all__ = ["Context", "Make"]
 class Context:
     """A cell's own time, and its ways to send, cancel, wait, ask and fail.
 
-    The cell's time stands still while the cell is held, so what waits in a tree waits on.
+    The cell's time stands still while the cell is held, so what waits in a tree waits on. `next_deadline`
+    is when the tree is to be woken, s of the plant's time; None while held.
     """
 
     def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones, clock: Callable[[], float]) -> None:
         self.cell = cell
         self.timing: Timing = dispatcher.model.timing
         self.wakes: list[float] = []
+        self.next_deadline: float | None = None
         self.sent = 0
         self.awaits_piece = False  # for a report newer than the last one that had it
         self.carried = False  # a part that was seen in the effector is on its way
@@ -48,41 +50,33 @@ class Context:
         """The plant's time, s; it never stands still."""
         return self._clock()
 
-    @property
-    def next_deadline(self) -> float | None:
-        """When the tree is to be woken, s of the plant's time; None while held."""
-        if self._paused_at is not None or not self.wakes:
-            return None
-        at = min(self.wakes)
-        due = at + self._paused_s
-        while (
-            due - self._paused_s < at
-        ):  # rounding must not wake the plant an instant before `now` gets there
-            due = math.nextafter(due, math.inf)
-        return due
-
     def pause(self) -> None:
         """The cell's time stands still from now on."""
         if self._paused_at is None:
             self._paused_at = self._clock()
+            self._plan()
 
     def go_on(self) -> None:
         """The cell's time passes again."""
         if self._paused_at is not None:
             self._paused_s += self._clock() - self._paused_at
             self._paused_at = None
+            self._plan()
 
     def woken(self) -> bool:
         """Whether a time that the tree waits for has come; each is told once, and none while held."""
-        if self._paused_at is not None or not self.wakes or min(self.wakes) > self.now:
+        if self.next_deadline is None or min(self.wakes) > self.now:
             return False
-        self.wakes = [at for at in self.wakes if at > self.now]
+        now = self.now
+        self.wakes = [at for at in self.wakes if at > now]
+        self._plan()
         return True
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""
         self.wakes, self.awaits_piece, self.carried = [], False, False
         self.failure = self.last_failure = None
+        self._plan()
 
     def send(self, make: Make, doing: str) -> Entry:
         """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
@@ -215,6 +209,17 @@ class Context:
     def wake_at(self, at: float) -> None:
         """Have the tree ticked again at `at`, s of `now`."""
         self.wakes.append(at)
+        self._plan()
+
+    def _plan(self) -> None:
+        """Work out the next deadline; rounding must not wake the plant an instant before `now` gets there."""
+        if self._paused_at is not None or not self.wakes:
+            self.next_deadline = None
+            return
+        at = min(self.wakes)
+        self.next_deadline = at + self._paused_s
+        while self.next_deadline - self._paused_s < at:
+            self.next_deadline = math.nextafter(self.next_deadline, math.inf)
 
     def notify(self, notice: Notice) -> None:
         """Tell the outside."""

@@ -47,6 +47,7 @@ class Dispatcher:
         self.version = 0  # changes whenever something other than a position changed
         stale_after_s = model.timing.stale_after_s
         self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
+        self._stale_at: dict[str, float] = {}  # of those beliefs that can get stale
         self.grips = Grips([cell.arm.name for cell in model.cells], memory.get(Fact.EFFECTOR, {}))
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
@@ -63,8 +64,8 @@ class Dispatcher:
 
     @property
     def next_deadline(self) -> float | None:
-        stale = [belief.stale_at for belief in self.beliefs.values()]
-        return min([at for at in (self.ledger.next_deadline, *stale) if at is not None], default=None)
+        due, stale_at = self.ledger.next_deadline, min(self._stale_at.values(), default=None)
+        return due if stale_at is None or (due is not None and due < stale_at) else stale_at
 
     def send(self, make: Make, cell: str, doing: str, now: float) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one."""
@@ -92,6 +93,7 @@ class Dispatcher:
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
         entry.cancelled_after = self.beliefs[entry.command.robot].reports
         entry.deadline = now + self.model.timing.stop_timeout_s
+        self.ledger.plan(entry)
         if entry.is_motion and entry.command.robot not in self.latched:
             self._stop(entry.command.robot, StopMode.HALT)
 
@@ -159,7 +161,7 @@ class Dispatcher:
         Its reference counts as home: homing leads there, and both lie outside all zones.
         """
         belief = self.beliefs[cell.arm.name]
-        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way
+        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way.last
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
@@ -178,11 +180,13 @@ class Dispatcher:
         if belief is None or belief.robot.link is Link.NONE:
             return
         if belief.hear_again(report):
+            self._watch(belief)
             self._prove(belief, report, now)
             return
         before, told = Before.of(belief), self._told(belief)
         returned = _returned(belief, report)
         belief.merge(report)
+        self._watch(belief)
         goal = self.reached.get(report.robot)
         astray = goal is not None and evidence.strayed(before, belief, report, goal)
         if astray or evidence.displaced(before, belief, report):
@@ -194,16 +198,24 @@ class Dispatcher:
             self.version += 1
             self.ledger.changed.add(self.model.cell_of[report.robot].name)
 
+    def _watch(self, belief: Belief) -> None:
+        """Take over when its silence will have lasted too long."""
+        if belief.stale_at is not None:
+            self._stale_at[belief.robot.name] = belief.stale_at
+
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves, even one that only repeats what was believed `before` (then None)."""
-        for entry in self.ledger.of_robot(report.robot):
+        name = report.robot
+        for entry in self.ledger.of_robot(name):
             verdict = evidence.judge(entry, before or Before.of(belief), belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
-        self.under_way.hear(report, now)
-        if belief.online:
-            self._say_again(belief, now)
-        self._settle_grip(belief)
+        if name in self.under_way.last or name in self.unheard_clears:
+            self.under_way.hear(report, now)
+            if belief.online:
+                self._say_again(belief, now)
+        if belief.effector is not None:
+            self._settle_grip(belief)
 
     def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
         """Fail a command that could not leave this process."""
@@ -214,6 +226,9 @@ class Dispatcher:
 
     def expire(self, limit: float, now: float) -> None:
         """End what is due up to and including `limit`: settling times, deadlines, silence."""
+        due = self.next_deadline
+        if due is None or due > limit:
+            return
         for entry in [entry for entry in self.ledger.entries.values() if entry.next_deadline <= limit]:
             self._book(entry, _overdue(entry), now)
         for belief in self.beliefs.values():
@@ -278,7 +293,7 @@ class Dispatcher:
     def _settle_grip(self, belief: Belief) -> None:
         """An effector that nobody is switching is what its board reports."""
         arm, grip = belief.robot.name, Grip.ON if belief.effector else Grip.OFF
-        if belief.effector is None or self.grips[arm] is grip:
+        if self.grips[arm] is grip:
             return
         if not any(isinstance(entry.command, SetEffector) for entry in self.ledger.of_robot(arm)):
             self._grip(arm, grip)
@@ -333,6 +348,7 @@ class Dispatcher:
 
     def _went_stale(self, belief: Belief, now: float) -> None:
         belief.fall_silent()
+        del self._stale_at[belief.robot.name]
         self.version += 1
         self.ledger.changed.add(self.model.cell_of[belief.robot.name].name)
         for entry in self.ledger.of_robot(belief.robot.name):

@@ -104,11 +104,17 @@ class Ledger:
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
         self._of_robot: defaultdict[str, dict[str, Entry]] = defaultdict(dict)
+        self._due: dict[str, float] = {}
         self.changed: set[str] = set()
         self.ignored: Counter[str] = Counter()
 
     def open(self, entry: Entry) -> None:
         self.entries[entry.command.id] = self._of_robot[entry.command.robot][entry.command.id] = entry
+        self.plan(entry)
+
+    def plan(self, entry: Entry) -> None:
+        """Take over an open command's deadline."""
+        self._due[entry.command.id] = entry.next_deadline
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
@@ -129,7 +135,7 @@ class Ledger:
         if entry.state is State.FAILED:
             entry.failure = failure
         if not entry.open:
-            del self.entries[id], self._of_robot[entry.command.robot][id]
+            del self.entries[id], self._due[id], self._of_robot[entry.command.robot][id]
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
         after = TABLE.get((entry.state, feed))
@@ -146,4 +152,4 @@ class Ledger:
 
     @property
     def next_deadline(self) -> float | None:
-        return min([entry.next_deadline for entry in self.entries.values()], default=None)
+        return min(self._due.values(), default=None)

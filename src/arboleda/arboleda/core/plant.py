@@ -66,7 +66,11 @@ class Plant:
         self.zones = Zones(model.zones, memory.get(Fact.QUARANTINE, {}))
         self.cells = {cell.name: self._run(cell) for cell in model.cells}
         self._operator = Operator(self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now)
-        self._homed_once: set[str] = set()
+        self._to_home = {name for name, robot in model.robots.items() if robot.home_at_start}
+        self._runs = {robot.name: run for run in self.cells.values() for robot in run.cell.robots}
+        self._order = {name: number for number, name in enumerate(self.cells)}
+        self._touched = set(self.cells)  # those to which something happened that they may wait for
+        self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
         self._changes = 0
         self._next_beat = now
         self.next_deadline = now
@@ -75,7 +79,10 @@ class Plant:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
         self.now = now
         for event in events:
-            self._expire(math.nextafter(event.at, -math.inf))
+            if event.at > self.next_deadline:
+                self._expire(math.nextafter(event.at, -math.inf))
+            if not isinstance(event, Report):
+                self._touched.update(self.cells)
             HANDLERS[type(event)](self, event)
         self._expire(now)
         self._watch_zones()
@@ -138,27 +145,42 @@ class Plant:
             self.dispatcher.expire(limit, self.now)
 
     def _earliest(self) -> float:
-        due = [self._next_beat, self.dispatcher.next_deadline]
-        due += [cell.context.next_deadline for cell in self.cells.values()]
-        return min([at for at in due if at is not None])
+        due = min([self._next_beat, *self._wakes.values()])
+        other = self.dispatcher.next_deadline
+        return due if other is None or due < other else other
 
     def _advance(self) -> None:
-        """Let every cell do what it can, again while one of them gave another something to do."""
+        """Let the cells to which something happened do what they can, again while that makes them do more."""
+        soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
+        touched = [*self._touched, *(name for name, at in self._wakes.items() if at <= soon)]
+        self._touched.clear()
         for _ in range(ROUND_BOUND):
-            changed = self.dispatcher.ledger.changed
-            self.dispatcher.ledger.changed = set()
-            did = [cell.advance(woken=name in changed) for name, cell in self.cells.items()]
-            if True in did:
+            changed, self.dispatcher.ledger.changed = self.dispatcher.ledger.changed, set()
+            touched = sorted({*touched, *changed}, key=self._order.__getitem__)
+            did = [name for name in touched if self.cells[name].advance(woken=name in changed)]
+            for name in touched:
+                self._plan(name)
+            if did:
                 self._changes += 1
             elif not self.dispatcher.ledger.changed:
                 return
+            touched = did
         raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
+
+    def _plan(self, name: str) -> None:
+        """Take over when a cell's tree is to be woken."""
+        at = self.cells[name].context.next_deadline
+        if at is not None:
+            self._wakes[name] = at
+        else:
+            self._wakes.pop(name, None)
 
     def _watch_zones(self) -> None:
         """An arm that is not heard may still be where it was; one that is seen outside is not."""
-        for cell in self.cells.values() if self.zones.held else ():
+        arms = self.zones.robots
+        for cell in self.cells.values() if arms else ():
             arm = cell.cell.arm.name
-            if not self.zones.held_by(arm):
+            if arm not in arms:
                 continue
             belief = self.dispatcher.beliefs[arm]
             if not belief.online or belief.unhomed:
@@ -173,26 +195,26 @@ class Plant:
 
     def _on_report(self, report: Report) -> None:
         self.dispatcher.report(report, self.now)
-        cell = self.model.cell_of.get(report.robot)
-        if cell is None:
+        run = self._runs.get(report.robot)
+        if run is None:
             return
-        context = self.cells[cell.name].context
-        if report.piece is not None and context.awaits_piece:
-            context.awaits_piece = False  # who goes on waiting asks again
-            self.dispatcher.ledger.changed.add(cell.name)
-        self._home_at_start(report.robot)
+        if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
+            self._touched.add(run.cell.name)
+        if report.piece is not None and run.context.awaits_piece:
+            run.context.awaits_piece = False  # who goes on waiting asks again
+            self.dispatcher.ledger.changed.add(run.cell.name)
+        if report.robot in self._to_home:
+            self._home_at_start(report.robot)
 
     def _home_at_start(self, robot: str) -> None:
         belief = self.dispatcher.beliefs[robot]
-        if robot in self._homed_once or not belief.robot.home_at_start:
-            return
         if not belief.answered or belief.homed is None:
             return
         if self.cells[self.model.cell_of[robot].name].state not in (CellState.IDLE, CellState.HELD):
             return
         if belief.unhomed and self._operator.not_free_for_homing({robot}):
             return
-        self._homed_once.add(robot)
+        self._to_home.discard(robot)
         if belief.unhomed:
             self._operator.home(robot)
 

@@ -152,7 +152,7 @@ def _follow(context: Context, name: str, nodes: tuple[int, ...]) -> Behaviour:
 
 def _visit(context: Context, way: Sequence[Pose], visits: list[Visit]) -> list[Behaviour]:
     """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
-    legs = zone_plan.plan(context.cell, way)
+    legs = zone_plan.plan(context.cell, way) if context.cell.zones else []
     steps: list[Behaviour] = []
     for index, (pose, work) in enumerate(visits):
         steps += [_take(context, leg.zones) for leg in legs if leg.start == index and leg.zones]

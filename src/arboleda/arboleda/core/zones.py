@@ -36,9 +36,9 @@ class Zones:
         return frozenset([zone for zone, holder in self._holders.items() if holder == robot])
 
     @property
-    def held(self) -> bool:
-        """Whether anybody holds any."""
-        return bool(self._holders)
+    def robots(self) -> set[str]:
+        """Who holds any."""
+        return set(self._holders.values())
 
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
