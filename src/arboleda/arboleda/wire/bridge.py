@@ -6,6 +6,7 @@ the plant's epoch and the heartbeat.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -53,7 +54,7 @@ class Bridge:
         self._boards = {
             robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
         }
-        self._links = [(board.link, board) for board in self._boards.values()]
+        self._stale_at: dict[str, float] = {}  # of the boards whose link is up, where silence means anything
         self._routes = {
             topics.topic(board.robot.mqtt, channel): (board, channel)
             for board in self._boards.values()
@@ -77,17 +78,16 @@ class Bridge:
     @property
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
-        times = [self._started_at, self._beat_at, *[link.stale_at for link, _ in self._links]]
+        times = [self._started_at, self._beat_at, min(self._stale_at.values(), default=None)]
         return min([time for time in times if time is not None], default=None)
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Publications for MQTT and reports for the plant, in the order they must leave."""
         out = self._start(now)
         for event in events:
-            out += self._take(event)
-        for link, board in self._links:
-            if link.stale_at is not None and now >= link.stale_at:
-                out += board.lose(now)
+            out += self._deliver(event) if isinstance(event, Delivery) else self._take(event)
+        if self._stale_at and min(self._stale_at.values()) <= now:
+            out += self._lose_silent(now)
         return out + self._own_beats(now)
 
     def _start(self, now: float) -> list[Message]:
@@ -96,12 +96,12 @@ class Bridge:
         self._started_at = None
         return [board.no_link(now) for board in self._boards.values()]
 
-    def _take(self, event: Event) -> list[Message]:
-        if isinstance(event, Delivery):
-            return self._deliver(event)
+    def _take(self, event: FromPlant | Connection | Leaving) -> list[Message]:
         if isinstance(event, Connection):
             self.connected = event.up
             changed = [board.connection(event.at, event.up) for board in self._boards.values()]
+            for board in self._boards.values():
+                self._watch(board)
             return [message for messages in changed for message in messages]
         if isinstance(event, Leaving):
             return [message for board in self._boards.values() for message in board.halt(event.at)]
@@ -114,7 +114,24 @@ class Bridge:
         if route is None:
             return self._stray(_strange(delivery.topic))
         board, channel = route
-        return board.deliver(delivery, channel)
+        out = board.deliver(delivery, channel)
+        self._watch(board)
+        return out
+
+    def _watch(self, board: Board) -> None:
+        """Take over when its silence will have lasted too long."""
+        if board.link.stale_at is not None:
+            self._stale_at[board.robot.name] = board.link.stale_at
+        else:
+            self._stale_at.pop(board.robot.name, None)
+
+    def _lose_silent(self, now: float) -> list[Message]:
+        out: list[Message] = []
+        for name, board in self._boards.items():
+            if self._stale_at.get(name, math.inf) <= now:
+                out += board.lose(now)
+                self._watch(board)
+        return out
 
     def _stray(self, sentence: str) -> list[Message]:
         self._strays = Counters(refused=self._strays.refused + 1, last=sentence)
