@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
@@ -58,6 +59,9 @@ class Devices:
             for robot in model.robots.values()
             if robot.link is Link.MQTT and robot.name not in elsewhere
         }
+        self._due_us: dict[str, float] = {}  # when each board is to be stepped
+        for name in self.boards:
+            self._plan(name)
 
     def subscriptions(self, board: str) -> tuple[str, ...]:
         """The topics a board listens to."""
@@ -65,18 +69,25 @@ class Devices:
 
     @property
     def next_deadline(self) -> float | None:
-        due = (board.next_deadline_us for board in self.boards.values())
-        return min((time / 1e6 for time in due if time is not None), default=None)
+        due_us = min(self._due_us.values(), default=math.inf)
+        return due_us / 1e6 if due_us < math.inf else None
 
     def step(self, now: float, events: Sequence[ToBoard | Reboot]) -> list[FromBoard]:
         """Feed the events in order, let the time pass, and collect what the boards publish."""
+        now_us, out = _us(now), []
         for event in events:
             self._feed(event)
-        out = []
-        for name, board in self.boards.items():
-            board.advance(_us(now))
+            self._due_us[event.board] = now_us
+        for name in [name for name, due_us in self._due_us.items() if due_us <= now_us]:
+            board = self.boards[name]
+            board.advance(now_us)
             out += [FromBoard(board=name, publication=publication) for publication in board.take()]
+            self._plan(name)
         return out
+
+    def _plan(self, name: str) -> None:
+        due_us = self.boards[name].next_deadline_us
+        self._due_us[name] = math.inf if due_us is None else due_us
 
     def _feed(self, event: ToBoard | Reboot) -> None:
         board = self.boards[event.board]
