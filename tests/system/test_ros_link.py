@@ -53,7 +53,7 @@ BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATE = QoSProfile(
     depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
-MANY = 1000
+MANY = 300
 DEEP = QoSProfile(depth=MANY, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PLANT = shipped("sis_a")
 MOVE = MoveJoints(id="7-1", robot="ra1", q=(0.5, -0.25, 0.0625))
