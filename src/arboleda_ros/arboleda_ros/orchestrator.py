@@ -31,6 +31,7 @@ from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
 
 from . import convert, qos, statuses
 from .asking import Asker
+from .diagnostics import Diagnostic, Diagnostics
 from .port import Port
 from .verbs import VerbServices
 
@@ -41,7 +42,6 @@ LOG = logging.getLogger("arboleda.ros")
 UNHEARD = qos.TASK_STATUS.depth // 2
 CATCH_UP = Duration(seconds=0.02)  # who hears later than that loses the oldest
 TYPES = "arboleda_interfaces"
-Diagnostic = tuple[str, str, int, str, Mapping[str, str]]  # name, hardware id, level, message, values
 
 
 class NoBridge(ArboledaError):
@@ -71,6 +71,7 @@ class OrchestratorPort(Port):
         self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
         self._view = self._speak(String, "plant/view", qos.VIEW)
         self._listen(String, "task_request", self._on_request, qos.TASK_REQUEST)
+        self._all = Diagnostics()
         self._asker = Asker(on_event, clock)
         self._verbs = VerbServices(node, self._asker)
         self._offer = self._offered([cell.name for cell in model.cells])
@@ -98,7 +99,7 @@ class OrchestratorPort(Port):
 
     def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> None:
         """Publish one status per robot and cell; the port's own status goes out by itself."""
-        self._publish_diagnostics([statuses.diagnostic(*each) for each in plain])
+        self._diagnostics.publish(self._all.of(plain, self._node.get_clock().now().to_msg()))
 
     def close(self) -> None:
         if self._offer is not None:

@@ -19,6 +19,7 @@ from .task import Task
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
+TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
 RECENT = 20  # ended tasks that a snapshot shows
 
 
@@ -199,8 +200,10 @@ def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
     level = OK if robot["online"] else STALE
     if robot["online"] and robot["state"] not in (None, 0, 1):
         level = ERROR
-    plain = {key: value for key, value in robot.items() if not isinstance(value, dict)}
+    plain = {key: value for key, value in robot.items() if not isinstance(value, dict) and key not in TIMES}
     values = {key: str(value) for key, value in plain.items() if value is not None}
+    if robot["telemetry_hz"] is not None:
+        values["telemetry_hz"] = f"{robot['telemetry_hz']:.0f}"
     return (f"arboleda: {robot['name']}", robot["mqtt"], level, robot["obstacle"] or "ready", values)
 
 
