@@ -14,7 +14,8 @@ _POLL_S = 0.02
 DISCOVERY_S = 3.2
 _NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
 _UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
-_LOOKED_AT = 100  # topics in one look: each takes its time, and a plant may have hundreds
+_LOOKED_AT = 25  # topics in one look: each takes its time, and a plant may have hundreds
+_ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
 
 
 class Alone:
@@ -26,6 +27,8 @@ class Alone:
         self._born = time.monotonic()
         self._intruders: dict[str, list[str]] = {}  # by topic, as of the last look at it
         self._next = 0
+        self._nodes: list[tuple[str, str]] = []
+        self._alert = 0
 
     def others(self) -> list[tuple[str, str]]:
         """(topic, node name) of every other publisher now."""
@@ -50,14 +53,26 @@ class Alone:
             )
 
     def look(self) -> tuple[str, ...]:
-        """A sentence for each other node that publishes; every call looks at _LOOKED_AT topics, in turn."""
-        begin, self._next = self._next, self._next + _LOOKED_AT
-        if self._next >= len(self.topics):
-            self._next = 0
-        for topic in self.topics[begin : begin + _LOOKED_AT]:
+        """A sentence for each other node that publishes; to be called every second.
+
+        Each call looks at _LOOKED_AT topics in turn, and at all of them after a change among the nodes.
+        """
+        for topic in self._to_look_at():
             alone = self._node.count_publishers(topic) <= 1  # a quarter of the price of asking for names
             self._intruders[topic] = [] if alone else self._others(topic)
         return tuple(_intrusion(name, topics) for name, topics in self._by_name().items())
+
+    def _to_look_at(self) -> list[str]:
+        nodes = sorted(self._node.get_node_names_and_namespaces())
+        if nodes != self._nodes:
+            self._nodes, self._alert = nodes, _ALERT
+        if self._alert > 0:
+            self._alert -= 1
+            return self.topics
+        begin, self._next = self._next, self._next + _LOOKED_AT
+        if self._next >= len(self.topics):
+            self._next = 0
+        return self.topics[begin : begin + _LOOKED_AT]
 
     def _by_name(self) -> dict[str, list[str]]:
         found: dict[str, list[str]] = {}
