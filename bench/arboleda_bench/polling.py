@@ -26,7 +26,7 @@ LONGEST_S = SHORTEST_S + 1 / SLOW_HZ
 
 def run(scene: Scene) -> Result:
     """Arboleda alone and both ticked trees beside each other, in turns."""
-    turns, cycles = (2, 4) if scene.quick else (6, 10)
+    turns, cycles = (2, 3) if scene.quick else (6, 10)
     timing = {"dwell_s": PAUSE_S, "effector_settle_s": PAUSE_S}
     every, ours = (
         plants.write(scene.folder / f"{cells}.yaml", cells, timing=timing, near=True, **DECLARED)

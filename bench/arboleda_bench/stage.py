@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
@@ -9,6 +10,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import String, UInt32
 
+from arboleda.core.errors import ArboledaError
 from arboleda.core.model import Cell
 from arboleda_ros import qos
 from arboleda_ros.link import connect
@@ -45,6 +47,8 @@ class Stage:
         self.node = self._link.node("robots")
         self.robots = make(self.node)
         self._beats = 0
+        self._failed: list[str] = []
+        self.node.create_subscription(String, "task_status", self._on_status, qos.TASK_STATUS)
         self.node.create_subscription(UInt32, "plant/heartbeat", self._on_beat, qos.COMMAND)
         self._ask = {cell.name: self._asking(number, cell) for number, cell in enumerate(cells)}
 
@@ -67,9 +71,11 @@ class Stage:
         self._link.close()
 
     def check(self) -> None:
-        """ArboledaError where one of the others has ended."""
+        """ArboledaError where one of the others has ended, or a task was not done."""
         for process in self._others:
             process.check()
+        for sentence in self._failed:
+            raise ArboledaError(f"a task of the benchmark was not done: {sentence}")
 
     def play(self, cycles: int, *cells: Cell) -> None:
         """Have each of the cells carry out so many storage tasks, and wait for their end."""
@@ -96,6 +102,11 @@ class Stage:
     def _ready(self) -> bool:
         deaf = [each for each in self._ask.values() if not each.get_subscription_count()]
         return bool(self._beats) and not deaf and not self.robots.missing
+
+    def _on_status(self, message: String) -> None:
+        change = json.loads(message.data)
+        if change["state"] in ("failed", "cancelled", "refused"):
+            self._failed.append(change["sentence"])
 
     def _on_beat(self, _: UInt32) -> None:
         self._beats += 1
