@@ -145,3 +145,10 @@ def ros_domain(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[int]
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-log"))
     yield domain
     os.close(lock)
+
+
+@pytest.fixture
+def quick_discovery(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes of the test find each other at once, not within 3 s as by default."""
+    for name in ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"):
+        monkeypatch.setenv(name, str(HERE / "quick_discovery.xml"))

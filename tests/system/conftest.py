@@ -145,13 +145,16 @@ def mosquitto(
     return go
 
 
-@pytest.fixture
-def board() -> str:
+def built_board() -> str | None:
     """The firmware's board as a program; `make firmware` builds it."""
     program = Path(__file__).parents[2] / "firmware" / "build" / "board"
-    if not os.access(program, os.X_OK):
-        pytest.skip("firmware/build/board is not built")
-    return str(program)
+    return str(program) if os.access(program, os.X_OK) else None
+
+
+@pytest.fixture
+def board() -> str:
+    """The same; where it is not there, the test is skipped."""
+    return built_board() or pytest.skip("firmware/build/board is not built")
 
 
 class Observer:
@@ -203,6 +206,8 @@ def observer(ros_domain: int, require: Callable[[str], str]) -> Iterator[Observe
     made.close()
 
 
+RATE = "4"
+SLOW_DEG_S = 4.5  # of ra1's first joint: its moves last seconds at that rate, so they can be interrupted
 SHIPPED = Path(__file__).parents[2] / "src/arboleda/arboleda/plants/plant.yaml"
 
 
@@ -212,19 +217,23 @@ def chain(
     mosquitto: Callable[[int], Any],
     free_port: int,
     tmp_path: Path,
+    quick_discovery: None,
     observer: Any,
-) -> Callable[[Evidence], Chain]:
-    def go(evidence: Evidence) -> Chain:
+) -> Callable[..., Chain]:
+    """`chain(evidence, stop_timeout_s=1)`: three nodes and a broker, with timing of the test's own."""
+
+    def go(evidence: Evidence, **timing: float) -> Chain:
         broker = mosquitto(free_port)
         address = f"127.0.0.1:{free_port}"
-        return Chain(node, observer, plant_at(evidence, tmp_path), address, tmp_path, broker)
+        return Chain(node, observer, plant_at(evidence, tmp_path, **timing), address, tmp_path, broker)
 
     return go
 
 
-def plant_at(evidence: Evidence, folder: Path, *cells: str) -> Path:
-    """The shipped plant, or some of its cells, every robot at this level of evidence."""
-    plant = yaml.safe_load(SHIPPED.read_text())
+def plant_at(evidence: Evidence, folder: Path, *cells: str, **timing: float) -> Path:
+    """The shipped plant, or some of its cells, every robot at this level of evidence; ra1 is slow."""
+    plant = yaml.safe_load(SHIPPED.read_text()) | {"timing": timing}
+    plant["cells"]["sis_a"]["arm"]["speeds"] = {"q1_deg_s": SLOW_DEG_S}
     plant["cells"] = {name: cell for name, cell in plant["cells"].items() if not cells or name in cells}
     for cell in plant["cells"].values():
         cell["arm"]["evidence"] = cell["mobile"]["evidence"] = evidence.value
@@ -254,11 +263,11 @@ class Chain:
         self.address = address
         self.broker = broker
         self.state = str(folder / "state")
-        self._common = {"plant": str(plant), "broker": address}
+        self._common = {"plant": str(plant), "broker": address, "rate": RATE}
         latched = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         observer.listen(String, "/task_status", "/plant/view", qos=latched)
         observer.listen(JointState, "/r1/joint_states")
-        self.devices = self.start("virtual_devices", rate="0.3")
+        self.devices = self.start("virtual_devices")
         self.bridge = self.start("mqtt_bridge")
         self.plant = self.start("orchestrator", state_dir=self.state)
         self.requests = observer.publisher(String, "/task_request")

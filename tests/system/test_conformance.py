@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,46 +11,39 @@ import pytest
 from arboleda.app.build import Options, build
 from arboleda.testing import shipped
 
+from .conftest import built_board
+
 pytestmark = [pytest.mark.system, pytest.mark.timeout(150)]
 
 CHECKS = 24
 
 
-def judged(arboleda: Callable[..., Any], port: int) -> str:
-    """What the kit prints about ra_1, once it has passed."""
-    kit = arboleda("conformance", "--robot", "ra_1", "--broker", f"127.0.0.1:{port}", "--yes")
-    kit.wait_for("ra_1 reaches", patience_s=120)
-    assert kit.wait() == 0, kit.output
-    return kit.output
-
-
-def test_the_firmwares_board_passes_at_the_top(
-    start: Callable[..., Any],
-    arboleda: Callable[..., Any],
-    mosquitto: Callable[[int], Any],
-    board: str,
-    free_port: int,
-) -> None:
-    mosquitto(free_port)
-    start(board, "--robot", "ra_1", "--broker", f"127.0.0.1:{free_port}")
-    said = judged(arboleda, free_port)
-    assert said.count("good ") == CHECKS
-    assert "ra_1 reaches the level ids" in said
-
-
-def test_the_virtual_board_passes_at_the_top(
-    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path
-) -> None:
+@pytest.fixture
+def virtual(mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path) -> Iterator[None]:
+    """The virtual board of ra_2, on a broker."""
     mosquitto(free_port)
     options = Options(broker=f"127.0.0.1:{free_port}", state_dir=tmp_path / "boards")
-    boards = build(shipped("sis_a"), {"devices"}, options)
+    boards = build(shipped("sis_b"), {"devices"}, options)
     boards.start()
-    try:
-        said = judged(arboleda, free_port)
-    finally:
-        boards.stop()
-    assert said.count("good ") == CHECKS
-    assert "ra_1 reaches the level ids" in said
+    yield
+    boards.stop()
+
+
+def test_the_virtual_board_and_the_firmwares_pass_at_the_top(
+    start: Callable[..., Any], arboleda: Callable[..., Any], virtual: None, free_port: int
+) -> None:
+    broker = ("--broker", f"127.0.0.1:{free_port}")
+    robots = ["ra_2"]
+    if program := built_board():
+        start(program, "--robot", "ra_1", *broker)
+        robots.append("ra_1")
+    kits = {robot: arboleda("conformance", "--robot", robot, *broker, "--yes") for robot in robots}
+    for robot, kit in kits.items():
+        kit.wait_for(f"{robot} reaches the level ids", patience_s=120)
+        assert kit.wait() == 0, kit.output
+        assert kit.output.count("good ") == CHECKS, kit.output
+    if program is None:
+        pytest.skip("firmware/build/board is not built; the virtual board passes")
 
 
 def test_nobody_at_the_other_end_is_said(

@@ -17,12 +17,11 @@ LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
 
 
 @LEVELS
-def test_a_task_is_done_across_three_processes(
-    chain: Callable[[Evidence], Chain], evidence: Evidence
-) -> None:
+def test_a_task_is_done_across_three_processes(chain: Callable[..., Chain], evidence: Evidence) -> None:
     parts = chain(evidence)
-    parts.submit("sis_a 0A 4")
-    assert parts.outcome("sis_a 0A 4")["state"] == "done"
+    parts.submit("sis_b 0A 4")
+    change = parts.outcome("sis_b 0A 4")
+    assert change["state"] == "done", change["sentence"]
     for process in (parts.plant, parts.bridge, parts.devices):
         assert process.interrupt() == 0, process.output
         assert "Traceback" not in process.output
@@ -30,7 +29,7 @@ def test_a_task_is_done_across_three_processes(
 
 @LEVELS
 def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
-    chain: Callable[[Evidence], Chain], evidence: Evidence
+    chain: Callable[..., Chain], evidence: Evidence
 ) -> None:
     parts = chain(evidence)
     parts.submit("sis_a 0A 4")
@@ -75,7 +74,7 @@ def verb(parts: Chain, name: str) -> tuple[bool, str]:
 
 
 def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
-    chain: Callable[[Evidence], Chain],
+    chain: Callable[..., Chain],
 ) -> None:
     parts = chain(Evidence.IDS)
     arm, mqtt = diagnosed(parts, "ra1"), diagnosed(parts, "mqtt_bridge on MQTT")
@@ -98,9 +97,9 @@ def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
 
 
 def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
-    chain: Callable[[Evidence], Chain],
+    chain: Callable[..., Chain],
 ) -> None:
-    parts = chain(Evidence.IDS)
+    parts = chain(Evidence.IDS, stop_timeout_s=1.0)
     parts.submit("sis_a palletizing")
     parts.wait_for_step("sis_a", "move to station 8")
     parts.bridge.kill()
@@ -118,7 +117,7 @@ def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
     assert parts.robot("ra1")["effector"] is False, "the part was not brought back"
 
 
-def test_a_broker_that_is_gone_is_an_error_of_the_link(chain: Callable[[Evidence], Chain]) -> None:
+def test_a_broker_that_is_gone_is_an_error_of_the_link(chain: Callable[..., Chain]) -> None:
     parts = chain(Evidence.IDS)
     mqtt = diagnosed(parts, "mqtt_bridge on MQTT")
     parts.observer.wait(lambda: mqtt() and mqtt()[0] == OK, "the bridge does not reach its broker")
@@ -129,7 +128,7 @@ def test_a_broker_that_is_gone_is_an_error_of_the_link(chain: Callable[[Evidence
 
 @LEVELS
 def test_boards_killed_and_restarted_in_a_move_fail_it(
-    chain: Callable[[Evidence], Chain], evidence: Evidence
+    chain: Callable[..., Chain], evidence: Evidence
 ) -> None:
     parts = chain(evidence)
     parts.submit("sis_a 0A 4")
