@@ -3,6 +3,7 @@
 .PHONY: run test ros-test campaign firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
 
 export PYTHON
+export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
 PYTEST_ARGS ?= -n 4 --dist worksteal
 CYCLES ?= 15

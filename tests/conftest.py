@@ -17,6 +17,8 @@ from unittest import mock
 import pytest
 from hypothesis import HealthCheck, settings
 
+from .dealing import dealt
+
 # How fast a machine is does not decide a test.
 settings.register_profile("arboleda", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("arboleda")
@@ -44,6 +46,20 @@ def need_tool(name: str) -> str:
     if tool is None:
         pytest.skip(f"{name} is not installed")
     return tool
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Several workers get their tests in an order that keeps all cores busy."""
+    workers = getattr(config, "workerinput", {}).get("workercount", 1)
+    if workers == 1:
+        return
+    waiting: dict[Path, list[pytest.Item]] = {}
+    computing = []
+    for item in items:
+        group = waiting.setdefault(item.path, []) if item.get_closest_marker("system") else computing
+        group.append(item)
+    items[:] = dealt(list(waiting.values()), computing, workers)
 
 
 @pytest.fixture

@@ -188,7 +188,8 @@ class Observer:
         until = time.monotonic() + patience_s
         while not arrived():
             if time.monotonic() > until:
-                pytest.fail(f"{otherwise}; heard so far: {self.heard}")
+                last = {topic: messages[-3:] for topic, messages in self.heard.items()}
+                pytest.fail(f"{otherwise}; heard last: {last}")
             self._executor.spin_once(timeout_sec=0.05)
         return arrived()
 
@@ -301,6 +302,11 @@ class Chain:
     def wait_for_cell(self, name: str, ready: Callable[[dict[str, Any]], bool]) -> None:
         views = self.observer.heard["/plant/view"]
         self.observer.wait(lambda: views and ready(self.cell(name)), f"{name} is not as expected")
+
+    def wait_until_ready(self, *names: str) -> None:
+        """Wait until nothing keeps these robots from a task."""
+        for name in names:
+            self.wait_for_robot(name, lambda robot: not robot["obstacle"])
 
     def wait_for_robot(self, name: str, ready: Callable[[dict[str, Any]], bool]) -> None:
         views = self.observer.heard["/plant/view"]

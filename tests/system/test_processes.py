@@ -39,7 +39,8 @@ def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
     parts.start("mqtt_bridge")
     change = parts.outcome("sis_a 0A 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
-    parts.wait_for_robot("rm_sis_b", lambda robot: robot["bridge_epoch"] != before and not robot["obstacle"])
+    parts.wait_for_robot("rm_sis_b", lambda robot: robot["bridge_epoch"] != before)
+    parts.wait_until_ready("ra2", "rm_sis_b")
     parts.submit("sis_b 0A 4")
     change = parts.outcome("sis_b 0A 4")
     assert change["state"] == "done", change["sentence"]
@@ -108,7 +109,7 @@ def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
     parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
     assert "ra1 is offline" in parts.cell("sis_a")["held_by"]
     parts.start("mqtt_bridge")
-    parts.wait_for_robot("ra1", lambda robot: not robot["obstacle"])
+    parts.wait_until_ready("ra1")
     arm = parts.robot("ra1")
     assert (arm["effector"], arm["state"]) == (True, 0), "it stands still and keeps its part"
     assert parts.cell("sis_a")["state"] == "held", "only an operator lets it move"
@@ -141,7 +142,7 @@ def test_boards_killed_and_restarted_in_a_move_fail_it(
     if evidence is Evidence.JOINTS:  # a board that was away may have rebooted, and cannot say where it is
         parts.wait_for_robot("rm_sis_b", lambda robot: robot["obstacle"] == "rm_sis_b is not homed")
         return
-    parts.wait_for_robot("rm_sis_b", lambda robot: not robot["obstacle"])
+    parts.wait_until_ready("ra2", "rm_sis_b")
     parts.submit("sis_b 0A 4")
     change = parts.outcome("sis_b 0A 4")
     assert change["state"] == "done", change["sentence"]
