@@ -105,13 +105,19 @@ def test_every_interpreter_that_is_here_does_the_same(setting: Path, tmp_path: P
     assert set(said.values()) == {said[sys.executable]}, said
 
 
+MAIN = """
+import os; print(os.getpid())
+from arboleda.app.simulate import screen; screen.EVERY_S = 0.5  # a line says that it runs
+from arboleda.app.cli import main; main()
+"""
+
+
 @pytest.fixture
 def simulate(start: Callable[..., Any]) -> Callable[..., Any]:
     """`simulate("--seeds", "4")`: the command in a process of its own, which says its number first."""
 
     def go(*words: str) -> Any:
-        main = "import os; print(os.getpid()); from arboleda.app.cli import main; main()"
-        return start(sys.executable, "-c", main, "simulate", *words, env={"PYTHONPATH": paths()})
+        return start(sys.executable, "-c", MAIN, "simulate", *words, env={"PYTHONPATH": paths()})
 
     return go
 
