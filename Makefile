@@ -28,7 +28,7 @@ firmware:  ## build the board for Linux, firmware/build/board
 
 firmware-test:  ## test the boards' firmware: on this machine, as rv32imc in qemu, against the virtual boards
 	@scripts/install test
-	@$(MAKE) --no-print-directory -C firmware test PYTHON=$(CURDIR)/$(BIN)/python
+	@$(MAKE) --no-print-directory -j "$$(nproc)" -C firmware test PYTHON=$(CURDIR)/$(BIN)/python
 	$(BIN)/python -m pytest firmware/test
 
 fuzz:  ## fuzz the firmware's reader of messages, 10 million runs; FUZZ_RUNS=... for others
