@@ -424,6 +424,13 @@ def test_what_is_drawn_solid_is_what_joint_states_say(
             return ended(page, 2)
 
         observer.wait(watched, "the tasks did not end", 40.0)
+        over = time.time()
+
+        def heard_since() -> bool:
+            stamps = [observer.heard[topic][-1].header.stamp for topic in names.values()]
+            return all(stamp.sec + stamp.nanosec / 1e9 > over for stamp in stamps)
+
+        observer.wait(heard_since, "nothing was said after the end of the tasks")
 
         def said(robot: str) -> list[list[float]]:
             return [list(message.position) for message in observer.heard[names[robot]]]
