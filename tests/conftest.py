@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import fcntl
 import importlib.util
-import itertools
 import os
 import shutil
 import socket
-import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,6 +13,8 @@ from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from arboleda.testing.domains import Domain
 
 from .dealing import dealt
 
@@ -25,8 +24,6 @@ settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
-LAST_DOMAIN = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
-DOMAINS = itertools.cycle((os.getpid() + n) % LAST_DOMAIN + 1 for n in range(LAST_DOMAIN))
 
 
 def by_hand(item: pytest.Item) -> bool:
@@ -137,30 +134,15 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
-def take_domain() -> tuple[int, int]:
-    """(ROS domain id, the open file that reserves it on this machine); each call starts at another id."""
-    folder = Path(tempfile.gettempdir(), f"arboleda-ros-domains-{os.getuid()}")
-    folder.mkdir(exist_ok=True)
-    for domain in itertools.islice(DOMAINS, LAST_DOMAIN):
-        lock = os.open(folder / str(domain), os.O_RDWR | os.O_CREAT)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(lock)
-        else:
-            return domain, lock
-    pytest.fail(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
-
-
 @pytest.fixture
 def ros_domain(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[int]:
     """A ROS domain id of one's own, this machine only, for the test and the processes it starts."""
-    domain, lock = take_domain()
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    domain = Domain()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain.id))
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros-log"))
-    yield domain
-    os.close(lock)
+    yield domain.id
+    domain.close()
 
 
 @pytest.fixture

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ArboledaError
+from arboleda.testing.domains import Domain
 
 from .processes import Process
 
-LAST_DOMAIN = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
 START_S = 10.0
 POLL_S = 0.02
@@ -31,14 +31,16 @@ class Scene:
         self.folder = Path(tempfile.mkdtemp(prefix="arboleda_bench_"))
         self._processes: list[Process] = []
         self._environ = dict(os.environ)
+        self._domain = Domain()
 
     def __enter__(self) -> Scene:
-        os.environ["ROS_DOMAIN_ID"] = str(os.getpid() % LAST_DOMAIN + 1)
+        os.environ["ROS_DOMAIN_ID"] = str(self._domain.id)
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         return self
 
     def __exit__(self, *_: object) -> None:
         self.end()
+        self._domain.close()
         os.environ.clear()
         os.environ.update(self._environ)
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import fcntl
 import importlib.util
-import os
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
-from itertools import islice
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+from arboleda.testing.domains import Domain
+
 TYPED = ["test_execute_task.py", "test_execute_task_ends.py", "test_typed.py"]
 collect_ignore = [] if importlib.util.find_spec("arboleda_interfaces") else TYPED
 
-LAST_DOMAIN = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
 RATE = 10.0
 PATIENCE_S = 30.0
 
@@ -26,20 +22,12 @@ PATIENCE_S = 30.0
 @pytest.fixture(scope="module")
 def ros_domain() -> Iterator[int]:
     """A ROS domain id that no other test on this machine has now."""
-    folder = Path(tempfile.gettempdir(), f"arboleda-ros-domains-{os.getuid()}")
-    folder.mkdir(exist_ok=True)
+    domain = Domain()
     with pytest.MonkeyPatch.context() as patch:
-        for domain in islice(((os.getpid() + n) % LAST_DOMAIN + 1 for n in range(LAST_DOMAIN)), LAST_DOMAIN):
-            with (folder / str(domain)).open("a") as file:
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    continue
-                patch.setenv("ROS_DOMAIN_ID", str(domain))
-                patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-                yield domain
-                return
-    pytest.fail(f"all {LAST_DOMAIN} ROS domains are in use by other tests")
+        patch.setenv("ROS_DOMAIN_ID", str(domain.id))
+        patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        yield domain.id
+    domain.close()
 
 
 class Client:
