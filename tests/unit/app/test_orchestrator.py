@@ -174,6 +174,22 @@ def test_without_a_change_it_is_shown_now_and_then(plant, shows):
     assert shown == [1, 1]
 
 
+def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant, shows, monkeypatch):
+    now, shown = shows
+    spent = [0.0]
+    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
+    plant.watchers.append(lambda snapshot: spent.append(spent.pop() + 0.05))
+    for version in range(1, 201):  # 2 s in which something changes all the time
+        monkeypatch.setattr(Script, "version", version)
+        turn(plant)
+        now[0] += 0.01
+    assert spent[0] <= 1.2 * orchestrator.SHARE * 2.0
+    assert len(shown) >= 4
+    now[0] += 1.0
+    turn(plant)
+    assert shown[-1] == 200
+
+
 def test_the_last_change_is_shown_before_the_end(plant, shows):
     _, shown = shows
     turn(plant, ON)

@@ -42,6 +42,7 @@ TASKS = logging.getLogger("arboleda.tasks")
 VIEW_S = 1.0
 # A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
 SETTLE_S = 0.01
+SHARE = 0.1  # of the thread's time for snapshots, at most: one of 100 busy cells takes as long as 500 steps
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
 
 
@@ -85,6 +86,7 @@ class Orchestrator:
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
+        self._show_after = 0.0
         self._show_at: float | None = None  # while there is a change that nobody was shown
         self._urgency = Urgency(self.plant)
         self._waiting: dict[str, Future[Any]] = {}
@@ -195,7 +197,7 @@ class Orchestrator:
         if version == self.plant.version and now - shown_at < VIEW_S:
             return
         if self._show_at is None:
-            self._show_at = now + SETTLE_S
+            self._show_at = max(now + SETTLE_S, self._show_after)
         if now < self._show_at:
             self.loop.wake_by(self._show_at)
         else:
@@ -203,9 +205,11 @@ class Orchestrator:
 
     def _show(self, now: float) -> None:
         self._shown, self._show_at = (self.plant.version, now), None
+        began = time.thread_time()
         snapshot = view.snapshot(self.plant)
         for watcher in self.watchers:
             watcher(snapshot)
+        self._show_after = now + (time.thread_time() - began) / SHARE
 
 
 def _log(change: TaskChanged) -> None:
