@@ -29,6 +29,11 @@ def plant():
     return plant_of()
 
 
+def open_move(plant: Plant) -> None:
+    move = MoveJoints(id="7-1", robot="ra1", q=FURTHER)
+    plant.dispatcher.ledger.open(Entry(move, cell="sis_a", doing="moving", sent_at=0.0, deadline=9.0))
+
+
 def patience(plant: Plant, *reports: Report) -> list[float]:
     urgency = Urgency(plant)
     return [urgency.within_s(report) for report in reports]
@@ -63,14 +68,21 @@ def test_each_robot_has_its_own_last_words(plant):
     assert patience(plant, REST, other, REST, other) == [0.0, 0.0, COMPANY_S, COMPANY_S]
 
 
-@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
-def test_where_a_position_proves_something_it_is_urgent(evidence):
-    assert patience(plant_of(evidence=evidence), REST, REST) == [0.0, 0.0]
+def test_a_robot_that_only_says_whether_it_moves_is_not_asked_to_wait():
+    assert patience(plant_of(evidence=Evidence.STATE), REST, REST) == [0.0, 0.0]
+
+
+def test_a_position_by_itself_waits_for_the_state_that_ends_the_move():
+    plant = plant_of(evidence=Evidence.JOINTS)
+    moves = Report(at=0.0, robot="ra1", state=MotionState.MOVING)
+    stands = Report(at=0.0, robot="ra1", state=MotionState.STOPPED)
+    place = Report(at=0.0, robot="ra1", q=FURTHER)
+    open_move(plant)
+    assert patience(plant, moves, place, stands, place) == [0.0, COMPANY_S, 0.0, 0.0]
 
 
 def test_a_robot_that_moves_is_not_at_its_end_but_one_that_stands_may_be(plant):
-    move = MoveJoints(id="7-1", robot="ra1", q=FURTHER)
-    plant.dispatcher.ledger.open(Entry(move, cell="sis_a", doing="moving", sent_at=0.0, deadline=9.0))
+    open_move(plant)
     assert patience(plant, MOVES, replace(MOVES, q=FURTHER), REST, REST) == [0.0, COMPANY_S, 0.0, 0.0]
 
 

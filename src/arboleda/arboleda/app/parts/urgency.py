@@ -11,35 +11,46 @@ from arboleda.core.plant import Plant
 
 COMPANY_S = 0.02  # a fifth of a telemetry period, too short to be seen in the twin
 POSITION = frozenset({"q", "node"})
-_words = attrgetter(*(each.name for each in fields(Report) if each.name not in {"at", *POSITION}))
+_words = attrgetter(*(each.name for each in fields(Report) if each.name not in {"at", "robot", *POSITION}))
+_NOTHING = _words(Report(at=0.0, robot=""))
 
 
 class Urgency:
     """How long a report may wait; asked from the one thread that brings reports, beside the plant's.
 
-    A board that has nothing new to say says so ten times a second. Where a position alone proves nothing, at
-    evidence `ids`, such a report may wait; but not while its robot stands still under an open command, whose
-    end two equal positions may be, nor while a tree awaits the piece sensor.
+    A robot that has nothing new to say says so ten times a second. Where a position alone proves nothing
+    such a report may wait: not while its robot stands still under an open command, whose end a position may
+    be, nor while a tree awaits the piece sensor. At evidence `joints` position and state come one by one.
     """
 
     def __init__(self, plant: Plant) -> None:
         self._ledger = plant.dispatcher.ledger
         self._said: dict[str, tuple[object, ...]] = {}
+        self._state: dict[str, MotionState] = {}
         self._contexts = {
             robot.name: run.context
             for run in plant.cells.values()
             for robot in run.cell.robots
-            if robot.evidence is Evidence.IDS
+            if robot.evidence is not Evidence.STATE
         }
 
     def within_s(self, report: Report) -> float:
         """0 for news."""
-        robot, words = report.robot, _words(report)
-        if words != self._said.get(robot):
-            self._said[robot] = words
+        robot = report.robot
+        if report.state is not None:
+            self._state[robot] = report.state
+        if self._is_news(report):
             return 0.0
         context = self._contexts.get(robot)
         if context is None or (context.awaits_piece and report.piece is not None):
             return 0.0
-        may_end = report.state is not MotionState.MOVING and self._ledger.of_robot(robot)
+        may_end = self._state.get(robot) is not MotionState.MOVING and self._ledger.of_robot(robot)
         return 0.0 if may_end else COMPANY_S
+
+    def _is_news(self, report: Report) -> bool:
+        """Whether it says more than where the robot is, and something else than the one before."""
+        said = _words(report)
+        if said == _NOTHING or said == self._said.get(report.robot):
+            return False
+        self._said[report.robot] = said
+        return True
