@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from arboleda.core.model import Arm
 
 DEPTH = QoSProfile(depth=10)  # reliable and volatile, as commands and reports are
 SPIN_S = 1.0
+POLL_S = 0.05
 
 
 def main(plant: str) -> None:
@@ -26,12 +28,15 @@ def main(plant: str) -> None:
     rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
     node = Node("floor")
     node.create_subscription(String, "task_request", _nothing, DEPTH)
-    for robot in load(Path(plant)).robots.values():
+    robots = load(Path(plant)).robots.values()
+    for robot in robots:
         node.create_subscription(DiagnosticStatus, f"{robot.name}/status", _nothing, DEPTH)
         if isinstance(robot, Arm):
             node.create_subscription(UInt8, f"{robot.name}/start", _nothing, DEPTH)
-    print("ready", flush=True)
     try:
+        while not all(node.count_publishers(f"{robot.name}/status") for robot in robots):
+            time.sleep(POLL_S)
+        print("every robot is found", flush=True)
         _spin(node)
     except KeyboardInterrupt:
         pass

@@ -108,6 +108,22 @@ def test_an_event_that_may_wait_is_stepped_with_the_next_one_in_its_place(make, 
     assert machine.steps == [(10.0, ("a", "b", "c"))]
 
 
+def test_an_event_that_may_wait_past_the_next_deadline_wakes_nobody(make, machine, sent):
+    asked = []
+
+    def wait(condition, timeout):
+        asked.append(timeout)
+        condition.wait()
+
+    machine.alarm = 11.0
+    loop = make(wait=wait)
+    loop.start()
+    loop.post("a", within_s=2.0)
+    loop.post("b")
+    sent.wait("a", "b")
+    assert set(asked) <= {1.0}
+
+
 def test_an_event_waits_no_longer_than_it_may(make, machine, clock, sent):
     def wait(condition, timeout):
         if timeout is None:

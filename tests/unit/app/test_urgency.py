@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.app.parts.urgency import COMPANY_S, Urgency
+from arboleda.app.parts.urgency import COMPANY_S, PASSING, RESTING_S, Urgency
 from arboleda.core.ledger import Entry
-from arboleda.core.messages import MoveJoints, Report
+from arboleda.core.messages import MoveJoints, Report, TaskRequest
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.plant import Plant
 from arboleda.testing.plants import shipped
@@ -56,16 +56,27 @@ def patience(plant: Plant, *reports: Report) -> list[float]:
     ids=lambda news: next(iter(news)),
 )
 def test_news_are_urgent(plant, news):
-    assert patience(plant, REST, REST, replace(REST, **news)) == [0.0, COMPANY_S, 0.0]
+    assert patience(plant, REST, REST, replace(REST, **news)) == [0.0, RESTING_S, 0.0]
 
 
 def test_a_repetition_or_a_position_alone_may_wait(plant):
-    assert patience(plant, REST, REST.again(0.1), replace(REST, q=FURTHER)) == [0.0, COMPANY_S, COMPANY_S]
+    assert patience(plant, REST, REST.again(0.1), replace(REST, q=FURTHER)) == [0.0, RESTING_S, COMPANY_S]
+
+
+def test_a_repetition_waits_less_while_a_task_waits_or_runs(plant):
+    plant.step(1.0, [TaskRequest(at=1.0, text="sis_a 0B 7")])
+    assert patience(plant, REST, REST) == [0.0, COMPANY_S]
+
+
+@pytest.mark.parametrize("state", sorted(PASSING))
+def test_a_cell_that_waits_for_its_robots_to_stand_hears_them_at_once(plant, state):
+    plant.cells["sis_a"].state = state
+    assert patience(plant, REST, REST) == [0.0, 0.0]
 
 
 def test_each_robot_has_its_own_last_words(plant):
     other = replace(REST, robot="rm_sis_a", q=None, node=3)
-    assert patience(plant, REST, other, REST, other) == [0.0, 0.0, COMPANY_S, COMPANY_S]
+    assert patience(plant, REST, other, REST, other) == [0.0, 0.0, RESTING_S, RESTING_S]
 
 
 def test_a_robot_that_only_says_whether_it_moves_is_not_asked_to_wait():
@@ -90,7 +101,7 @@ def test_a_tree_that_awaits_the_piece_sensor_is_not_kept_waiting(plant):
     plant.cells["sis_a"].context.awaits_piece = True
     silent = replace(REST, piece=None)
     assert patience(plant, REST, REST) == [0.0, 0.0]
-    assert patience(plant, silent, silent) == [0.0, COMPANY_S]
+    assert patience(plant, silent, silent) == [0.0, RESTING_S]
 
 
 def test_a_stranger_is_not_asked_to_wait(plant):

@@ -69,6 +69,7 @@ class Loop(Generic[Event, Message]):
         self._awake = threading.Condition()
         self._ending = False
         self._inbox_due = math.inf
+        self._sleeps_until = math.inf
         self._step_by: float | None = None
         self._between_steps = threading.Lock()
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
@@ -91,8 +92,9 @@ class Loop(Generic[Event, Message]):
             if self._ending:
                 return
             self._inbox.append(event)
-            if due < self._inbox_due:
-                self._inbox_due = due
+            self._inbox_due = min(due, self._inbox_due)
+            if due < self._sleeps_until:
+                self._sleeps_until = due
                 self._awake.notify()
 
     def read(self, fn: Callable[[Any], Result]) -> Result:
@@ -142,7 +144,7 @@ class Loop(Generic[Event, Message]):
         """Whether there is something to step; False at the end."""
         with self._awake:
             while not self._ending:
-                deadline = self._deadline()
+                deadline = self._sleeps_until = self._deadline()
                 timeout = None if deadline == math.inf else deadline - self._clock()
                 if timeout is not None and timeout <= 0:
                     return True

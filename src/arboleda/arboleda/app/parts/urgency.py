@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import fields
 from operator import attrgetter
 
+from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.plant import Plant
 
 COMPANY_S = 0.02  # a fifth of a telemetry period, too short to be seen in the twin
+RESTING_S = 0.25  # the plant steps as often by itself, to beat
+PASSING = frozenset({CellState.HOLDING, CellState.ABORTING, CellState.CLEARING, CellState.RESETTING})
 POSITION = frozenset({"q", "node"})
 _words = attrgetter(*(each.name for each in fields(Report) if each.name not in {"at", "robot", *POSITION}))
 _NOTHING = _words(Report(at=0.0, robot=""))
@@ -21,14 +24,16 @@ class Urgency:
     A robot that has nothing new to say says so ten times a second. Where a position alone proves nothing
     such a report may wait: not while its robot stands still under an open command, whose end a position may
     be, nor while a tree awaits the piece sensor. At evidence `joints` position and state come one by one.
+    Where nothing goes on in its cell, what repeats the last report in every word may wait longer.
     """
 
     def __init__(self, plant: Plant) -> None:
         self._ledger = plant.dispatcher.ledger
         self._said: dict[str, tuple[object, ...]] = {}
         self._state: dict[str, MotionState] = {}
-        self._contexts = {
-            robot.name: run.context
+        self._last: dict[str, tuple[object, ...]] = {}
+        self._runs = {
+            robot.name: run
             for run in plant.cells.values()
             for robot in run.cell.robots
             if robot.evidence is not Evidence.STATE
@@ -39,13 +44,17 @@ class Urgency:
         robot = report.robot
         if report.state is not None:
             self._state[robot] = report.state
+        repeats = report.words == self._last.get(robot)
+        self._last[robot] = report.words
         if self._is_news(report):
             return 0.0
-        context = self._contexts.get(robot)
-        if context is None or (context.awaits_piece and report.piece is not None):
+        run = self._runs.get(robot)
+        if run is None or (run.context.awaits_piece and report.piece is not None):
             return 0.0
         may_end = self._state.get(robot) is not MotionState.MOVING and self._ledger.of_robot(robot)
-        return 0.0 if may_end else COMPANY_S
+        if may_end or run.state in PASSING:
+            return 0.0
+        return RESTING_S if repeats and run.tree is None and not run.queue else COMPANY_S
 
     def _is_news(self, report: Report) -> bool:
         """Whether it says more than where the robot is, and something else than the one before."""
