@@ -21,6 +21,7 @@ from .scene import Scene
 SIZES, QUICK_SIZES = (1, 10, 100), (10, 100)
 WINDOW_S, QUICK_WINDOW_S = 10.0, 2.5
 SETTLE_S = 1.0
+NOTE = "Processor time as a share of one core. Nobody listens to /plant/view and /diagnostics meanwhile."
 STALE_S = 2.0  # robots are offline 1.5 s after their last word
 
 
@@ -32,7 +33,7 @@ def run(scene: Scene) -> Result:
         figures += found
         rates.append(rate)
     heard = f"Statuses per second that both heard, by cells: {', '.join(rates)}."
-    return Result(figures=figures, notes=("Processor time as a share of one core.", heard))
+    return Result(figures=figures, notes=(NOTE, heard))
 
 
 def _measured(scene: Scene, size: int) -> tuple[list[Figure], str]:

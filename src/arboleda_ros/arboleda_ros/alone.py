@@ -14,7 +14,7 @@ _POLL_S = 0.02
 DISCOVERY_S = 3.2
 _NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
 _UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
-_LOOKED_AT = 25  # topics in one look: each takes its time, and a plant may have hundreds
+_LOOKED_AT = 5  # topics in one look: each takes as long as the whole graph is large
 _ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
 
 
@@ -59,7 +59,10 @@ class Alone:
         """
         for topic in self._to_look_at():
             alone = self._node.count_publishers(topic) <= 1  # a quarter of the price of asking for names
-            self._intruders[topic] = [] if alone else self._others(topic)
+            if others := [] if alone else self._others(topic):
+                self._intruders[topic] = others
+            else:
+                self._intruders.pop(topic, None)
         return tuple(_intrusion(name, topics) for name, topics in self._by_name().items())
 
     def _to_look_at(self) -> list[str]:

@@ -91,6 +91,16 @@ class OrchestratorPort(Port):
         elif isinstance(message, Command):
             self._command(message)
 
+    @property
+    def watched(self) -> bool:
+        """Whether another node listens to what is published without a change too."""
+        return self.diagnosed or self._view.get_subscription_count() > 0
+
+    @property
+    def diagnosed(self) -> bool:
+        """Whether another node listens to `/diagnostics`."""
+        return self._diagnostics.get_subscription_count() > 0
+
     def publish_view(self, snapshot: Mapping[str, Any]) -> None:
         """Publish the snapshot; plain data that JSON can carry."""
         self._view.publish(String(data=json.dumps(snapshot, ensure_ascii=False)))

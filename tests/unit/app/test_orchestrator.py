@@ -174,6 +174,47 @@ def test_without_a_change_it_is_shown_now_and_then(plant, shows):
     assert shown == [1, 1]
 
 
+class Topics(Robots):
+    """The port on ROS 2, and whether anybody listens there."""
+
+    def __init__(self, store: Store, *, watched: bool, diagnosed: bool) -> None:
+        super().__init__(store)
+        self.watched, self.diagnosed = watched, diagnosed
+        self.told: list[str] = []
+
+    def publish_view(self, snapshot):
+        self.told.append("view")
+
+    def publish_diagnostics(self, statuses):
+        self.told.append("diagnostics")
+
+
+@pytest.mark.parametrize(
+    ("watched", "diagnosed", "changed", "unchanged"),
+    [
+        (False, False, ["view"], []),
+        (True, False, ["view"], ["view"]),
+        (True, True, ["view", "diagnostics"], ["view", "diagnostics"]),
+    ],
+    ids=["nobody", "view", "diagnostics"],
+)
+def test_topics_on_which_nobody_listens_are_told_changes_only(
+    plant, store, shows, monkeypatch, watched, diagnosed, changed, unchanged
+):
+    now, _ = shows
+    plant.watchers.clear()
+    topics = Topics(store, watched=watched, diagnosed=diagnosed)
+    plant.connect_ros(topics)
+    monkeypatch.setattr(orchestrator.view, "diagnostics", lambda snapshot: [])
+    for told in (changed, unchanged):
+        now[0] += orchestrator.VIEW_S
+        turn(plant)
+        now[0] += orchestrator.SETTLE_S
+        turn(plant)
+        assert topics.told == told
+        topics.told.clear()
+
+
 def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant, shows, monkeypatch):
     now, shown = shows
     spent = [0.0]

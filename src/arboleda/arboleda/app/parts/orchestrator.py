@@ -55,6 +55,10 @@ class PlantPort(Protocol):
 class RosPort(PlantPort, Protocol):
     """The plant's port on ROS 2, which carries snapshots too and knows whether it is alone."""
 
+    @property
+    def watched(self) -> bool: ...
+    @property
+    def diagnosed(self) -> bool: ...
     def check_alone(self) -> None: ...
     def publish_view(self, view: dict[str, Any]) -> None: ...
     def publish_diagnostics(self, statuses: Sequence[view.Diagnostic]) -> None: ...
@@ -101,8 +105,6 @@ class Orchestrator:
 
     def connect_ros(self, port: RosPort) -> None:
         self._port = self._ros = port
-        self.watchers.append(port.publish_view)
-        self.watchers.append(lambda snapshot: port.publish_diagnostics(view.diagnostics(snapshot)))
 
     def start(self) -> None:
         """StartError where another node already commands these robots."""
@@ -194,7 +196,7 @@ class Orchestrator:
         if self.plant.intake.closed and self.plant.at_rest:
             self._at_rest.set()
         version, shown_at = self._shown
-        if version == self.plant.version and now - shown_at < VIEW_S:
+        if version == self.plant.version and (now - shown_at < VIEW_S or not self._watched):
             return
         if self._show_at is None:
             self._show_at = max(now + SETTLE_S, self._show_after)
@@ -203,12 +205,21 @@ class Orchestrator:
         else:
             self._show(now)
 
+    @property
+    def _watched(self) -> bool:
+        """Whether somebody wants to see how old what he sees is."""
+        return bool(self.watchers) or (self._ros is not None and self._ros.watched)
+
     def _show(self, now: float) -> None:
         self._shown, self._show_at = (self.plant.version, now), None
         began = time.thread_time()
         snapshot = view.snapshot(self.plant)
         for watcher in self.watchers:
             watcher(snapshot)
+        if self._ros is not None:
+            self._ros.publish_view(snapshot)
+            if self._ros.diagnosed:
+                self._ros.publish_diagnostics(view.diagnostics(snapshot))
         self._show_after = now + (time.thread_time() - began) / SHARE
 
 
