@@ -95,7 +95,8 @@ def test_two_plants_share_a_domain_in_two_namespaces(
 
     for process in (orchestrator("north"), orchestrator("south")):
         process.wait_for("MQTT broker: ")
-    assert {"/north/ra1/joint_goals_q", "/south/ra1/joint_goals_q"} <= names(observer)
+    both = {"/north/ra1/joint_goals_q", "/south/ra1/joint_goals_q"}
+    observer.wait(lambda: both <= names(observer), "one of the plants does not speak")
 
 
 def test_the_embedded_broker_does_not_move_to_another_port(

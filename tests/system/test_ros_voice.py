@@ -30,7 +30,7 @@ GONE = Report(at=0.0, robot="ra1", epoch=9, state=MotionState.NO_LINK, q=(0.2, -
 REPORTS = [MOVING, FURTHER, REFUSED, GONE]
 
 
-@pytest.mark.parametrize("reports", permutations(REPORTS))
+@pytest.mark.parametrize("reports", list(permutations(REPORTS)))
 def test_a_status_holds_nothing_of_the_reports_before(reports):
     status = StatusMessage(ARM)
     for report in reports:
