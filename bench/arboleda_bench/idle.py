@@ -22,7 +22,7 @@ SIZES, QUICK_SIZES = (1, 10, 100), (10, 100)
 WINDOW_S, QUICK_WINDOW_S = 10.0, 2.5
 SETTLE_S = 1.0
 NOTE = "Processor time as a share of one core. Nobody listens to /plant/view and /diagnostics meanwhile."
-STALE_S = 2.0  # robots are offline 1.5 s after their last word
+STALE_S = 3.0  # robots are offline 1.5 s after their last word
 
 
 def run(scene: Scene) -> Result:
