@@ -18,7 +18,7 @@ from .processes import Process
 from .result import Aim, Figure, Result
 from .scene import Scene
 
-SIZES, QUICK_SIZES = (1, 10, 100), (10, 100)
+SIZES, QUICK_SIZES = (1, 10, 100), (100,)
 WINDOW_S, QUICK_WINDOW_S = 10.0, 2.5
 SETTLE_S = 1.0
 NOTE = "Processor time as a share of one core. Nobody listens to /plant/view and /diagnostics meanwhile."
