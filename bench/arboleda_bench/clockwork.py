@@ -1,18 +1,21 @@
-"""A thread that does things when their time has come: how long a robot's move takes."""
+"""Things that happen when their time has come: how long a robot's move takes, when it reports."""
 
 from __future__ import annotations
 
-import heapq
 import threading
 import time
 from collections.abc import Callable
+from heapq import heappop, heappush
 from itertools import count
 
-now = time.perf_counter
+
+def now() -> float:
+    """Seconds, on the plant's clock."""
+    return time.monotonic()
 
 
 class Clockwork:
-    """Calls what it was given, each at its time and in one thread of its own, between `start` and `stop`."""
+    """Calls what it was given, each at its time, in one thread of its own between `start` and `stop`."""
 
     def __init__(self) -> None:
         self._due: list[tuple[float, int, Callable[[], None]]] = []
@@ -24,39 +27,53 @@ class Clockwork:
     def start(self) -> None:
         self._thread.start()
 
+    def at(self, due: float, act: Callable[[], None]) -> None:
+        """Call `act` at that time; from any thread."""
+        with self._awake:
+            entry = (due, next(self._number), act)
+            heappush(self._due, entry)
+            if self._due[0] is entry:
+                self._awake.notify()
+
     def after(self, seconds: float, act: Callable[[], None]) -> None:
         """Call `act` that many seconds from now; from any thread."""
-        with self._awake:
-            heapq.heappush(self._due, (now() + seconds, next(self._number), act))
-            self._awake.notify()
+        self.at(now() + seconds, act)
 
-    def every(self, seconds: float, act: Callable[[], None]) -> None:
-        """Call `act` again and again, first after the first period."""
+    def every(self, seconds: float, act: Callable[[], None], *, first: float | None = None) -> None:
+        """Call `act` again and again, at `first` or after the first period."""
+        due = now() + seconds if first is None else first
 
         def again() -> None:
+            self.every(seconds, act, first=due + seconds)
             act()
-            self.after(seconds, again)
 
-        self.after(seconds, again)
+        self.at(due, again)
+
+    def do_one(self) -> bool:
+        """Do the one thing that has been due for longest; False where nothing is due."""
+        with self._awake:
+            if not self._due or self._due[0][0] > now():
+                return False
+            act = heappop(self._due)[2]
+        act()
+        return True
 
     def stop(self) -> None:
         """End; what is not yet due is forgotten. Idempotent."""
         with self._awake:
             self._ending = True
             self._awake.notify()
-        if self._thread.ident is not None:
+        if self._thread.is_alive():
             self._thread.join()
 
     def _run(self) -> None:
-        while (act := self._next()) is not None:
-            act()
+        while not self._ending:
+            if not self.do_one():
+                self._rest()
 
-    def _next(self) -> Callable[[], None] | None:
-        """The next one, at its time; None at the end."""
+    def _rest(self) -> None:
+        """Sleep until something is due."""
         with self._awake:
-            while not self._ending:
-                wait_s = self._due[0][0] - now() if self._due else None
-                if wait_s is not None and wait_s <= 0:
-                    return heapq.heappop(self._due)[2]
-                self._awake.wait(wait_s)
-            return None
+            left = self._due[0][0] - now() if self._due else None
+            if not self._ending and (left is None or left > 0):
+                self._awake.wait(left)

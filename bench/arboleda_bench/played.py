@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import threading
-import time
 from collections.abc import Callable, Mapping
-from heapq import heappop, heappush
-from itertools import count
+from functools import partial
 from typing import Any
 
 from arboleda.core.messages import (
@@ -20,6 +17,8 @@ from arboleda.core.messages import (
     Stop,
 )
 from arboleda.core.model import Arm, MotionState, PlantModel, Robot
+
+from .clockwork import Clockwork, now
 
 EPOCH = 1  # of the bridge that they play
 TELEMETRY_S = 0.1
@@ -102,100 +101,62 @@ class Crew:
         self._move_s = move_s
         self._robots = {name: PlayedRobot(robot) for name, robot in model.robots.items()}
         self._cell_of: Mapping[str, str] = {name: cell.name for name, cell in model.cell_of.items()}
-        self._due: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
-        self._number = count()
-        self._awake = threading.Condition()
-        self._ending = False
+        self.clockwork = Clockwork()
         self._ended: dict[str, tuple[float, type]] = {}
         self.reactions: list[float] = []
         self.told = 0  # reports that came by the clock
-        self._thread = threading.Thread(target=self._run, name="crew", daemon=True)
 
     def start(self) -> None:
         self.appear()
-        self._thread.start()
+        self.clockwork.start()
 
     def appear(self) -> None:
         """Have the robots report from now on."""
-        now, last = time.monotonic(), len(self._robots)
+        begin, many = now(), len(self._robots)
         for number, robot in enumerate(self._robots.values()):
-            due = now + TELEMETRY_S * number / last
-            self._at(due, self._tell, robot, due)
+            first = begin + TELEMETRY_S * number / many
+            self.clockwork.every(TELEMETRY_S, partial(self._tell, robot), first=first)
 
     def stop(self) -> None:
-        """End the thread and wait for it; idempotent."""
-        with self._awake:
-            self._ending = True
-            self._awake.notify()
-        if self._thread.is_alive():
-            self._thread.join()
+        """Have no robot say or do anything any more; idempotent."""
+        self.clockwork.stop()
 
     def send(self, message: Any) -> None:
         """Hear what the plant says; what is not for robots is ignored."""
-        now = time.perf_counter()
         if isinstance(message, Heartbeat):
-            self._at(0.0, self._heed, message.epoch)
+            self.clockwork.at(0.0, partial(self._heed, message.epoch))
         elif isinstance(message, EVERYTHING):
-            self._note(message, now)
-            self._at(0.0, self._obey, message)
+            self._note(message)
+            self.clockwork.at(0.0, partial(self._obey, message))
 
-    def _note(self, command: Command, now: float) -> None:
+    def _note(self, command: Command) -> None:
         """Take down a reaction; before the first drive of a task stands a dwell."""
+        heard = now()
         ended = self._ended.pop(self._cell_of[command.robot], None)
         if ended is not None and (not isinstance(command, FollowPath) or ended[1] is FollowPath):
-            self.reactions.append(now - ended[0])
+            self.reactions.append(heard - ended[0])
 
     def _heed(self, epoch: int) -> None:
         for robot in self._robots.values():
             robot.plant = epoch
 
     def _obey(self, command: Command) -> None:
-        robot, now = self._robots[command.robot], time.monotonic()
+        robot = self._robots[command.robot]
         if isinstance(command, MoveJoints | FollowPath):
-            robot.begin(command, now, self._move_s)
-            self._at(now + self._move_s, self._arrive, robot, command)
+            robot.begin(command, now(), self._move_s)
+            self.clockwork.after(self._move_s, partial(self._arrive, robot, command))
         elif isinstance(command, SetEffector):
             robot.switch(command)
         elif isinstance(command, Stop):
-            robot.halt(now)
-        self._post(robot.report(now))
+            robot.halt(now())
+        self._post(robot.report(now()))
 
     def _arrive(self, robot: PlayedRobot, command: MoveJoints | FollowPath) -> None:
         robot.end(command)
-        report = robot.report(time.monotonic())
-        self._ended[self._cell_of[command.robot]] = (time.perf_counter(), type(command))
+        report = robot.report(now())
+        self._ended[self._cell_of[command.robot]] = (now(), type(command))
         self._post(report)
 
-    def _tell(self, robot: PlayedRobot, due: float) -> None:
-        due += TELEMETRY_S
-        self._at(due, self._tell, robot, due)
-        self._post(robot.report(time.monotonic()))
+    def _tell(self, robot: PlayedRobot) -> None:
+        self._post(robot.report(now()))
         self.told += 1
-
-    def _at(self, due: float, deed: Callable[..., None], *args: Any) -> None:
-        with self._awake:
-            entry = (due, next(self._number), deed, args)
-            heappush(self._due, entry)
-            if self._due[0] is entry:
-                self._awake.notify()
-
-    def do_one(self) -> bool:
-        """Do the one thing that has been due for longest; False where nothing is due."""
-        with self._awake:
-            if not self._due or self._due[0][0] > time.monotonic():
-                return False
-            _, _, deed, args = heappop(self._due)
-        deed(*args)
-        return True
-
-    def _run(self) -> None:
-        while not self._ending:
-            if not self.do_one():
-                self._rest()
-
-    def _rest(self) -> None:
-        """Sleep until something is due."""
-        with self._awake:
-            left = self._due[0][0] - time.monotonic() if self._due else None
-            if not self._ending and (left is None or left > 0):
-                self._awake.wait(left)

@@ -7,7 +7,7 @@ import pytest
 from arboleda.core.messages import FollowPath, Heartbeat, MoveJoints, SetEffector, TaskChanged, TaskRequest
 from arboleda.core.plant import Plant
 from arboleda.testing.plants import shipped
-from arboleda_bench import played
+from arboleda_bench import clockwork, played
 
 MOVE_S = 0.3
 
@@ -16,8 +16,7 @@ MOVE_S = 0.3
 def clock(monkeypatch):
     """The time that the crew reads, moved by hand."""
     now = [100.0]
-    monkeypatch.setattr(played.time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(played.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(clockwork.time, "monotonic", lambda: now[0])
     return now
 
 
@@ -31,7 +30,7 @@ def house(clock):
         until = clock[0] + seconds
         while clock[0] < until:
             clock[0] += 0.01
-            while crew.do_one():
+            while crew.clockwork.do_one():
                 pass
             events, inbox[:] = list(inbox), []
             for message in plant.step(clock[0], events):
