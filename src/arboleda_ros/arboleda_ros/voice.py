@@ -7,8 +7,6 @@ from report to report by the one thread that publishes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
-from operator import attrgetter
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.clock import Clock
@@ -25,7 +23,6 @@ from . import convert
 Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there
 _STATES = {state: UInt8(data=int(state)) for state in MotionState}
 _PIECES = {piece: Bool(data=piece) for piece in (False, True)}
-_all_but_at = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
 
 
 class Voice:
@@ -61,10 +58,9 @@ class StatusMessage:
 
     def of(self, report: Report) -> DiagnosticStatus:
         """The message for one report; the next call changes it."""
-        said = _all_but_at(report)
-        if said != self._said:
+        if report.words != self._said:
             self._write(report)
-            self._said = said
+            self._said = report.words
         return self._message
 
     def _write(self, report: Report) -> None:

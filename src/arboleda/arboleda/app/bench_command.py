@@ -11,7 +11,7 @@ import typer
 from arboleda.core.errors import StartError
 
 GROUP = "arboleda.bench"
-MISSING = "the benchmarks are not installed here; they come with the whole of Arboleda: pip install arboleda"
+MISSING = "the benchmarks are not installed here; `make install` in Arboleda's own folder brings them"
 HELP = """Measure this machine: ours against a floor of the same run, so that figures of two machines compare.
 
 \b

@@ -141,8 +141,6 @@ class Orchestrator:
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
-        if self._show_at is not None:
-            self._show(time.monotonic())
 
     def _send(self, message: Command | Notice) -> None:
         if isinstance(message, Remember | Journal):
@@ -200,7 +198,7 @@ class Orchestrator:
             return
         if self._show_at is None:
             self._show_at = max(now + SETTLE_S, self._show_after)
-        if now < self._show_at:
+        if now < self._show_at and not self.plant.intake.closed:  # what is shown at the end may be the last
             self.loop.wake_by(self._show_at)
         else:
             self._show(now)
