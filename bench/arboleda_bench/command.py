@@ -12,13 +12,13 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.app.simulate.screen import console, progress
-from arboleda.core.errors import ConfigError
+from arboleda.core.errors import ArboledaError, ConfigError
 
 from . import catalog, report
 from .result import Result
 from .scene import Scene
 
-DONE, INTERRUPTED = 0, 130
+DONE, FAILED, INTERRUPTED = 0, 1, 130
 
 
 def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -> int:
@@ -33,20 +33,27 @@ def run(names: Sequence[str], *, quick: bool, file: Path | None, listed: bool) -
         return DONE
     _check(names, file)
     try:
-        _all(names or catalog.NAMES, screen, quick, file)
+        return _all(names or catalog.NAMES, screen, quick, file)
     except KeyboardInterrupt:
         screen.print("interrupted; what was measured so far is above")
         return INTERRUPTED
-    return DONE
 
 
-def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) -> None:
+def _all(names: Sequence[str], screen: Console, quick: bool, file: Path | None) -> int:
+    """Whatever one of them lacks, the others run all the same; the exit status."""
     results: dict[str, Result] = {}
+    status = DONE
     for name in names:
-        results[name] = _one(name, screen, quick)
+        try:
+            results[name] = _one(name, screen, quick)
+        except ArboledaError as error:
+            screen.print(Text(f"{name} was not measured: {error}\n", style="red"), soft_wrap=True)
+            status = FAILED
+            continue
         _show(name, results[name], screen)
         if file is not None:
             _write(file, report.as_json(results, quick=quick))
+    return status
 
 
 def _one(name: str, screen: Console, quick: bool) -> Result:
