@@ -36,6 +36,14 @@ class Found:
 
 
 FOUND = {
+    "what an arm said before somebody put it by hand to its reference was taken for a lie": Found(
+        seed=2,
+        seconds=30,
+        faults=(
+            Fault(kind="plant_stall", at=1.9, seconds=2.0, target="plant", seed=1),
+            Fault(kind="operator_home", at=2.7, target="arm_right", word="by hand", seed=1),
+        ),
+    ),
     "positions of a bridge that stalled while its broker was away were taken for invented": Found(
         seed=344,
         seconds=120,

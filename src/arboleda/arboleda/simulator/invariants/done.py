@@ -67,7 +67,8 @@ def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
 
     At `ids` a move shows in two ways, its number and the place, and both must be lies. At `joints` it shows
     in place and state: a boot without a trace makes them worthless, and so does a line that takes its time,
-    for nothing tells what was said before the command came. An effector does not show there at all.
+    for nothing tells what was said before the command came. An effector does not show there at all. Whom
+    somebody put by hand to its reference since, and who is still there, may have been at the goal before.
     """
     evidence, place = robot.robot.evidence, "q" if isinstance(robot, ArmTruth) else "node"
 
@@ -80,7 +81,8 @@ def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
         return lies("homed")
     if evidence is Evidence.IDS:
         return lies("done") and lies(place)
-    unseen = evidence is Evidence.STATE or not robot.homed or booked.late
+    taken_away = robot.put_right_at >= booked.sent_at and robot.at_reference
+    unseen = evidence is Evidence.STATE or not robot.homed or booked.late or taken_away
     return unseen or lies(place) or lies("state")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from operator import attrgetter
@@ -77,6 +78,7 @@ class RobotTruth:
         self._left = 0  # how many of `_ahead` were there before this step
         self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
         self._homing = self._put_right = False
+        self.put_right_at = -math.inf  # when somebody last did, s
         self._arrived = not self.moving  # whether it stood still at some time in this step
         self._seen: tuple[Any, ...] = ()
         self.forget()
@@ -92,9 +94,10 @@ class RobotTruth:
         """Our bridge published a command for it."""
         self._ours.append((publication.topic, publication.payload))
 
-    def put_right(self) -> None:
+    def put_right(self, now: float) -> None:
         """Somebody has put it by hand to its reference, where its counters are right."""
         self.homed = self.again = self._put_right = True
+        self.put_right_at = now
 
     def reach(self, delivery: Delivery) -> None:
         """A message is at its board, which has not heard it yet."""

@@ -119,7 +119,7 @@ class Truth:
         for board, goal in moment.executed:
             self._boards[board].carry_out(goal)
         for board in moment.put_right:
-            self._boards[board].put_right()
+            self._boards[board].put_right(self.world.now)
 
     def _look_at_robots(self) -> None:
         """What the robots did; before the plant, which steps after them."""
