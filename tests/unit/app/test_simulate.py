@@ -147,6 +147,12 @@ def test_a_breach_is_told_with_the_one_fault_it_takes(
 
 
 @pytest.mark.usefixtures("brittle")
+def test_a_breach_is_named_before_the_other_seeds_have_ended(arboleda: Arboleda, faults: Path) -> None:
+    lines = arboleda("--seed", 3, "--seeds", 2, "--faults", faults).said.splitlines()
+    assert lines[:2] == ["seed 3 breaks unbooted", "seed 4 breaks unbooted"]
+
+
+@pytest.mark.usefixtures("brittle")
 def test_a_breach_can_be_replayed_from_the_file(arboleda: Arboleda, faults: Path, tmp_path: Path) -> None:
     out = tmp_path / "out.json"
     arboleda("--seed", 3, "--seeds", 1, "--faults", faults, "--json", out)

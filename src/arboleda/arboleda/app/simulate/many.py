@@ -57,6 +57,8 @@ class Many:
                 self._tick = lambda: show(self._so_far(campaign.minutes), len(tally.rows))
                 for result in campaign.results():
                     tally.add(result)
+                    if result.broken:
+                        self._say(f"seed {result.seed} breaks {result.broken.invariant}", "red")
                     self._tick()
         finally:
             self._elapsed_s = self._since()
