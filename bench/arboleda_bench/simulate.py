@@ -8,6 +8,8 @@ who watches: no truth, record, trace or invariants. The ratio says what judging 
 is. With faults fewer cycles fit into the same plant time, since cells wait for people: that row is not only
 judging.
 
+Python looks for garbage as rarely as in the workers of the command, for the floor too.
+
 In full mode the notes say where the time goes, by part of the house. They come from cProfile, which makes
 small functions look dearer than they are; what a library does (json, dataclasses, enum) is put down to its
 caller.
@@ -15,12 +17,15 @@ caller.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+import gc
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from time import process_time
 
 from arboleda.app.simulate.request import Request
 from arboleda.app.simulate.setting import Setting, rules
+from arboleda.app.simulate.workers import collect_rarely
 from arboleda.core.errors import ArboledaError
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S
@@ -32,20 +37,35 @@ from .time_by_part import time_by_part
 
 AIM = Aim(least=100, of_ratio=False)
 SPINS = 5_000_000
-Run = Callable[[Setting, int], int]
+Run = Callable[[Setting, int], tuple[int, float]]  # (setting, seed) -> (cycles, s of plant time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timed:
+    """One seed of a plant with so many cells: its cycles, s of plant time, s of a core."""
+
+    plant: str
+    cells: int
+    cycles: int
+    seconds: float
+    core_s: float
 
 
 def run(scene: Scene) -> Result:
     count, cycles = (2, 25) if scene.quick else (6, 100)
     setting, seeds = Request(cycles=cycles).setting, range(1, count + 1)
     calm = replace(setting, level="none")
-    scene.say("nobody watches")
-    floor = _rate(_bare, calm, seeds)
-    scene.say("judged, no faults")
-    without = _rate(_judged, calm, seeds)
-    scene.say("judged, normal faults")
-    judged = _rate(_judged, setting, seeds)
-    notes = [f"{count} seeds of {cycles} cycles, {len(rules())} invariants; {_empty_loops()}"]
+    with _few_collections():
+        scene.say("nobody watches")
+        floor = _timed(_bare, calm, seeds)
+        scene.say("judged, no faults")
+        without = _timed(_judged, calm, seeds)
+        scene.say("judged, normal faults")
+        judged = _timed(_judged, setting, seeds)
+    notes = [
+        f"{count} seeds of {cycles} cycles, {len(rules())} invariants; {_empty_loops()}",
+        *_by_plant(judged),
+    ]
     if not scene.quick:
         scene.say("where the time goes")
         notes += _where_the_time_goes(setting, seeds)
@@ -53,33 +73,70 @@ def run(scene: Scene) -> Result:
     return Result(figures=figures, notes=notes)
 
 
-def _figure(faults: str, ours: float, floor: float, aim: Aim | None = None) -> Figure:
-    return Figure(name=f"judged, {faults}", unit="cycles/s", ours=ours, floor=floor, aim=aim)
+def _figure(faults: str, ours: Sequence[Timed], floor: Sequence[Timed], aim: Aim | None = None) -> Figure:
+    name, unit = f"judged, {faults}", "cycles/s"
+    return Figure(name=name, unit=unit, ours=_rate(ours), floor=_rate(floor), aim=aim)
 
 
-def _rate(run: Run, setting: Setting, seeds: Iterable[int]) -> float:
-    """Cycles per second of this process on its core."""
-    begin = process_time()
-    cycles = sum(run(setting, seed) for seed in seeds)
-    return cycles / (process_time() - begin)
+def _by_plant(runs: Sequence[Timed]) -> list[str]:
+    """What a cycle is differs from plant to plant, and with it how many there are in a second."""
+    lines = []
+    for plant in dict.fromkeys(run.plant for run in runs):
+        own = [run for run in runs if run.plant == plant]
+        cycles, seconds = sum(run.cycles for run in own), sum(run.seconds for run in own)
+        cells, core_s = own[0].cells, sum(run.core_s for run in own)
+        lines.append(
+            f"plant {plant} with normal faults: {_rate(own):.0f} cycles/s, {seconds / core_s:.0f} times real "
+            f"time; its {cells} cells end a cycle every {seconds / cycles:.1f} s"
+        )
+    return lines
 
 
-def _bare(setting: Setting, seed: int) -> int:
-    """The floor; cycles done."""
+def _timed(run: Run, setting: Setting, seeds: Iterable[int]) -> list[Timed]:
+    """How long each seed kept this process on its core."""
+    runs = []
+    for seed in seeds:
+        model, begin = setting.plant(seed), process_time()
+        cycles, seconds = run(setting, seed)
+        core_s = process_time() - begin
+        timed = Timed(plant=model.name, cells=len(model.cells), cycles=cycles, seconds=seconds, core_s=core_s)
+        runs.append(timed)
+    return runs
+
+
+def _rate(runs: Sequence[Timed]) -> float:
+    """Cycles per second of a core."""
+    return sum(run.cycles for run in runs) / sum(run.core_s for run in runs)
+
+
+@contextmanager
+def _few_collections() -> Iterator[None]:
+    usual = gc.get_threshold()
+    collect_rarely()
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
+        gc.unfreeze()
+
+
+def _bare(setting: Setting, seed: int) -> tuple[int, float]:
+    """The floor; cycles done, and s of plant time."""
     world = World(setting.plant(seed))
+    began = world.now
     customers = Customers(world, seed)
     Attendant(world, seed)
     while customers.cycles < setting.cycles:
         world.advance(MINUTE_S)
-    return customers.cycles
+    return customers.cycles, world.now - began
 
 
-def _judged(setting: Setting, seed: int) -> int:
-    """As `arboleda simulate` does it: faults, truth, record, trace, every invariant; cycles done."""
+def _judged(setting: Setting, seed: int) -> tuple[int, float]:
+    """As `arboleda simulate` does it: faults, truth, record, trace, every invariant."""
     result = setting.run(seed)
     if result.broken:
         raise ArboledaError(f"seed {seed} breaks an invariant, so its cycles do not count: {result.broken}")
-    return result.cycles
+    return result.cycles, result.seconds
 
 
 def _empty_loops() -> str:

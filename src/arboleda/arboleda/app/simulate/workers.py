@@ -22,13 +22,21 @@ from .setting import Setting
 
 AHEAD = 2  # seeds that are handed out to each worker
 TICK_S = 0.5
-YOUNG = 50_000  # objects before a collection: what a simulation makes dies without one, and looking costs 5 %
+YOUNG = 50_000  # objects before a collection
 
 
 def processors() -> int:
     """How many this process may use."""
     available = getattr(os, "sched_getaffinity", None)
     return len(available(0)) if available else os.cpu_count() or 1
+
+
+def collect_rarely() -> None:
+    """Have Python look for garbage in this process now and then only: what a simulation makes dies without
+    that, and looking costs 4 %.
+    """
+    gc.freeze()
+    gc.set_threshold(YOUNG)
 
 
 class Workers(Campaign):
@@ -93,8 +101,7 @@ class _Worker:
     @classmethod
     def prepare(cls, setting: Setting, minutes: Any) -> None:
         cls.setting, cls.minutes = setting, minutes
-        gc.freeze()
-        gc.set_threshold(YOUNG)
+        collect_rarely()
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, who ends the workers
         Thread(target=_end_with_parent, daemon=True).start()
 
