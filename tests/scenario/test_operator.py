@@ -404,6 +404,35 @@ def test_after_a_failed_recovery_the_part_is_released_before_it_is_abandoned(
     assert witness.motions_since(mark, rig.model.robots) == []
 
 
+@levels
+def test_a_held_task_whose_part_was_released_can_only_be_abandoned(stage: Stage, evidence: Evidence) -> None:
+    rig, witness = stage(evidence)
+    carry(rig)
+    act(rig, Verb.HOLD)
+    rig.wait(2.0)
+    act(rig, Verb.RELEASE)
+    rig.wait(0.5)
+    for verb in (Verb.RESUME, Verb.RETRY):
+        assert "ra1 has no part to go on with: abandon sis_a" in str(rig.operate(verb, "sis_a"))
+    act(rig, Verb.ABANDON)
+    rig.wait(30.0, until=lambda: rig.plant.at_rest)
+    (change,) = rig.outcomes().values()
+    assert (change.state, change.reason) == (TaskState.FAILED, Reason.PART_LOST)
+    assert change.sentence == "ra1 let go of its part on the operator's word"
+    assert witness.part["ra1"] == "floor" and witness.false_successes == []
+
+
+def test_a_held_task_that_holds_no_part_goes_on_after_a_release(stage: Stage) -> None:
+    rig, witness = stage()
+    fetch(rig)
+    act(rig, Verb.HOLD)
+    rig.wait(2.0)
+    act(rig, Verb.RELEASE, Verb.RESUME)
+    rig.wait(60.0, until=lambda: rig.plant.at_rest)
+    (change,) = rig.outcomes().values()
+    assert change.state is TaskState.DONE and witness.illegal == []
+
+
 def test_release_of_a_mobile_is_refused(stage: Stage) -> None:
     rig, _ = stage()
     assert "has no effector" in str(rig.operate(Verb.RELEASE, "rm_sis_a"))

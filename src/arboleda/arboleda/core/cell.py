@@ -37,7 +37,7 @@ class CellRun:
         self.task: Task | None = None
         self.run = TreeRun(context)
         self.trouble: Failure | None = None  # why it is held
-        self.uprooted = False  # it was homed while a task was held: no step of it can go on from there
+        self.stranded: str | None = None  # why no step of a held task can go on from there
         self.dirty = False
         self.closed = False
         self._changed = changed
@@ -79,8 +79,8 @@ class CellRun:
             return None
         name, arm = self.cell.name, self.cell.arm.name
         why = self.trouble.sentence if self.trouble else "by the operator"
-        if self.uprooted:
-            ways = f"{arm} was homed meanwhile: abandon {name}"
+        if self.stranded:
+            ways = f"{self.stranded}: abandon {name}"
         elif self.task is not None:
             ways = f"retry {name} or abandon {name}" if self.trouble else f"resume {name} or abandon {name}"
         else:
@@ -272,11 +272,20 @@ class CellRun:
 
     def uproot(self) -> None:
         """The arm is homed: a task that is held can only be abandoned."""
-        self.uprooted = self.task is not None
+        if self.task is not None:
+            self.stranded = f"{self.cell.arm.name} was homed meanwhile"
+
+    def let_go(self) -> None:
+        """The operator has the effector opened: a task that is held has lost the part in it."""
+        if self.task is not None and self.context.holding():
+            arm = self.cell.arm.name
+            sentence = f"{arm} let go of its part on the operator's word"
+            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=sentence)
+            self.stranded = f"{arm} has no part to go on with"
 
     def _recover(self) -> None:
         """Drop what runs, halting it, and run the recovery alone."""
-        self.uprooted = False
+        self.stranded = None
         self.run.drop()
         self.context.go_on()
         self.trouble = None
@@ -311,7 +320,7 @@ class CellRun:
         self.become(Cause.STUCK)
 
     def _finish(self, task: Task, state: TaskState) -> None:
-        self.task, self.uprooted = None, False
+        self.task = self.stranded = None
         task.become(state, self.context.plant_now)
         self._changed(task)
 

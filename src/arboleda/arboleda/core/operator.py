@@ -211,7 +211,7 @@ class Operator:
             return (
                 f"{cell.cell.name} is {cell.state.value}; only a held cell or a paused queue can be resumed"
             )
-        if cell.task is None or cell.trouble is not None or cell.uprooted:
+        if cell.task is None or cell.trouble is not None or cell.stranded:
             return cell.held_by
         return None
 
@@ -224,6 +224,7 @@ class Operator:
         return f"{obstacle.sentence}: no releasing by hand" if obstacle else None
 
     def _release(self, cell: CellRun, robots: set[str]) -> None:
+        cell.let_go()
         make = partial(SetEffector, robot=cell.cell.arm.name, on=False)
         self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock())
 
@@ -244,7 +245,7 @@ def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], str | Non
 
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
-    if refusal is None and cell.uprooted:
+    if refusal is None and cell.stranded:
         return cell.held_by
     if refusal is None and cell.task is not None and cell.trouble is None:
         return f"{cell.cell.name} is held without a fault; resume {cell.cell.name} goes on"

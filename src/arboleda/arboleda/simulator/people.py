@@ -126,7 +126,7 @@ class Attendant:
 
     def _held(self, cell: CellRun) -> tuple[Verb, str, bool]:
         name = cell.cell.name
-        if cell.uprooted:
+        if cell.stranded:
             return Verb.ABANDON, name, False
         if cell.task is not None and cell.trouble is None:
             return Verb.RESUME, name, False
