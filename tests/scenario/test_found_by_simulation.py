@@ -36,6 +36,16 @@ class Found:
 
 
 FOUND = {
+    "a move that was sent and lost in one long step seemed open when the next one left in it": Found(
+        seed=1,
+        seconds=30,
+        faults=(
+            Fault(kind="operator_hold", at=2.0, target="sis_a", seed=1),
+            Fault(kind="mute", at=2.5, seconds=1.7, target="ra_1", seed=1),
+            Fault(kind="plant_stall", at=3.0, seconds=3.0, target="plant", seed=1),
+            Fault(kind="operator_resume", at=3.5, target="sis_a", seed=1),
+        ),
+    ),
     "what an arm said before somebody put it by hand to its reference was taken for a lie": Found(
         seed=2,
         seconds=30,

@@ -9,7 +9,7 @@ from arboleda.core.ledger import TABLE, State
 from arboleda.core.messages import FollowPath, Home, MoveJoints, Reason, SetEffector, Stop, StopMode, Verb
 from arboleda.core.model import Arm, Mobile, MotionState, Robot, Timing
 
-from ..recorded.commands import SentCommand
+from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle
 from .invariant import Look, When, invariant
 
@@ -67,10 +67,15 @@ def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
 def one_motion_per_robot(look: Look) -> Iterable[str]:
     """At most one motion command of a robot is open."""
     for sent in look.record.commands.new:
-        if sent.is_motion:
-            others = (each for each in look.record.commands.open.values() if each.robot == sent.robot)
-            if other := next((each for each in others if each.is_motion and each is not sent), None):
-                yield f"{sent} was sent while {other} was open"
+        if sent.is_motion and (other := _open_before(sent, look.record.commands)):
+            yield f"{sent} was sent while {other} was open"
+
+
+def _open_before(sent: SentCommand, commands: Commands) -> SentCommand | None:
+    """An open motion of the robot, but none that left later in this step, when this one may have ended."""
+    later = commands.new[commands.new.index(sent) + 1 :]
+    others = (each for each in commands.open.values() if each.robot == sent.robot and each.is_motion)
+    return next((each for each in others if each is not sent and each not in later), None)
 
 
 @invariant(When.NEWS)
