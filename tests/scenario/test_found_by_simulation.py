@@ -36,6 +36,16 @@ class Found:
 
 
 FOUND = {
+    "an arm from which an override took one of its zones went through that zone on its way home": Found(
+        seed=2,
+        seconds=30,
+        faults=(
+            Fault(kind="broker_restart", at=3.8, seconds=1.0, target="broker", seed=1),
+            Fault(kind="broker_restart", at=6.0, seconds=4.1, target="broker", seed=1),
+            Fault(kind="operator_override", at=8.4, target="corner", seed=1),
+            Fault(kind="operator_retry", at=9.9, target="right", seed=1),
+        ),
+    ),
     "a move that was sent and lost in one long step seemed open when the next one left in it": Found(
         seed=1,
         seconds=30,

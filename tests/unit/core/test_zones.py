@@ -125,6 +125,36 @@ def test_an_operator_frees_one_zone_at_a_time() -> None:
     assert plant.held_by(C) == {"y"}
 
 
+def test_a_robot_inside_takes_again_what_an_override_took_from_it() -> None:
+    plant = zones((A, "x y"))
+    assert plant.regain(A, wanted("x y z")) and plant.held_by(A) == {"x", "y"}, "it lacked nothing"
+    plant.quarantine(A)
+    plant.override("y")
+    assert plant.regain(A, wanted("x y")) and plant.held_by(A) == {"x", "y"}
+
+
+def test_a_robot_inside_gets_nothing_back_that_another_one_has_now() -> None:
+    plant = quarantined()
+    plant.override("y")
+    assert not plant.regain(A, wanted("x y"))
+    assert (plant.held_by(A), plant.held_by(C), plant.waiting) == ({"x"}, {"y"}, ((B, wanted("x")),))
+    plant.release(C)
+    assert plant.regain(A, wanted("x y")) and plant.held_by(A) == {"x", "y"}
+
+
+def test_a_robot_from_which_all_was_taken_asks_as_one_that_comes_from_outside() -> None:
+    plant = zones((A, "x"))
+    plant.quarantine(A)
+    plant.override("x")
+    assert plant.request(A, wanted("x y")) and plant.regain(A, wanted("x y z"))
+    assert plant.held_by(A) == {"x", "y"}
+
+
+def test_what_an_earlier_start_left_may_not_be_all_that_a_robot_needs() -> None:
+    plant = Zones("xy", {"x": A})
+    assert plant.regain(A, wanted("x y")) and plant.held_by(A) == {"x", "y"}
+
+
 @pytest.mark.parametrize(
     ("zone", "sentence"),
     [("x", "zone x is held by ra1, which still reports"), ("y", "zone y is free"), ("w", 'no zone "w"')],

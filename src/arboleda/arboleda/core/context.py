@@ -175,11 +175,16 @@ class Context:
     def take_zones(self, zones: frozenset[str], *, inside: bool = False) -> bool:
         """Ask for zones, all at once; whether the arm has them.
 
-        `inside`: an arm that stands in a zone may go on with what it holds, to get out.
+        `inside`: an arm that stands in a zone may go on with what it holds, to get out, unless an operator
+        has freed a part of that meanwhile.
         """
         arm = self.cell.arm.name
         held = self._zones.held_by(arm)
-        if not (inside or zones <= held if held else self._zones.request(arm, zones)):
+        if not held:
+            taken = self._zones.request(arm, zones)
+        else:
+            taken = self._zones.regain(arm, zones) if inside else zones <= held
+        if not taken:
             return False
         self._keep_zones()
         return True

@@ -20,6 +20,7 @@ class Zones:
         self._names = tuple(names)
         self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self._names}
         self._quarantined = set(self._holders)
+        self._robbed = set(self._holders.values())  # robots inside that may have had more than they hold
         self._waiting: dict[str, frozenset[str]] = {}  # in the order of asking
 
     @property
@@ -78,6 +79,16 @@ class Zones:
             if self.holder(zone) not in (None, robot):
                 raise IllegalTransition(f"zone {zone} is held by {self.holder(zone)}, not free for {robot}")
         self._holders.update(dict.fromkeys(zones, robot))
+        self._robbed.discard(robot)
+
+    def regain(self, robot: str, zones: frozenset[str]) -> bool:
+        """Whether a robot inside has all it needs to get out, `zones` at the most; it never waits.
+
+        What an override took from it, also in an earlier start, it takes again where nobody else has it.
+        """
+        if robot in self._robbed and all(self.holder(zone) in (None, robot) for zone in zones):
+            self.claim(robot, zones)
+        return robot not in self._robbed
 
     def withdraw(self, robot: str) -> tuple[str, ...]:
         """It gives up waiting; the robots that get their zones by this, the first one first."""
@@ -106,12 +117,14 @@ class Zones:
             holder = self.holder(zone)
             now = f"held by {holder}, which still reports" if holder else "free"
             raise IllegalTransition(f"zone {zone} is {now}; only a quarantined zone can be overridden")
+        self._robbed.add(self._holders[zone])
         return self._free(frozenset({zone}))
 
     def _free(self, zones: frozenset[str]) -> tuple[str, ...]:
         self._quarantined -= zones
         for zone in zones:
             del self._holders[zone]
+        self._robbed &= self.robots
         return self._grant()
 
     def _grant(self) -> tuple[str, ...]:
