@@ -36,9 +36,8 @@ class ArmBody:
         self.stuck = False
         self._axes = tuple(_axis(joint) for joint in arm.joints)
         self._drift = self._steps(start)  # true position minus counted position, per joint
-        self._seen: tuple[tuple[int, ...], ...] = ()  # what the next two were made of
-        self._q: tuple[float, ...] = ()
-        self._is_at_a_pickup = False
+        self._seen: tuple[object, ...] = ()  # what the next was made of
+        self._told = Told()
         self.reset()
         self._count_anew()
 
@@ -122,13 +121,12 @@ class ArmBody:
         self._drift = (0,) * len(self._joints)
 
     def tell(self) -> Told:
-        seen = self.position, self._drift
+        seen = (self.position, self._drift, self.next_change_us, self.effector, self.holding, self.supplied)
         if seen != self._seen:
             self._seen = seen
-            self._q = tuple([steps * step for steps, step in zip(seen[0], self._step_deg, strict=True)])
-            self._is_at_a_pickup = self.true_position in self._pickups
-        piece = self.holding or (self._is_at_a_pickup and self.supplied and not self.moving)
-        return Told(self._q, None, self.effector, piece)
+            q = tuple([steps * step for steps, step in zip(seen[0], self._step_deg, strict=True)])
+            self._told = Told(q, None, self.effector, self.holding or self._piece_lies_here())
+        return self._told
 
     def _steps(self, q: tuple[float, ...]) -> tuple[int, ...]:
         return tuple(joint.steps(value) for joint, value in zip(self._joints, q, strict=True))

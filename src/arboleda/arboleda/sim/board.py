@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import Any
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import StopMode
@@ -47,8 +49,7 @@ class Board:
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
         self._uplink = Uplink(robot.mqtt)
-        self._said: tuple[object, ...] | None = None  # what the last telemetry was made of, joints apart
-        self._q: tuple[float, ...] | None = None  # the joints in it
+        self._said: tuple[Any, ...] | None = None  # what the last telemetry was made of
         self._boot(boot_id, homed=True)
 
     def _boot(self, boot_id: int, *, homed: bool) -> None:
@@ -78,11 +79,10 @@ class Board:
 
     @property
     def next_deadline_us(self) -> int | None:
-        telemetry_us = self._uplink.due_us
-        if self.body.next_change_us is None:
-            return telemetry_us
-        motion_us = self._next_motion_us()
-        return motion_us if telemetry_us is None or motion_us < telemetry_us else telemetry_us
+        due_us = self._uplink.due_us
+        if self.body.next_change_us is not None:
+            due_us = min(due_us, self._next_motion_us())
+        return None if due_us == math.inf else due_us
 
     def take(self) -> list[Publication]:
         """What the board published since the last call, in order."""
@@ -244,18 +244,17 @@ class Board:
 
     def _tell(self) -> None:
         """Telemetry; most of it says what the one before said, and is not written anew."""
-        told, receipts = self.body.tell(), self._receipts
-        said = (told[1:], self.state, self.boot_id, self.homed, receipts.told)
+        told = self.body.tell()
+        said = (told, self.state, self.boot_id, self.homed, self._receipts.told)
+        last, self._said = self._said, said
         if not self._uplink.connected:
             self._said = None
-        elif said != self._said:
-            self._said, self._q = said, told.q
-            self._uplink.tell(self._telemetry(told))
-        elif told.q is None or told.q == self._q:
+        elif said == last:
             self._uplink.tell_again()
-        else:
-            self._q = told.q
+        elif last is not None and told.q is not None and _joints_apart(said) == _joints_apart(last):
             self._uplink.tell_angles(told.q)
+        else:
+            self._uplink.tell(self._telemetry(told))
 
     def _telemetry(self, told: Told) -> Telemetry:
         receipts = self._receipts
@@ -276,6 +275,11 @@ class Board:
             boot_id=self.boot_id,
             homed=self.homed,
         )
+
+
+def _joints_apart(said: tuple[Any, ...]) -> tuple[object, ...]:
+    told, *rest = said
+    return (told[1:], *rest)
 
 
 def _numbers_in(raw: bytes) -> tuple[int | None, int | None]:

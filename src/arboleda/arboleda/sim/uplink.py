@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from arboleda.wire.payloads import Presence, Telemetry, angles, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
@@ -19,14 +21,9 @@ class Uplink:
         self.told = 0
         self._presence = topic(name, Channel.PRESENCE)
         self._telemetry = topic(name, Channel.TELEMETRY)
-        self._due_us = 0
+        self.due_us: float = math.inf  # when the next periodic telemetry is; never while not connected
         self._frame = (b"", b"", b"")  # the last telemetry: up to its number, the number, after it
         self._outbox: list[Publication] = []
-
-    @property
-    def due_us(self) -> int | None:
-        """When the next periodic telemetry is due; None while not connected."""
-        return self._due_us if self.connected else None
 
     def take(self) -> list[Publication]:
         """What was published since the last call, in order."""
@@ -35,7 +32,7 @@ class Uplink:
 
     def announce(self, now_us: int) -> None:
         """Presence; periodic telemetry follows at each tenth of a second, as that of its neighbours does."""
-        self._due_us = (now_us // PERIOD_US + 1) * PERIOD_US
+        self.due_us = (now_us // PERIOD_US + 1) * PERIOD_US if self.connected else math.inf
         if self.connected:
             presence = encode(Presence(online=True))
             self._outbox.append(Publication(topic=self._presence, payload=presence, retain=True))
@@ -64,8 +61,7 @@ class Uplink:
 
     def period_over(self, now_us: int) -> bool:
         """Whether periodic telemetry is due; missed periods are not made up for, as on a blocked board."""
-        late_us = now_us - self._due_us
-        if not self.connected or late_us < 0:
+        if now_us < self.due_us:
             return False
-        self._due_us += PERIOD_US * (late_us // PERIOD_US + 1)
+        self.due_us += PERIOD_US * ((now_us - self.due_us) // PERIOD_US + 1)
         return True

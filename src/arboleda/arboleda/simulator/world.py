@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import count
 from typing import Any
@@ -363,7 +363,7 @@ class World:
             self.broker.clients[BRIDGE].inbox.append(FromPlant(at=self.now, message=message))
 
     def _to_plant(self, report: Report) -> None:
-        self._plant_inbox.append(report if report.at == self.now else replace(report, at=self.now))
+        self._plant_inbox.append(report if report.at == self.now else report.again(self.now))
 
     def _hear(self, client: Client, delivery: Delivery) -> None:
         self.moment.delivered.append((client.name, delivery))

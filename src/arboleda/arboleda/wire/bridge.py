@@ -54,19 +54,19 @@ class Bridge:
         self._boards = {
             robot.name: Board(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots
         }
-        self._stale_at: dict[str, float] = {}  # of the boards whose link is up, where silence means anything
+        self._stale_at = dict.fromkeys(self._boards, math.inf)  # when silence will have lasted too long
         self._routes = {
-            topics.topic(board.robot.mqtt, channel): (board, channel)
-            for board in self._boards.values()
+            topics.topic(board.robot.mqtt, channel): (name, board, channel)
+            for name, board in self._boards.items()
             for channel in Channel
         }
         heard = (Channel.TELEMETRY, Channel.PRESENCE)
-        self.subscriptions = tuple(topic for topic, (_, channel) in self._routes.items() if channel in heard)
+        self.subscriptions = tuple(topic for topic, (_, _, channel) in self._routes.items() if channel in heard)
         self._epoch = epoch
-        self._started_at: float | None = now
+        self._started_at = now  # never again once that was told
         self._plant_epoch = 0
         self._plant_beats = False
-        self._beat_at: float | None = None
+        self._beat_at = math.inf
         self._strays = Counters()
         self.connected = False  # to the broker
 
@@ -78,30 +78,29 @@ class Bridge:
     @property
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
-        times = [self._started_at, self._beat_at, min(self._stale_at.values(), default=None)]
-        return min([time for time in times if time is not None], default=None)
+        due = min(self._started_at, self._beat_at, *self._stale_at.values())
+        return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Publications for MQTT and reports for the plant, in the order they must leave."""
         out = self._start(now)
         for event in events:
             out += self._deliver(event) if isinstance(event, Delivery) else self._take(event)
-        if self._stale_at and min(self._stale_at.values()) <= now:
+        if min(self._stale_at.values(), default=math.inf) <= now:
             out += self._lose_silent(now)
         return out + self._own_beats(now)
 
     def _start(self, now: float) -> list[Message]:
-        if self._started_at is None:
+        if self._started_at == math.inf:
             return []
-        self._started_at = None
+        self._started_at = math.inf
         return [board.no_link(now) for board in self._boards.values()]
 
     def _take(self, event: FromPlant | Connection | Leaving) -> list[Message]:
         if isinstance(event, Connection):
             self.connected = event.up
             changed = [board.connection(event.at, event.up) for board in self._boards.values()]
-            for board in self._boards.values():
-                self._watch(board)
+            self._stale_at = {name: board.link.stale_at for name, board in self._boards.items()}
             return [message for messages in changed for message in messages]
         if isinstance(event, Leaving):
             return [message for board in self._boards.values() for message in board.halt(event.at)]
@@ -113,24 +112,17 @@ class Bridge:
         route = self._routes.get(delivery.topic)
         if route is None:
             return self._stray(_strange(delivery.topic))
-        board, channel = route
+        name, board, channel = route
         out = board.deliver(delivery, channel)
-        self._watch(board)
+        self._stale_at[name] = board.link.stale_at
         return out
-
-    def _watch(self, board: Board) -> None:
-        """Take over when its silence will have lasted too long."""
-        if board.link.stale_at is not None:
-            self._stale_at[board.robot.name] = board.link.stale_at
-        else:
-            self._stale_at.pop(board.robot.name, None)
 
     def _lose_silent(self, now: float) -> list[Message]:
         out: list[Message] = []
         for name, board in self._boards.items():
-            if self._stale_at.get(name, math.inf) <= now:
+            if self._stale_at[name] <= now:
                 out += board.lose(now)
-                self._watch(board)
+                self._stale_at[name] = board.link.stale_at
         return out
 
     def _stray(self, sentence: str) -> list[Message]:
@@ -181,11 +173,11 @@ class Bridge:
     def _own_beats(self, now: float) -> list[Message]:
         """For an orchestrator that knows no heartbeat: the bridge answers for it while it is there itself."""
         if self._plant_beats or not any(board.in_motion for board in self._boards.values()):
-            self._beat_at = None
+            self._beat_at = math.inf
             return []
-        if self._beat_at is not None and now < self._beat_at:
+        if now < self._beat_at < math.inf:
             return []
-        due, self._beat_at = self._beat_at is not None, now + BEAT_S
+        due, self._beat_at = self._beat_at < math.inf, now + BEAT_S
         return self._beat_all() if due else []
 
 

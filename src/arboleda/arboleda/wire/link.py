@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 
 from .payloads import Telemetry
@@ -21,14 +22,14 @@ class Heard(Enum):
 class BoardLink:
     """Up = broker reached, presence not "0", telemetry heard within `stale_after_s` (None: any time ago).
 
-    `stale_at` is when silence will have lasted too long; None while down, and where silence means nothing.
+    `stale_at` is when silence will have lasted too long: never while down, and where silence means nothing.
     """
 
     def __init__(self, stale_after_s: float | None) -> None:
         self.up = False
-        self.stale_at: float | None = None
+        self.stale_at = math.inf
         self.boot_id: int | None = None
-        self._stale_after_s = stale_after_s
+        self._stale_after_s = math.inf if stale_after_s is None else stale_after_s
         self._connected = False
         self.returns = (
             0  # how often a board that was absent came back: for one without ids, as good as a boot
@@ -47,7 +48,7 @@ class BoardLink:
 
     def lose(self) -> bool:
         """There is no way to the board; whether that is new."""
-        was_up, self.up, self.stale_at = self.up, False, None
+        was_up, self.up, self.stale_at = self.up, False, math.inf
         return was_up
 
     def hear(self, at: float, said: Telemetry) -> Heard:
@@ -60,7 +61,7 @@ class BoardLink:
             return Heard.OLD
         rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
-        self.stale_at = None if self._stale_after_s is None else at + self._stale_after_s
+        self.stale_at = at + self._stale_after_s
         self._seq = said.seq
         self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
         if rebooted:
@@ -69,10 +70,13 @@ class BoardLink:
 
     def hear_again(self, at: float, seq: int) -> bool:
         """Take over telemetry that repeats the last one; whether it is surely news, else `hear` decides."""
-        if not self.up or (self._seq is not None and seq <= self._seq):
+        if not self.up:
             return False
-        self.stale_at = None if self._stale_after_s is None else at + self._stale_after_s
-        self._seq = None if self._seq is None else seq
+        if self._seq is not None:
+            if seq <= self._seq:
+                return False
+            self._seq = seq
+        self.stale_at = at + self._stale_after_s
         return True
 
     def _overtaken(self, said: Telemetry) -> bool:
