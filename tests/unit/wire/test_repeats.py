@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.core.errors import PayloadError
-from arboleda.core.model import Evidence
-from arboleda.wire.payloads import Telemetry, decode
+from arboleda.core.model import Evidence, MotionState
+from arboleda.wire.payloads import Telemetry, decode, read_angles
 from arboleda.wire.repeats import Words
 from arboleda.wire.topics import Channel
 
@@ -98,11 +98,69 @@ def test_a_message_without_a_number_is_known_by_all_its_bytes() -> None:
     assert words is not None and (words.number(raw), words.number(raw + b" ")) == (0, None)
 
 
+TURNING = b'{"q1_mov":1.5,"q2_mov":2.25,"q3_mov":-3.0,"estado":1,"seq":9}'
+ODD = ["7", "-0", "1.5e3", "1e3", "01.5", ".5", "5.", "+1.5", "1000000.1", "NaN", '"1.5"', "[1.5]", "1.5 "]
+ANGLES = st.sampled_from(ODD) | st.floats(-1e6, 1e6).map(lambda value: repr(round(value, 4)))
+
+
+def read_arm(raw: bytes) -> Telemetry | None:
+    try:
+        said = decode(Channel.TELEMETRY, raw, axes=3)
+    except PayloadError:
+        return None
+    assert isinstance(said, Telemetry)
+    return said
+
+
+@given(angles=st.tuples(ANGLES, ANGLES, ANGLES), number=NUMBERS)
+def test_what_is_known_but_for_its_joints_reads_the_same_but_for_them(angles: tuple, number: str) -> None:
+    keys = (f'"q{joint}_mov":{value}' for joint, value in enumerate(angles, start=1))
+    second = ("{" + ",".join(keys) + ',"estado":1,"seq":' + number + "}").encode()
+    said, begin = read_arm(TURNING), read_angles(second, 3)
+    assert said is not None
+    words = Words.of(TURNING, said)
+    seq = words.turned(second, begin[1]).number(second) if words and begin else None
+    if begin and seq is not None:
+        assert read_arm(second) == replace(said, seq=seq, q=begin[0])
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("joint", [b"1.5", b"2.25", b"-3.0"])
+def test_joints_that_are_written_otherwise_have_to_be_read(joint: bytes, odd: str) -> None:
+    assert read_angles(TURNING.replace(joint, odd.encode(), 1), 3) is None
+
+
+def test_an_arm_that_moves_on_is_known_but_for_its_joints() -> None:
+    second = b'{"q1_mov":11.5,"q2_mov":2.25,"q3_mov":0.0,"estado":1,"seq":10}'
+    said = read_arm(TURNING)
+    assert said is not None
+    words, begin = Words.of(TURNING, said), read_angles(second, 3)
+    assert words is not None and begin is not None
+    assert begin[0] == (11.5, 2.25, 0.0)
+    assert words.turned(second, begin[1]).number(second) == 10
+    assert words.turned(second, begin[1]).number(second.replace(b":1,", b":0,")) is None
+
+
+@pytest.mark.parametrize("state", [state for state in MotionState if state is not MotionState.NO_LINK])
+def test_joints_are_looked_at_alone_only_while_an_arm_moves(state: MotionState) -> None:
+    raw = b'{"q1_mov":1.5,"q2_mov":2.25,"q3_mov":-3.0,"estado":%d}' % state.value
+    said = read_arm(raw)
+    assert said is not None
+    words = Words.of(raw, said)
+    assert words is not None and (words.joints > 0) == (state is MotionState.MOVING)
+
+
 AGAIN = st.tuples(st.just("tell"), BOARDS)
+DEGREES = st.floats(-2e6, 2e6).map(lambda degrees: max(-1e6, min(degrees, 1e6)))
+TURNED = st.fixed_dictionaries(
+    {"q": st.tuples(DEGREES, DEGREES, DEGREES)},
+    optional={"state": st.sampled_from([MotionState.MOVING, MotionState.STOPPED])},
+)
+MOVES = st.tuples(st.just("tell"), st.just("ra_1"), TURNED)
 
 
 @pytest.mark.parametrize("evidence", Evidence, ids=lambda level: level.value)
-@given(happenings=st.lists(AGAIN | HAPPENINGS, max_size=30))
+@given(happenings=st.lists(AGAIN | MOVES | HAPPENINGS, max_size=30))
 def test_a_bridge_that_knows_repeats_says_what_one_that_reads_all_would(
     make_linked, evidence: Evidence, happenings: list
 ) -> None:

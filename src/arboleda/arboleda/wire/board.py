@@ -13,7 +13,7 @@ from . import goals
 from .labels import Labels
 from .link import BoardLink, Heard
 from .motion import Motion
-from .payloads import Beat, Payload, Presence, Telemetry, decode, encode
+from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
 from .repeats import Words
 from .topics import Channel, topic
 from .transport import Delivery, Publication
@@ -93,7 +93,7 @@ class Board:
         if epoch == self._plant:
             return []
         self._plant = epoch
-        self._last = replace(self._last, at=at, plant=epoch) if self._last else None
+        self._last = self._last.again(at, plant=epoch) if self._last else None
         return [self._last] if self._last and self.link.up else []
 
     def beat(self) -> Publication:
@@ -119,9 +119,24 @@ class Board:
         if self._words is None or self._last is None or delivery.retain:
             return None
         number = self._words.number(delivery.payload)
-        if number is None or not self.link.hear_again(delivery.at, number):
+        if number is None:
+            return self._turned(delivery, self._words, self._last) if self._words.joints else None
+        if not self.link.hear_again(delivery.at, number):
             return None
         self._last = self._last.again(delivery.at)
+        return self._last
+
+    def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
+        """The same with other joints, where nothing else is new of a moving arm."""
+        read = read_angles(delivery.payload, self._axes or 0)
+        if read is None:
+            return None
+        angles, length = read
+        words = words.turned(delivery.payload, length)
+        number = words.number(delivery.payload)
+        if number is None or not self.link.hear_again(delivery.at, number):
+            return None
+        self._words, self._last = words, last.again(delivery.at, q=self._in_si(angles))
         return self._last
 
     def _check(self, said: Payload, delivery: Delivery) -> None:
@@ -187,9 +202,11 @@ class Board:
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.LATCH))
 
     def _joints(self, said: Telemetry) -> tuple[float, ...] | None:
-        if said.q is None or not isinstance(self.robot, Arm):
-            return None
-        rows = zip(self.robot.joints, said.q, strict=True)
+        return None if said.q is None else self._in_si(said.q)
+
+    def _in_si(self, angles: tuple[float, ...]) -> tuple[float, ...]:
+        assert isinstance(self.robot, Arm)
+        rows = zip(self.robot.joints, angles, strict=True)
         return tuple([from_wire(joint, value) for joint, value in rows])
 
     def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None) -> Report:

@@ -61,7 +61,7 @@ class Bridge:
             for channel in Channel
         }
         heard = (Channel.TELEMETRY, Channel.PRESENCE)
-        self.subscriptions = tuple(topic for topic, (_, _, channel) in self._routes.items() if channel in heard)
+        self.subscriptions = tuple(topic for topic, (*_, channel) in self._routes.items() if channel in heard)
         self._epoch = epoch
         self._started_at = now  # never again once that was told
         self._plant_epoch = 0

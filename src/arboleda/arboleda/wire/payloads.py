@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache, lru_cache
 
@@ -39,6 +40,7 @@ __all__ = [
     "angles",
     "decode",
     "encode",
+    "read_angles",
 ]
 
 REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"})
@@ -71,7 +73,17 @@ def encode(payload: Payload) -> bytes:
 
 def angles(q: tuple[float, ...]) -> bytes:
     """How telemetry of an arm begins, up to its last joint."""
-    return strict.write(_angles(q, "_mov"))[:-1]
+    rows = zip(_joint_keys(len(q), "_mov"), q, strict=True)
+    return ("{" + ",".join([f'"{key}":{_angle(key, value)}' for key, value in rows])).encode()
+
+
+def read_angles(raw: bytes, axes: int) -> tuple[tuple[float, ...], int] | None:
+    """The joints that telemetry begins with and how many bytes they take; None unless `angles` writes so."""
+    begin = _angles_pattern(axes).match(raw)
+    if begin is None:
+        return None
+    q = tuple([float(value) for value in begin.groups()])
+    return (q, begin.end()) if max(map(abs, q)) <= MAX_ANGLE_DEG else None
 
 
 def _presence(raw: bytes) -> Presence:
@@ -90,6 +102,13 @@ def _joint_keys(axes: int | None, suffix: str = "") -> tuple[str, ...]:
     if axes is None:
         raise PayloadError("a mobile robot has no joints")
     return tuple(f"q{index + 1}{suffix}" for index in range(axes))
+
+
+@cache
+def _angles_pattern(axes: int) -> re.Pattern[bytes]:
+    number = rb"(-?(?:0|[1-9]\d*)\.\d+)"
+    rows = [b'"%b":%b' % (key.encode(), number) for key in _joint_keys(axes, "_mov")]
+    return re.compile(rb"\{" + b",".join(rows) + b"(?=,)")
 
 
 def _joints(fields: strict.Fields, axes: int | None) -> JointsGoal:

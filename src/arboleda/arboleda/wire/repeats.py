@@ -1,10 +1,15 @@
-"""Telemetry that repeats the one before under another number: known by its bytes, without reading it."""
+"""Telemetry that repeats the one before under another number: known by its bytes, without reading it.
+
+That of a moving arm may have other joints.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .payloads import Telemetry
+from arboleda.core.model import MotionState
+
+from .payloads import Telemetry, read_angles
 from .strict import LIMIT_BYTES, UINT32
 
 NAME, KEY = b'"seq"', b'"seq":'
@@ -14,22 +19,31 @@ LONGEST = len(str(UINT32))
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """An accepted message: up to its number, and after it; `after` is None where it has no number."""
+    """An accepted message: up to its number, and after it; `after` is None where it has no number.
+
+    `joints` is how many bytes of it are joints that may be others next time; 0 where they may not.
+    """
 
     before: bytes
     after: bytes | None
+    joints: int = 0
 
     @classmethod
     def of(cls, raw: bytes, said: Telemetry) -> Words | None:
         """None where the bytes alone do not show which number is the message's own."""
+        joints = _joints(raw, said)
         if said.seq is None:
-            return cls(raw, None)
+            return cls(raw, None, joints)
         before, _, rest = raw.partition(KEY)
         after = rest.lstrip(DIGITS)
         sure = (
             raw.count(NAME) == 1 and b"\\" not in raw and rest[: len(rest) - len(after)] == b"%d" % said.seq
         )
-        return cls(before + KEY, after) if sure else None
+        return cls(before + KEY, after, joints) if sure else None
+
+    def turned(self, raw: bytes, joints: int) -> Words:
+        """What a message says that begins with other `joints`, and goes on like this one."""
+        return Words(raw[:joints] + self.before[self.joints :], self.after, joints)
 
     def number(self, raw: bytes) -> int | None:
         """The number of a message that says the same, 0 where such have none; None for any other message."""
@@ -43,3 +57,11 @@ class Words:
             return None
         number = int(digits)
         return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON
+
+
+def _joints(raw: bytes, said: Telemetry) -> int:
+    """Only of an arm that moves: joints of one that says it stands still may mean that a motion ended."""
+    if said.q is None or said.state is not MotionState.MOVING:
+        return 0
+    read = read_angles(raw, len(said.q))
+    return 0 if read is None else read[1]
