@@ -121,7 +121,8 @@ class Board:
         if self.body.next_change_us is not None:
             self._move(now_us)
         self._now_us = now_us
-        if self._uplink.period_over(now_us):
+        if self._uplink.due_us <= now_us:
+            self._uplink.next_period(now_us)
             self._tell()
 
     def receive(self, now_us: int, delivery: Delivery) -> None:

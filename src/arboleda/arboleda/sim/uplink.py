@@ -59,9 +59,6 @@ class Uplink:
         payload = b'%b"seq":%d,%b' % (before, self.told, after) if number else before
         self._outbox.append(Publication(topic=self._telemetry, payload=payload, qos=0))
 
-    def period_over(self, now_us: int) -> bool:
-        """Whether periodic telemetry is due; missed periods are not made up for, as on a blocked board."""
-        if now_us < self.due_us:
-            return False
+    def next_period(self, now_us: int) -> None:
+        """Periodic telemetry is told now; missed periods are not made up for, as on a blocked board."""
         self.due_us += PERIOD_US * ((now_us - self.due_us) // PERIOD_US + 1)
-        return True
