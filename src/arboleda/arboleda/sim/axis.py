@@ -24,7 +24,9 @@ class Course:
         stepper.move_to(distance)
         begin = now = stepper.interval
         interval = 0
-        while stepper.run(now):
+        while stepper.interval:
+            now = stepper.cruise(now)
+            stepper.run(now)
             if stepper.interval != interval:
                 interval = stepper.interval
                 self._times.append(now - begin)

@@ -113,10 +113,9 @@ class Stepper:
         """Poll every microsecond from `since_us` to `until_us`, both included."""
         due = self.next_step_us(since_us)
         while due is not None and due <= until_us:
-            if self._exact_interval == self._shortest_interval:
-                due = self._cruise(due, until_us)
-                if due > until_us:
-                    return
+            due = self.cruise(due, until_us)
+            if due > until_us:
+                return
             self._step(due)
             due = due + self.interval if self.interval else None
 
@@ -133,8 +132,10 @@ class Stepper:
         self._last_step_us = now_us
         self._compute()
 
-    def _cruise(self, due: int, until_us: int) -> int:
+    def cruise(self, due: int, until_us: int = FOREVER_US) -> int:
         """Take at once the steps from `due` on that change nothing but the position; when the next is due."""
+        if self._exact_interval != self._shortest_interval:
+            return due
         way = self.target - self.position
         if self._ramp <= 0 or self._clockwise != (way > 0):
             return due
