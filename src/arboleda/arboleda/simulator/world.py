@@ -328,12 +328,13 @@ class World:
         if bridge is None or not self._awake(BRIDGE):
             return
         inbox, client.inbox = client.inbox, []
-        clear = self.to_plant.is_clear(self.now)
-        for message in bridge.step(self.now, inbox):
+        now = self.now
+        clear = self.to_plant.is_clear(now)
+        for message in bridge.step(now, inbox):
             if not isinstance(message, Report):
                 self.publish(message, client)
-            elif clear:
-                self._to_plant(message)
+            elif clear and message.at == now:
+                self._plant_inbox.append(message)
             else:
                 self._carry(self.to_plant, self._to_plant, message)
         due = bridge.next_deadline
