@@ -26,7 +26,7 @@ class ArmTruth(RobotTruth):
     `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept.
     """
 
-    SIGNS = ("body.next_change_us", "boot_id", "body.effector", "body.holding")
+    SIGNS = ("next_change_us", "effector", "holding")
     body: ArmBody
 
     def __init__(self, robot: Arm, cell: Cell, board: Board, client: Client) -> None:

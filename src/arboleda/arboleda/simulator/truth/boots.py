@@ -9,6 +9,8 @@ from arboleda.core.model import Evidence
 
 from .robot import RobotTruth
 
+NEVER = (None, None)
+
 
 class Boots:
     """Follows the robots at `joints`, whose boots show only in the number that the bridge gives them."""
@@ -22,12 +24,16 @@ class Boots:
         """Take in what the plant heard in this step."""
         for report in heard:
             if report.robot in self.mute and report.boot_id is not None:
-                epoch, boot = self._last.get(report.robot, (None, None))
-                self._last[report.robot] = (report.epoch, report.boot_id)
-                if epoch == report.epoch and boot != report.boot_id:
-                    self._told.add(report.robot)
-        for name in [name for name in self._told if self.mute[name].homed]:
-            self._told.discard(name)
+                self._hear(report)
+        if self._told:
+            self._told = {name for name in self._told if not self.mute[name].homed}
+
+    def _hear(self, report: Report) -> None:
+        said, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
+        if said != last:
+            self._last[report.robot] = said
+            if said[0] == last[0]:
+                self._told.add(report.robot)
 
     def told(self, robot: str) -> bool:
         """Whether the plant knows that it booted, and nobody has put it right since."""

@@ -18,7 +18,7 @@ class MobileTruth(RobotTruth):
     `goal` is the last node of the path that it drives or drove last.
     """
 
-    SIGNS = ("body.next_change_us", "boot_id", "body.true_node")
+    SIGNS = ("next_change_us", "true_node")
     body: MobileBody
 
     def __init__(self, robot: Mobile, cell: Cell, board: Board, client: Client) -> None:

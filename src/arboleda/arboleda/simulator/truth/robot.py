@@ -56,7 +56,7 @@ class RobotTruth:
     was told to stop and does not.
     """
 
-    SIGNS: tuple[str, ...]  # of a board: what changes with whatever happens, the end of a motion first
+    SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens, the end of a motion first
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
         self.robot = robot
@@ -92,7 +92,7 @@ class RobotTruth:
 
     def expect(self, publication: Publication) -> None:
         """Our bridge published a command for it."""
-        self._ours.append((publication.topic, publication.payload))
+        self._ours.appendleft((publication.topic, publication.payload))  # the last one is asked for most
 
     def put_right(self, now: float) -> None:
         """Somebody has put it by hand to its reference, where its counters are right."""
@@ -111,8 +111,8 @@ class RobotTruth:
 
     def look(self, now_us: int) -> bool:
         """Take in the present."""
-        seen = self._signs(self.board)
-        if seen == self._seen and not self.again:
+        seen = self._signs(self.body)
+        if seen == self._seen and self.board.boot_id == self._boot and not self.again:
             return False
         self._take_in(seen, now_us)
         self.again = bool(self._ahead) or self._slows_down
