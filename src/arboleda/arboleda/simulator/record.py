@@ -63,6 +63,7 @@ class Record:
         self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
         self.differences: list[str] = []
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
+        self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
         self.stepped = self.news = self.born = self.told = False
         self._cells = tuple(self.cells.values())
@@ -143,6 +144,7 @@ class Record:
         self.born = self._is_new(plant)
         if self.born:
             self._begin(plant)
+        self._earlier.clear()
         if moment.heard:
             self._hear(bool(moment.asked))
         if moment.asked:
@@ -182,13 +184,13 @@ class Record:
 
     def _hear(self, asked: bool) -> None:
         """Where somebody asked in between, a command may rest on any of the words before it."""
-        heard, robots = self.world.moment.heard, self.robots
-        self._earlier.clear()
-        for report in heard:
+        moment, robots = self.world.moment, self.robots
+        commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
+        for report in moment.heard:
             known = robots.get(report.robot)
             if known is None:
                 continue
-            if asked or (known.robot.home_at_start and self.world.moment.sent):
+            if report.robot in commanded and (asked or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
             known.hear(report)
             if report.rejected in self.commands.open:
@@ -202,11 +204,10 @@ class Record:
 
     def _look_at_zones(self, plant: Plant) -> None:
         """Called before the cells are taken over: until now each was in the state it had."""
-        robots = {robot for robot, _ in plant.zones.waiting}
-        if not robots:
-            self.waiting.clear()
-            return
-        self.waiting = [cell for cell in self.cells.values() if cell.cell.arm.name in robots]
+        requests = plant.zones.waiting
+        if requests != self._requests:
+            self._requests, robots = requests, dict(requests)
+            self.waiting = [cell for cell in self._cells if cell.cell.arm.name in robots]
         for cell in self.waiting:
             cell.wait(plant.now - self.stepped_at)
 
@@ -228,11 +229,12 @@ class Record:
         due = now >= self._look_again_at
         if due:
             self._look_again_at = now + LOOK_S
-        sent = {each.command.id for each in self.commands.new}
-        senders = {each.entry.cell for each in self.commands.new if each.entry}
+        new = self.commands.new
+        sent = {each.command.id for each in new}
+        senders = {each.entry.cell for each in new if each.entry}
         for cell in self._cells:
             cell.watch_time(now)
-            if cell.state is CellState.EXECUTE and (due or cell.name in senders):
+            if (due or cell.name in senders) and cell.state is CellState.EXECUTE:
                 cell.look(sent)
 
     def _on_command(self, command: Command) -> None:

@@ -85,8 +85,10 @@ class KnownCell:
 
     def wait(self, seconds: float) -> None:
         """Its arm waits for zones after this step; `seconds` passed since the one before."""
-        leaves = _running(self.run.tree) if self.run.tree else ()
-        waiter = next((leaf for leaf in leaves if isinstance(leaf, TakeZones)), None)
+        tree, waiter = self.run.tree, self._waiter
+        if waiter is None or not _runs(waiter, tree):
+            leaves = _running(tree) if tree else ()
+            waiter = next((leaf for leaf in leaves if isinstance(leaf, TakeZones)), None)
         if waiter is not self._waiter:
             self._waiter, self.waited_s = waiter, 0.0
         elif self.state not in PAUSED:
@@ -105,6 +107,16 @@ class KnownCell:
         for leaf in self.leaves:
             if isinstance(leaf, Act) and leaf.entry is not None and leaf.entry.command.id in sent:
                 self.sends[leaf] = self.sends.get(leaf, 0) + 1
+
+
+def _runs(leaf: Behaviour, tree: Behaviour | None) -> bool:
+    """Whether a leaf runs in a tree."""
+    node: Behaviour | None = leaf
+    while node is not None and node.status is Status.RUNNING:
+        if node is tree:
+            return True
+        node = node.parent
+    return False
 
 
 def _running(node: Behaviour) -> Iterator[Behaviour]:
