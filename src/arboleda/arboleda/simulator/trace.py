@@ -47,7 +47,8 @@ class Trace:
         words = [self._world.now.hex().encode()]
         for client, said in moment.published:
             words += (_head(client, said.topic, said.retain), said.payload)
-        words += [repr(message).encode() for message in (*moment.sent, *moment.asked)]
+        if moment.sent or moment.asked:
+            words += [repr(message).encode() for message in (*moment.sent, *moment.asked)]
         self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():

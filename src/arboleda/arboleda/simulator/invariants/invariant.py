@@ -84,8 +84,8 @@ class Judges:
             self._benches[each.when].rules.append((each.name, each.rule))
         used = [when for when, bench in self._benches.items() if bench.rules and when is not When.END]
         self._after_a_step = [self._benches[when] for when in used]
-        # the first two are there because of one name alone attrgetter makes no tuple
-        self._signs = attrgetter("world", "world", *(when.value for when in used))
+        # the last two are there because of one name alone attrgetter makes no tuple
+        self._signs = attrgetter(*(when.value for when in used), "world", "world")
 
     @property
     def looks(self) -> Counter[str]:
@@ -94,8 +94,7 @@ class Judges:
 
     def after_a_step(self, look: Look) -> Iterator[tuple[str, str]]:
         """Each breach that a step gives reason to look for: the invariant's name, and its sentence."""
-        _, _, *signs = self._signs(look)
-        for bench in compress(self._after_a_step, signs):
+        for bench in compress(self._after_a_step, self._signs(look)):
             bench.looks += 1
             for name, rule in bench.rules:
                 for sentence in rule(look):

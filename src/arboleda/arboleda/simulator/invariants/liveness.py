@@ -12,6 +12,7 @@ from arboleda.sim.board import Board
 from ..recorded.cells import KnownCell
 from .invariant import Look, When, invariant
 
+NOTHING: tuple[str, ...] = ()
 SLACK_S = 0.001
 AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
 
@@ -49,8 +50,13 @@ def no_tree_outlives_its_work(look: Look) -> Iterable[str]:
 @invariant(When.STEPPED)
 def no_starvation(look: Look) -> Iterable[str]:
     """In a cell that is idle, ready and not paused the next task starts in the same step."""
-    ready = [cell.name for cell in look.record.idle if _ready(look, cell)]
-    return [f"{name} is ready, and its next task does not start" for name in ready]
+    return _idle_though_ready(look) if look.record.idle else NOTHING
+
+
+def _idle_though_ready(look: Look) -> Iterator[str]:
+    for cell in look.record.idle:
+        if _ready(look, cell):
+            yield f"{cell.name} is ready, and its next task does not start"
 
 
 def _ready(look: Look, cell: KnownCell) -> bool:

@@ -6,6 +6,7 @@ import json
 import math
 from collections import deque
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any
 
 from arboleda.core.messages import Report
@@ -21,8 +22,11 @@ from ..network import Client
 RECENT = 512  # telemetry messages, more than the bridge or a line keep
 DECIMALS = 4
 EXACT = 0.6e-4
+KEPT = 4096  # angles; arms go the same ways all day
 LOOK_S = 0.5  # a position that stays the same is looked at this often
 Numbers = tuple[int, int]  # (epoca, seq)
+Position = tuple[tuple[float, ...] | None, int | None]  # (q, node)
+NOWHERE: Position = (None, None)
 
 
 class KnownBoard:
@@ -36,10 +40,9 @@ class KnownBoard:
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals on the wire that the axes can hold
-        self._reported_q: tuple[float, ...] | None = None
-        self._reported_node: int | None = None
+        self._reported: Position = NOWHERE
         self._look_at = 0.0
-        self._written: tuple[tuple[float, ...] | None, int | None, bytes] | None = None
+        self._written: tuple[Position, bytes] | None = None
         joints = robot.joints if isinstance(robot, Arm) else ()
         self._axes = len(joints) or None
         self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
@@ -63,11 +66,11 @@ class KnownBoard:
 
     def is_news(self, report: Report) -> bool:
         """Whether it reports another position than before, or the same one for LOOK_S."""
-        q, node = report.q, report.node
-        if q == self._reported_q and node == self._reported_node and report.at < self._look_at:
+        position = report.q, report.node
+        if position == self._reported and report.at < self._look_at:
             return False
-        self._reported_q, self._reported_node, self._look_at = q, node, report.at + LOOK_S
-        return q is not None or node is not None
+        self._reported, self._look_at = position, report.at + LOOK_S
+        return position != NOWHERE
 
     def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
         """Whether valid telemetry that reached the bridge at `since` or later says that it is there."""
@@ -81,16 +84,14 @@ class KnownBoard:
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """How telemetry of our boards begins where it says this."""
-        if self._written is None or self._written[:2] != (q, node):
-            self._written = (q, node, (self._form % tuple(self._on_wire(q, node))).encode())
-        return self._written[2]
+        if self._written is None or self._written[0] != (q, node):
+            self._written = (q, node), (self._form % tuple(self._on_wire(q, node))).encode()
+        return self._written[1]
 
     def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> list[Any]:
         if q is None:
             return [node]
-        return [
-            round(value * degrees, DECIMALS) + 0.0 for value, degrees in zip(q, self._degrees, strict=True)
-        ]
+        return [_rounded(value, degrees) for value, degrees in zip(q, self._degrees, strict=True)]
 
     def _was_delivered(self, goal: Goal) -> bool:
         """Retained ones do not count: nobody knows how old they are."""
@@ -139,6 +140,12 @@ class Boards:
             self.by_name[name].inbox = inbox
             if not inbox:
                 del self._busy[name]
+
+
+@lru_cache(maxsize=KEPT)
+def _rounded(value: float, degrees: float) -> float:
+    """An angle as boards write it; `degrees` to one of `value`."""
+    return round(value * degrees, DECIMALS) + 0.0
 
 
 def _commands(board: str) -> list[str]:
