@@ -14,6 +14,7 @@ from arboleda.core.messages import (
     MoveJoints,
     OperatorAnswer,
     OperatorRequest,
+    Report,
     SetEffector,
     Stop,
     StopMode,
@@ -41,6 +42,7 @@ class Record:
 
     `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `news`: whether
     something changed in it besides what robots report, or it is time to look at everything again.
+    `anew`: the last reports that said something else than before, or the same for some time.
     `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
     `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
     until then. `answers` and `transitions` (cell, state before, state after) are of this step;
@@ -59,6 +61,7 @@ class Record:
         self.boards = Boards(
             {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
         )
+        self.anew: list[Report] = []
         self.answers: list[OperatorAnswer] = []
         self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
         self.differences: list[str] = []
@@ -185,6 +188,7 @@ class Record:
     def _hear(self, asked: bool) -> None:
         """Where somebody asked in between, a command may rest on any of the words before it."""
         moment, robots = self.world.moment, self.robots
+        self.anew = []
         commanded = {each.robot for each in moment.sent if isinstance(each, Command)}
         for report in moment.heard:
             known = robots.get(report.robot)
@@ -192,7 +196,8 @@ class Record:
                 continue
             if report.robot in commanded and (asked or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
-            known.hear(report)
+            if known.hear(report):
+                self.anew.append(report)
             if report.rejected in self.commands.open:
                 self.commands.hear(report)
 

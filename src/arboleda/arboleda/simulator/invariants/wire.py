@@ -119,18 +119,25 @@ def payload_size(look: Look) -> Iterable[str]:
 @invariant(When.HEARD)
 def published_joints_are_reported(look: Look) -> Iterable[str]:
     """A position that the plant shows is the last one it heard, and its board told it lately."""
-    record, wrong = look.record, []
-    shown = record.shown
+    shown = look.record.shown
     for report in look.moment.heard:
-        if report.robot not in shown:
+        if report.robot in shown:
+            known, _, belief = shown[report.robot]
+            if belief.q != known.q or belief.node != known.node:
+                yield f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}"
+    if look.record.anew:
+        yield from _untold(look)
+
+
+def _untold(look: Look) -> Iterator[str]:
+    record = look.record
+    for report in record.anew:
+        where = report.node if report.q is None else report.q
+        if where is None or report.robot not in record.shown:
             continue
-        known, board, belief = shown[report.robot]
-        if belief.q != known.q or belief.node != known.node:
-            wrong.append(f"{report.robot} is shown at {belief.position}, and said {known.q or known.node}")
-        if board.is_news(report) and not board.said(report.q, report.node, record.told_since(report.at)):
-            where = report.node if report.q is None else report.q
-            wrong.append(f"{report.robot} is reported at {where}, which its board has not told lately")
-    return wrong
+        _, board, _ = record.shown[report.robot]
+        if not board.said(report.q, report.node, record.told_since(report.at)):
+            yield f"{report.robot} is reported at {where}, which its board has not told lately"
 
 
 @invariant(When.BORN)

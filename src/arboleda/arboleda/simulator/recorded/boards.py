@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
-from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Joint, Robot
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import Goal
@@ -23,10 +22,7 @@ RECENT = 512  # telemetry messages, more than the bridge or a line keep
 DECIMALS = 4
 EXACT = 0.6e-4
 KEPT = 4096  # angles; arms go the same ways all day
-LOOK_S = 0.5  # a position that stays the same is looked at this often
 Numbers = tuple[int, int]  # (epoca, seq)
-Position = tuple[tuple[float, ...] | None, int | None]  # (q, node)
-NOWHERE: Position = (None, None)
 
 
 class KnownBoard:
@@ -40,9 +36,7 @@ class KnownBoard:
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals on the wire that the axes can hold
-        self._reported: Position = NOWHERE
-        self._look_at = 0.0
-        self._written: tuple[Position, bytes] | None = None
+        self._written: tuple[tuple[float, ...] | int | None, bytes] | None = None
         joints = robot.joints if isinstance(robot, Arm) else ()
         self._axes = len(joints) or None
         self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
@@ -64,14 +58,6 @@ class KnownBoard:
             self.last = (goal.epoch, goal.seq)
         return before, delivered
 
-    def is_news(self, report: Report) -> bool:
-        """Whether it reports another position than before, or the same one for LOOK_S."""
-        position = report.q, report.node
-        if position == self._reported and report.at < self._look_at:
-            return False
-        self._reported, self._look_at = position, report.at + LOOK_S
-        return position != NOWHERE
-
     def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
         """Whether valid telemetry that reached the bridge at `since` or later says that it is there."""
         if not self.telemetry:
@@ -84,8 +70,9 @@ class KnownBoard:
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """How telemetry of our boards begins where it says this."""
-        if self._written is None or self._written[0] != (q, node):
-            self._written = (q, node), (self._form % tuple(self._on_wire(q, node))).encode()
+        position = node if q is None else q
+        if self._written is None or self._written[0] != position:
+            self._written = position, (self._form % tuple(self._on_wire(q, node))).encode()
         return self._written[1]
 
     def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> list[Any]:

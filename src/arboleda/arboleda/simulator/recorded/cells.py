@@ -87,8 +87,7 @@ class KnownCell:
         """Its arm waits for zones after this step; `seconds` passed since the one before."""
         tree, waiter = self.run.tree, self._waiter
         if waiter is None or not _runs(waiter, tree):
-            leaves = _running(tree) if tree else ()
-            waiter = next((leaf for leaf in leaves if isinstance(leaf, TakeZones)), None)
+            waiter = next((leaf for leaf in _running(tree) if isinstance(leaf, TakeZones)), None)
         if waiter is not self._waiter:
             self._waiter, self.waited_s = waiter, 0.0
         elif self.state not in PAUSED:
@@ -103,7 +102,7 @@ class KnownCell:
     def look(self, sent: set[str]) -> None:
         """Look up the leaves that run, and count the commands of this step, by id, that are theirs."""
         self.looked = True
-        self.leaves = list(_running(self.run.tree)) if self.run.tree else []
+        self.leaves = _running(self.run.tree)
         for leaf in self.leaves:
             if isinstance(leaf, Act) and leaf.entry is not None and leaf.entry.command.id in sent:
                 self.sends[leaf] = self.sends.get(leaf, 0) + 1
@@ -119,11 +118,12 @@ def _runs(leaf: Behaviour, tree: Behaviour | None) -> bool:
     return False
 
 
-def _running(node: Behaviour) -> Iterator[Behaviour]:
-    """The leaves that run, from a node on."""
-    if node.status is not Status.RUNNING:
-        return
-    if not node.children:
-        yield node
-    for child in node.children:
-        yield from _running(child)
+def _running(tree: Behaviour | None) -> list[Behaviour]:
+    """The leaves of a tree that run, in its order."""
+    leaves, nodes = [], [tree] if tree else []
+    while nodes:
+        node = nodes.pop()
+        if node.status is Status.RUNNING:
+            nodes += reversed(node.children)
+            leaves += () if node.children else (node,)
+    return leaves

@@ -9,6 +9,8 @@ from enum import Enum
 from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, Link, MotionState, Robot
 
+LOOK_S = 0.5  # what stays the same is looked at this often
+
 
 class Obstacle(str, Enum):
     """Why a robot must not be given a command."""
@@ -42,6 +44,7 @@ class KnownRobot:
     def forget(self) -> None:
         """A plant that starts has heard nothing."""
         self._words: tuple[object, ...] = ()  # of the last report
+        self._look_at = 0.0
         self.heard_at: float | None = None
         self.state: MotionState | None = None
         self.homed: bool | None = None
@@ -53,15 +56,17 @@ class KnownRobot:
         self.displaced = False  # it cannot report its homing, and has booted
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
-    def hear(self, report: Report) -> None:
-        """Take over what it says now."""
-        if report.words != self._words:
-            self._words = report.words
+    def hear(self, report: Report) -> bool:
+        """Take over what it says now; whether that is something else than before, or the same for LOOK_S."""
+        anew = report.words != self._words or report.at >= self._look_at
+        if anew:
+            self._words, self._look_at = report.words, report.at + LOOK_S
             self._take_over(report)
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
         if self.unnamed is not None and self.unnamed in (report.accepted, report.done, report.rejected):
             self.unnamed = None
+        return anew
 
     def _take_over(self, report: Report) -> None:
         if report.boot_id is not None:

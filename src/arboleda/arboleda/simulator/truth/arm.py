@@ -39,6 +39,7 @@ class ArmTruth(RobotTruth):
         self.zones = NOWHERE
         self.true, self.counted = self.body.true_position, self.body.position
         self._shift = tuple(map(sub, self.true, self.counted))  # of the counters, by boots alone
+        self._told: dict[tuple[float, ...], Steps] = {}  # of the poses
         self._names: dict[Steps, frozenset[str]] = {}
         self._spots: dict[Steps, frozenset[str]] = {}  # with the points above poses
         for pose in cell.poses:
@@ -181,10 +182,12 @@ class ArmTruth(RobotTruth):
     def _enter(self, pose: Pose) -> None:
         for book, q in ((self._names, pose.q), (self._spots, pose.q), (self._spots, pose.above)):
             if q is not None:
-                place = self._steps(q)
+                place = self._told[q] = self._steps(q)
                 book[place] = book.get(place, NOWHERE) | {pose.name}
 
     def _steps(self, q: tuple[float, ...]) -> Steps:
+        if q in self._told:
+            return self._told[q]
         return tuple(joint.steps(value) for joint, value in zip(self.arm.joints, q, strict=True))
 
 

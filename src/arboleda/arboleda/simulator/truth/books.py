@@ -49,10 +49,9 @@ class Books:
         """See which of the open commands are open no more since the last step."""
         if self.ended:
             self.ended = []
-        if self._open:
-            entries = self._world.plant.dispatcher.ledger.entries
-            for id in [id for id in self._open if id not in entries]:
-                self.ended.append(self._open.pop(id))
+        entries = self._world.plant.dispatcher.ledger.entries
+        if not self._open.keys() <= entries.keys():
+            self.ended = [self._open.pop(id) for id in [*self._open] if id not in entries]
 
     def sent(self, command: Command) -> None:
         """The plant has sent a command; one that it keeps no book of is passed over."""

@@ -101,7 +101,8 @@ class Truth:
 
     def look(self) -> None:
         """Take in what happened in this step; called before any invariant."""
-        self._forget()
+        if self.deeds:
+            self._forget()
         if self.world.plant is not self._plant:
             self._new_plant()
         self._look_at_messages()
@@ -148,15 +149,12 @@ class Truth:
             self.stops.settle()
 
     def _forget(self) -> None:
-        if self.changed:
-            for robot in self.changed:
-                robot.forget()
-            for cell in self.cells.values():
-                cell.switch = None
-            self.parts.forget()
-            self.changed = []
-        if self.begun or self.ended or self.stray_grips or self.defied:
-            self.begun, self.ended, self.stray_grips, self.defied = [], [], [], []
+        for robot in self.changed:
+            robot.forget()
+        for cell in self.cells.values():
+            cell.switch = None
+        self.parts.forget()
+        self.changed, self.begun, self.ended, self.stray_grips, self.defied = [], [], [], [], []
 
     def _add(self, name: str) -> None:
         model, world = self.world.model, self.world

@@ -67,9 +67,8 @@ class ZonesTruth:
         if moved:
             self._look_inside()
         holder = self._world.plant.zones.holder
-        for zone in self._names:
-            before, now = self._holders[zone], holder(zone)
-            if before != now:
+        for zone, before in self._holders.items():
+            if (now := holder(zone)) != before:
                 self._holders[zone] = now
                 if before is not None:
                     self._freed(zone, before)
