@@ -198,7 +198,6 @@ class Record:
                 self._earlier.setdefault(report.robot, []).append(copy(known))
             if known.hear(report):
                 self.anew.append(report)
-            if report.rejected in self.commands.open:
                 self.commands.hear(report)
 
     def _ask(self, asked: list[Any]) -> None:

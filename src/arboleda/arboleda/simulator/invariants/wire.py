@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from arboleda.core.messages import FollowPath, MoveJoints
-from arboleda.core.model import Arm, Evidence, Joint, Mobile
+from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile
 
 from ..recorded.boards import fields, is_number, on_wire
 from ..world import BRIDGE
@@ -77,20 +77,27 @@ def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
 
 
 def _path(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
-    mobile = look.record.boards.by_name[name].robot
+    board = look.record.boards.by_name[name]
+    mobile = board.robot
     assert isinstance(mobile, Mobile)
-    nodes, grid = body.get("nodos"), mobile.grid
+    nodes = body.get("nodos")
     whole = isinstance(nodes, list) and nodes and all(type(node) is int for node in nodes)
     if not whole or not _numbered(mobile.evidence, body):
         yield f"{name}/camino is {body}"
         return
+    if (way := tuple(nodes)) not in board.legal:
+        yield from _off_grid(name, mobile.grid, nodes)
+        board.legal.add(way)
+    recent = reversed(look.record.commands.goals.get(mobile.name, ()))
+    if not any(isinstance(each, FollowPath) and list(each.nodes) == nodes for each in recent):
+        yield f"{name}/camino is {nodes}, which the plant has not commanded"
+
+
+def _off_grid(name: str, grid: Grid, nodes: list[int]) -> Iterator[str]:
     if not all(0 <= node < grid.size for node in nodes):
         yield f"{name}/camino leaves the grid: {nodes}"
     elif any(there not in grid.neighbours(here) for here, there in pairwise(nodes)):
         yield f"{name}/camino leaves the grid's edges: {nodes}"
-    recent = reversed(look.record.commands.goals.get(mobile.name, ()))
-    if not any(isinstance(each, FollowPath) and list(each.nodes) == nodes for each in recent):
-        yield f"{name}/camino is {nodes}, which the plant has not commanded"
 
 
 def _numbered(evidence: Evidence, body: dict[str, Any]) -> bool:

@@ -35,7 +35,7 @@ class KnownBoard:
         self.last: Numbers | None = None
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
-        self.legal: set[tuple[float, ...]] = set()  # goals on the wire that the axes can hold
+        self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
         self._written: tuple[tuple[float, ...] | int | None, bytes] | None = None
         joints = robot.joints if isinstance(robot, Arm) else ()
         self._axes = len(joints) or None
@@ -65,20 +65,20 @@ class KnownBoard:
         last = self.telemetry[-1]
         if last.at >= since and last.payload.startswith(self._words(q, node)):
             return True
-        there = dict(zip(self._keys, self._on_wire(q, node), strict=True))
+        there = dict(zip(self._keys, map(float, self._on_wire(q, node)), strict=True))
         return any(each.at >= since and _says(each.payload, there) for each in reversed(self.telemetry))
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """How telemetry of our boards begins where it says this."""
         position = node if q is None else q
         if self._written is None or self._written[0] != position:
-            self._written = position, (self._form % tuple(self._on_wire(q, node))).encode()
+            self._written = position, (self._form % self._on_wire(q, node)).encode()
         return self._written[1]
 
-    def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> list[Any]:
+    def _on_wire(self, q: tuple[float, ...] | None, node: int | None) -> tuple[Any, ...]:
         if q is None:
-            return [node]
-        return [_rounded(value, degrees) for value, degrees in zip(q, self._degrees, strict=True)]
+            return (node,)
+        return tuple([_angle(value, degrees) for value, degrees in zip(q, self._degrees, strict=True)])
 
     def _was_delivered(self, goal: Goal) -> bool:
         """Retained ones do not count: nobody knows how old they are."""
@@ -130,9 +130,9 @@ class Boards:
 
 
 @lru_cache(maxsize=KEPT)
-def _rounded(value: float, degrees: float) -> float:
+def _angle(value: float, degrees: float) -> str:
     """An angle as boards write it; `degrees` to one of `value`."""
-    return round(value * degrees, DECIMALS) + 0.0
+    return repr(round(value * degrees, DECIMALS) + 0.0)
 
 
 def _commands(board: str) -> list[str]:

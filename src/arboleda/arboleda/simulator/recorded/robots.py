@@ -64,11 +64,11 @@ class KnownRobot:
             self._take_over(report)
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
-        if self.unnamed is not None and self.unnamed in (report.accepted, report.done, report.rejected):
-            self.unnamed = None
         return anew
 
     def _take_over(self, report: Report) -> None:
+        if self.unnamed is not None and self.unnamed in (report.accepted, report.done, report.rejected):
+            self.unnamed = None
         if report.boot_id is not None:
             self._hear_boot(report)
         if report.epoch is not None:
