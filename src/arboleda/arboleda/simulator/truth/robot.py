@@ -56,7 +56,7 @@ class RobotTruth:
     was told to stop and does not.
     """
 
-    SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens, the end of a motion first
+    SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens
 
     def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
         self.robot = robot
@@ -81,6 +81,7 @@ class RobotTruth:
         self.put_right_at = -math.inf  # when somebody last did, s
         self._arrived = not self.moving  # whether it stood still at some time in this step
         self._seen: tuple[Any, ...] = ()
+        self._due: int | None = None  # when its motion was to end
         self.forget()
 
     def forget(self) -> None:
@@ -119,13 +120,15 @@ class RobotTruth:
         return True
 
     def _take_in(self, seen: tuple[Any, ...], now_us: int) -> None:
-        due, turned, self._seen = self._seen[:1], seen[:1] != self._seen[:1], seen
-        if self._boot != self.board.boot_id:
+        due, self._due, self._seen = self._due, self.body.next_change_us, seen
+        turned = due != self._due
+        if self.board.boot_id != self._boot:
             self._boot_up(now_us)
         told = self.stopping
-        self._hear()
+        if self._ahead or self._executed:
+            self._hear()
         was_moving, self.moving = self.moving, self.body.moving
-        self._arrived = not was_moving or _is_over(due, now_us)
+        self._arrived = not was_moving or (due is not None and due <= now_us)
         self.stopping = self.stopping and self.moving
         asked, soon = any(act.moves for act in self.acts), self._ends_soon(now_us)
         self.started = self.moving and not was_moving and not asked
@@ -163,6 +166,7 @@ class RobotTruth:
         self.lost_power = True
         self.homed = self.latched = self._homing = self.stopping = False
         del self._ahead[: self._left]
+        self._left = 0
 
     def _hear(self) -> None:
         """Go through what the board heard and did, in order."""
@@ -199,11 +203,6 @@ class RobotTruth:
     def _follow_homing(self) -> None:
         if self._homing and not self.moving:
             self.homed, self._homing = self.at_reference, False
-
-
-def _is_over(due: tuple[int | None, ...], now_us: int) -> bool:
-    """Whether a motion that was to end then has ended."""
-    return any(at is not None and at <= now_us for at in due)
 
 
 def _is_command(event: object) -> bool:
