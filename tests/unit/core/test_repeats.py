@@ -34,6 +34,7 @@ SAID = st.fixed_dictionaries(
         "boot_id": st.none() | st.integers(1, 2),
         "accepted": IDS,
         "done": IDS,
+        "rejected": IDS,
         "homed": st.none() | st.booleans(),
     }
 )

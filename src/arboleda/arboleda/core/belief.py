@@ -26,10 +26,11 @@ class Belief:
         self.plant_epoch = plant_epoch
         self.supervised = robot.evidence is not Evidence.STATE
         self._is_arm = isinstance(robot, Arm)
-        self._is_drawn = robot.link is Link.NONE
+        self.drawn = robot.link is Link.NONE
         self.heard_at: float | None = None
         self.stale = False
         self.stale_at: float | None = None
+        self.online = not self.supervised and not self.drawn
         self.epoch: int | None = None
         self.plant: int | None = None
         self.boot_id: int | None = None
@@ -53,12 +54,23 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        if report.words != self._said or not self.online or report.at < self.position_at:
+        at = report.at
+        if not self.online or at < self.position_at or report.words != self._said:
             return False
-        self._count(report)
-        if report.at - self._counted[0] >= RATE_S:
-            self._count_rate(report.at)
-        self._hear(report)
+        self.reports += 1
+        self.heard_at = at
+        if self.supervised:
+            self.stale_at = at + self.stale_after_s
+        if report.state is not None:
+            self.state_no = self.reports
+        if (report.q if self._is_arm else report.node) is not None:
+            self._rested_from, self.position_no = self.position_no, self.reports
+        if report.q is not None or report.node is not None:
+            self.position_at = at
+        if report.piece is not None:
+            self.piece_at = at
+        if at - self._counted[0] >= RATE_S:
+            self._count_rate(at)
         return True
 
     def merge(self, report: Report) -> None:
@@ -73,6 +85,7 @@ class Belief:
         if report.state is not MotionState.NO_LINK:
             self._count_rate(report.at)
         self._hear(report)
+        self.online = self._is_online()
 
     def _hear(self, report: Report) -> None:
         """Take over when it spoke."""
@@ -85,7 +98,7 @@ class Belief:
 
     def _count_rate(self, at: float) -> None:
         since, reports = self._counted
-        if self.heard_at is None or not self.online:
+        if self.heard_at is None or not self._is_online():
             self.rate_hz, self._counted = None, (at, self.reports)
         elif at - since >= RATE_S:
             self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
@@ -94,6 +107,12 @@ class Belief:
         """Silence has lasted too long."""
         self.stale = True
         self.stale_at = None
+        self.online = False
+
+    def _is_online(self) -> bool:
+        if self.stale or self.state is MotionState.NO_LINK or self.drawn:
+            return False
+        return self.heard_at is not None or not self.supervised
 
     def _count(self, report: Report) -> None:
         """Number the reports, so that "since" never hangs on two clocks agreeing."""
@@ -121,15 +140,9 @@ class Belief:
         return not self.supervised or count < self._rested_from < self.position_no
 
     @property
-    def online(self) -> bool:
-        if self.stale or self.state is MotionState.NO_LINK or self._is_drawn:
-            return False
-        return self.heard_at is not None or not self.supervised
-
-    @property
     def answered(self) -> bool:
         """Whether our bridge says that it hears this plant; a robot without our bridge cannot say so."""
-        return self.robot.link is Link.ROS or self.epoch is None or self.plant == self.plant_epoch
+        return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
 
     @property
     def position(self) -> tuple[float, ...] | int | None:
@@ -160,7 +173,7 @@ class Belief:
     @property
     def trouble(self) -> Trouble | None:
         """What an obstacle is made of, without the robot's name."""
-        if self.robot.link is Link.NONE:
+        if self.drawn:
             return DRAWN
         if not self.online:
             return OFFLINE if self.heard_at is not None else UNHEARD

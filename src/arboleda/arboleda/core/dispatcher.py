@@ -177,16 +177,14 @@ class Dispatcher:
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves; reports of unknown or only drawn robots are ignored."""
         belief = self.beliefs.get(report.robot)
-        if belief is None or belief.robot.link is Link.NONE:
+        if belief is None or belief.drawn:
             return
         if belief.hear_again(report):
-            self._watch(belief)
             self._prove(belief, report, now)
             return
         before, told = Before.of(belief), self._told(belief)
         returned = _returned(belief, report)
         belief.merge(report)
-        self._watch(belief)
         goal = self.reached.get(report.robot)
         astray = goal is not None and evidence.strayed(before, belief, report, goal)
         if astray or evidence.displaced(before, belief, report):
@@ -198,16 +196,13 @@ class Dispatcher:
             self.version += 1
             self.ledger.changed.add(self.model.cell_of[report.robot].name)
 
-    def _watch(self, belief: Belief) -> None:
-        """Take over when its silence will have lasted too long."""
-        if belief.stale_at is not None:
-            self._stale_at[belief.robot.name] = belief.stale_at
-
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
-        """Book what a report proves, even one that only repeats what was believed `before` (then None)."""
+        """Book what a report proves; `before` is None where it only repeats what was believed."""
         name = report.robot
+        if belief.stale_at is not None:
+            self._stale_at[name] = belief.stale_at
         for entry in self.ledger.of_robot(name):
-            verdict = evidence.judge(entry, before or Before.of(belief), belief, report)
+            verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
         if name in self.under_way.last or name in self.unheard_clears:

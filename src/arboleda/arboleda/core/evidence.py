@@ -45,9 +45,12 @@ class Before(NamedTuple):
         return cls(belief.epoch, belief.boot_id, belief.q, belief.position_at, belief.online)
 
 
-def judge(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
-    """The strongest feed that `report` proves about `entry`; None where it proves nothing new."""
-    broken = _broken_link(entry, before, belief, report) or _reboot(entry, before, belief, report)
+def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> Verdict | None:
+    """The strongest feed that `report` proves about `entry`; None where it proves nothing new.
+
+    `before` is None where the report only repeats what was believed: nothing has broken then.
+    """
+    broken = _refused(entry, report) if before is None else _broken(entry, before, belief, report)
     if broken is not None or report.at < entry.sent_at:
         return broken
     _look(entry, report)
@@ -77,6 +80,11 @@ def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
     return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))
 
 
+def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    link = _broken_link(entry, before, belief, report)
+    return link or _refused(entry, report) or _reboot(entry, before, belief, report)
+
+
 def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
     if report.state is MotionState.NO_LINK:
         silence_s = 0.0 if belief.heard_at is None else report.at - belief.heard_at
@@ -85,12 +93,16 @@ def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -
         return _failed(entry, Reason.LINK_LOST, what)
     if before.epoch is not None and report.epoch is not None and report.epoch != before.epoch:
         return _failed(entry, Reason.LINK_LOST, "the bridge restarted")
-    if report.rejected == entry.command.id:
-        word = report.refusal or "no reason given"
-        reason = REFUSALS.get(word, Reason.REJECTED)
-        sentence = f"{entry.command.robot}: refused the command for {entry.doing} ({word})"
-        return Verdict(feed=Feed.REJECTED, failure=Failure(reason=reason, sentence=sentence))
     return None
+
+
+def _refused(entry: Entry, report: Report) -> Verdict | None:
+    if report.rejected != entry.command.id:
+        return None
+    word = report.refusal or "no reason given"
+    reason = REFUSALS.get(word, Reason.REJECTED)
+    sentence = f"{entry.command.robot}: refused the command for {entry.doing} ({word})"
+    return Verdict(feed=Feed.REJECTED, failure=Failure(reason=reason, sentence=sentence))
 
 
 def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:

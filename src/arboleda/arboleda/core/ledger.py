@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from enum import Enum
 
 from .errors import IllegalTransition
@@ -80,14 +80,11 @@ class Entry:
         self.cancelled_after = 0  # the count of the robot's reports then
         self.failure: Failure | None = None
         self.seen = Seen()
+        self.is_motion = isinstance(command, MoveJoints | FollowPath | Home)
 
     @property
     def open(self) -> bool:
         return self.state in OPEN
-
-    @property
-    def is_motion(self) -> bool:
-        return isinstance(self.command, MoveJoints | FollowPath | Home)
 
     @property
     def next_deadline(self) -> float:
@@ -103,13 +100,15 @@ class Ledger:
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
-        self._of_robot: defaultdict[str, dict[str, Entry]] = defaultdict(dict)
+        self._of_robot: dict[str, list[Entry]] = {}  # never changed in place: readers feed while they read
         self._due: dict[str, float] = {}
         self.changed: set[str] = set()
         self.ignored: Counter[str] = Counter()
 
     def open(self, entry: Entry) -> None:
-        self.entries[entry.command.id] = self._of_robot[entry.command.robot][entry.command.id] = entry
+        robot = entry.command.robot
+        self.entries[entry.command.id] = entry
+        self._of_robot[robot] = [*self.of_robot(robot), entry]
         self.plan(entry)
 
     def plan(self, entry: Entry) -> None:
@@ -118,8 +117,7 @@ class Ledger:
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
-        entries = self._of_robot.get(robot)
-        return list(entries.values()) if entries else []
+        return self._of_robot.get(robot, [])
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""
@@ -135,7 +133,9 @@ class Ledger:
         if entry.state is State.FAILED:
             entry.failure = failure
         if not entry.open:
-            del self.entries[id], self._due[id], self._of_robot[entry.command.robot][id]
+            del self.entries[id], self._due[id]
+            robot = entry.command.robot
+            self._of_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
         after = TABLE.get((entry.state, feed))
