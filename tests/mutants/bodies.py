@@ -150,7 +150,7 @@ STOP = (
         "stop_holds",
         "A cell that was cleared resets itself.",
         edit(
-            CellRun._transit,
+            CellRun._cleared,
             "self.become(Cause.CLEARED)",
             "self.become(Cause.CLEARED); self.become(Cause.RESET); self.become(Cause.READY)",
         ),

@@ -193,24 +193,38 @@ class CellRun:
 
     def _transit(self) -> bool:
         """Leave a state that only waits for something to come true."""
-        holding = self.state is CellState.HOLDING
-        if holding and not any(entry.is_motion for entry in self.context.open_commands()):
-            self.become(Cause.HALTED)
-            self.trouble = self._fault()
-            return True
-        if self.state is CellState.ABORTING:
-            return self._aborted()
-        if self.state is CellState.CLEARING and not self.context.reports_a_latch():
-            self.become(Cause.CLEARED)
-            return True
-        unsettled = self._grip_unsettled() if self.state is CellState.IDLE else None
-        if unsettled is not None and not self.context.open_commands():
-            self._stuck(unsettled)
-            return True
-        if self.state is CellState.HELD and self.task is None and self._grip_settled():
+        wait = WAITS.get(self.state)
+        return wait is not None and wait(self)
+
+    def _halted(self) -> bool:
+        """Leave `holding` once no motion is open."""
+        if any(entry.is_motion for entry in self.context.open_commands()):
+            return False
+        self.become(Cause.HALTED)
+        self.trouble = self._fault()
+        return True
+
+    def _cleared(self) -> bool:
+        """Leave `clearing` once no robot says any more that it is stopped."""
+        if self.context.reports_a_latch():
+            return False
+        self.become(Cause.CLEARED)
+        return True
+
+    def _found_unsettled(self) -> bool:
+        """Leave `idle` where a part may hang in the effector."""
+        unsettled = self._grip_unsettled()
+        if unsettled is None or self.context.open_commands():
+            return False
+        self._stuck(unsettled)
+        return True
+
+    def _settled(self) -> bool:
+        """Leave `held` where only the effector was the trouble; else keep what goes wrong meanwhile."""
+        if self.task is None and self._grip_settled():
             self._leave_as_it_is()
             return True
-        if self.state is CellState.HELD and self.task is not None and self.trouble is None:
+        if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
         return False
 
@@ -333,4 +347,12 @@ NEXT = {
     CellState.CLEARING: "wait until its robots have left their stop",
     CellState.STOPPED: "reset {0}",
     CellState.RESETTING: "wait",
+}
+
+WAITS: dict[CellState, Callable[[CellRun], bool]] = {
+    CellState.HOLDING: CellRun._halted,
+    CellState.ABORTING: CellRun._aborted,
+    CellState.CLEARING: CellRun._cleared,
+    CellState.IDLE: CellRun._found_unsettled,
+    CellState.HELD: CellRun._settled,
 }

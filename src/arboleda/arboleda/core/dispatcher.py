@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -63,9 +64,10 @@ class Dispatcher:
         self._count = 0
 
     @property
-    def next_deadline(self) -> float | None:
-        due, stale_at = self.ledger.next_deadline, min(self._stale_at.values(), default=None)
-        return due if stale_at is None or (due is not None and due < stale_at) else stale_at
+    def next_deadline(self) -> float:
+        """When a command is due or a silence too long, s of the plant's clock; inf where nothing is."""
+        stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
+        return min(self.ledger.next_deadline, stale_at)
 
     def send(self, make: Make, cell: str, doing: str, now: float) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one."""
@@ -221,8 +223,7 @@ class Dispatcher:
 
     def expire(self, limit: float, now: float) -> None:
         """End what is due up to and including `limit`: settling times, deadlines, silence."""
-        due = self.next_deadline
-        if due is None or due > limit:
+        if self.next_deadline > limit:
             return
         for entry in [entry for entry in self.ledger.entries.values() if entry.next_deadline <= limit]:
             self._book(entry, _overdue(entry), now)

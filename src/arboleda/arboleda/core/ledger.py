@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from enum import Enum
 
@@ -151,5 +152,6 @@ class Ledger:
             entry.cancelled_at = now
 
     @property
-    def next_deadline(self) -> float | None:
-        return min(self._due.values(), default=None)
+    def next_deadline(self) -> float:
+        """When a command is due, s of the plant's clock; inf where none is."""
+        return min(self._due.values()) if self._due else math.inf

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -71,6 +71,7 @@ class Plant:
         self._order = {name: number for number, name in enumerate(self.cells)}
         self._touched = set(self.cells)  # those to which something happened that they may wait for
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
+        self._next_wake = math.inf
         self._changes = 0
         self._next_beat = now
         self.next_deadline = now
@@ -145,35 +146,40 @@ class Plant:
             self.dispatcher.expire(limit, self.now)
 
     def _earliest(self) -> float:
-        due = min([self._next_beat, *self._wakes.values()])
-        other = self.dispatcher.next_deadline
-        return due if other is None or due < other else other
+        return min(self._next_beat, self._next_wake, self.dispatcher.next_deadline)
 
     def _advance(self) -> None:
         """Let the cells to which something happened do what they can, again while that makes them do more."""
-        soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
-        touched = [*self._touched, *(name for name, at in self._wakes.items() if at <= soon)]
-        self._touched.clear()
+        ledger = self.dispatcher.ledger
+        touched = self._take_touched()
+        if not touched and not ledger.changed:
+            return
         for _ in range(ROUND_BOUND):
-            changed, self.dispatcher.ledger.changed = self.dispatcher.ledger.changed, set()
+            changed, ledger.changed = ledger.changed, set()
             touched = sorted({*touched, *changed}, key=self._order.__getitem__)
             did = [name for name in touched if self.cells[name].advance(woken=name in changed)]
-            for name in touched:
-                self._plan(name)
+            self._plan(touched)
             if did:
                 self._changes += 1
-            elif not self.dispatcher.ledger.changed:
+            elif not ledger.changed:
                 return
             touched = did
         raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
 
-    def _plan(self, name: str) -> None:
-        """Take over when a cell's tree is to be woken."""
-        at = self.cells[name].context.next_deadline
-        if at is not None:
-            self._wakes[name] = at
-        else:
-            self._wakes.pop(name, None)
+    def _take_touched(self) -> Collection[str]:
+        """The cells to which something happened, those whose trees are to be woken now among them."""
+        touched, self._touched = self._touched, set()
+        soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
+        if self._next_wake <= soon:
+            touched.update(name for name, at in self._wakes.items() if at <= soon)
+        return touched
+
+    def _plan(self, names: Iterable[str]) -> None:
+        """Take over when the trees of these cells are to be woken."""
+        for name in names:
+            at = self.cells[name].context.next_deadline
+            self._wakes[name] = math.inf if at is None else at
+        self._next_wake = min(self._wakes.values())
 
     def _watch_zones(self) -> None:
         """An arm that is not heard may still be where it was; one that is seen outside is not."""
