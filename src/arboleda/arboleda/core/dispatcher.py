@@ -158,10 +158,7 @@ class Dispatcher:
         self.ledger.changed |= {self.model.cell_of[robot].name for robot in robots}
 
     def place(self, cell: Cell) -> Pose | None:
-        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes.
-
-        Its reference counts as home: homing leads there, and both lie outside all zones.
-        """
+        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes."""
         belief = self.beliefs[cell.arm.name]
         restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way.last
         if not belief.online or belief.unhomed or restless:
@@ -169,12 +166,7 @@ class Dispatcher:
         here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
         if here is None:
             return None
-        free = [pose for pose in cell.poses if not pose.zones]
-        spots = [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
-        if all(pose.q != cell.arm.reference for pose in cell.poses):
-            spots.append((cell.arm.reference, cell.home))
-        found = (pose for q, pose in spots if cell.arm.reached(here, cell.arm.quantised(q)))
-        return next(found, None)
+        return next((pose for q, pose in cell.free_spots if cell.arm.reached(here, q)), None)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves; reports of unknown or only drawn robots are ignored."""

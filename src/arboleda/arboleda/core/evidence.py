@@ -20,6 +20,7 @@ REFUSALS: dict[str, Reason] = {
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
 }
+OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
 JITTER_S = 0.1  # one telemetry period: two reports may arrive closer together than they were made
 
 
@@ -146,6 +147,8 @@ def _jumped(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def _device(entry: Entry, report: Report) -> Verdict | None:
+    if report.state not in OBJECTIONS:
+        return None
     if report.state is MotionState.FAULT:
         return _failed(entry, Reason.DEVICE_FAULT, "the board reports a fault")
     if not entry.is_motion:
@@ -174,7 +177,7 @@ def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
 
 def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     finished = report.done == entry.command.id
-    if report.state is MotionState.STOPPED and finished:
+    if finished and report.state is MotionState.STOPPED:
         return Verdict(feed=Feed.DONE) if reached(entry, belief) else _off_target(entry)
     if entry.accepted_at is None:
         return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None

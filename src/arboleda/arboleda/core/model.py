@@ -247,11 +247,11 @@ class Cell:
     def path(self, code: str) -> Path:
         return next(path for path in self.paths if path.code == code)
 
-    @property
+    @cached_property
     def robots(self) -> tuple[Robot, ...]:
         return (self.arm, self.mobile)
 
-    @property
+    @cached_property
     def reached(self) -> tuple[Robot, ...]:
         """Its robots without those that are only drawn."""
         return tuple(robot for robot in self.robots if robot.link is not Link.NONE)
@@ -262,10 +262,22 @@ class Cell:
         places = (pose.zones for pose in self.poses)
         return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
 
-    @property
+    @cached_property
     def poses(self) -> tuple[Pose, ...]:
         """Every named pose of the arm; a palletizing pose is one of them."""
         return (self.home, self.pickup, *self.stations)
+
+    @cached_property
+    def free_spots(self) -> tuple[tuple[tuple[float, ...], Pose], ...]:
+        """Each quantised position at, or above, a zone-free pose, with that pose.
+
+        The arm's reference counts as home: homing leads there, and both lie outside all zones.
+        """
+        free = [pose for pose in self.poses if not pose.zones]
+        spots = [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
+        if all(pose.q != self.arm.reference for pose in self.poses):
+            spots.append((self.arm.reference, self.home))
+        return tuple((self.arm.quantised(q), pose) for q, pose in spots)
 
 
 @dataclass(frozen=True, kw_only=True)

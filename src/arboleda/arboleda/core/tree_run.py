@@ -74,10 +74,11 @@ class TreeRun:
         raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
 
     def _signature(self, tree: Behaviour) -> tuple[object, ...]:
-        nodes = [tree]
+        nodes, statuses = [tree], []
         for node in nodes:  # it grows meanwhile; `tree.iterate()` takes several times as long
+            statuses.append(node.status)
             nodes += node.children
-        return (self._context.sent, [node.status for node in nodes])
+        return (self._context.sent, statuses)
 
     def _raised(self, error: Exception) -> Status:
         sentence = f"{self._context.cell.name}: {type(error).__name__} in the tree: {error}"
