@@ -82,9 +82,11 @@ class Plant:
         for event in events:
             if event.at > self.next_deadline:
                 self._expire(math.nextafter(event.at, -math.inf))
-            if not isinstance(event, Report):
+            if isinstance(event, Report):
+                self._on_report(event)
+            else:
                 self._touched.update(self.cells)
-            HANDLERS[type(event)](self, event)
+                HANDLERS[type(event)](self, event)
         self._expire(now)
         self._watch_zones()
         self._advance()
@@ -277,7 +279,6 @@ def _refused(request: TaskRequest, sentence: str) -> TaskChanged:
 
 
 HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
-    Report: Plant._on_report,
     TaskRequest: Plant._on_task_request,
     OperatorRequest: Plant._on_operator_request,
     Undelivered: Plant._on_undelivered,
