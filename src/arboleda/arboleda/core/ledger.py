@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from enum import Enum
 
 from .errors import IllegalTransition
@@ -101,8 +101,9 @@ class Ledger:
 
     def __init__(self) -> None:
         self.entries: dict[str, Entry] = {}
-        self._of_robot: dict[str, list[Entry]] = {}  # never changed in place: readers feed while they read
+        self._of_robot: defaultdict[str, list[Entry]] = defaultdict(list)  # new lists: readers feed meanwhile
         self._due: dict[str, float] = {}
+        self.next_deadline = math.inf  # when a command is due, s of the plant's clock; inf where none is
         self.changed: set[str] = set()
         self.ignored: Counter[str] = Counter()
 
@@ -115,10 +116,11 @@ class Ledger:
     def plan(self, entry: Entry) -> None:
         """Take over an open command's deadline."""
         self._due[entry.command.id] = entry.next_deadline
+        self.next_deadline = min(self._due.values())
 
     def of_robot(self, robot: str) -> list[Entry]:
         """The open commands of a robot, oldest first."""
-        return self._of_robot.get(robot, [])
+        return self._of_robot[robot]
 
     def of_cell(self, cell: str) -> list[Entry]:
         """The open commands of a cell, oldest first."""
@@ -134,9 +136,13 @@ class Ledger:
         if entry.state is State.FAILED:
             entry.failure = failure
         if not entry.open:
-            del self.entries[id], self._due[id]
-            robot = entry.command.robot
-            self._of_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
+            self._close(entry)
+
+    def _close(self, entry: Entry) -> None:
+        id, robot = entry.command.id, entry.command.robot
+        del self.entries[id], self._due[id]
+        self._of_robot[robot] = [each for each in self.of_robot(robot) if each is not entry]
+        self.next_deadline = min(self._due.values(), default=math.inf)
 
     def _apply(self, entry: Entry, feed: Feed, now: float) -> None:
         after = TABLE.get((entry.state, feed))
@@ -150,8 +156,3 @@ class Ledger:
             entry.accepted_at = now
         if feed is Feed.CANCEL and entry.cancelled_at is None:
             entry.cancelled_at = now
-
-    @property
-    def next_deadline(self) -> float:
-        """When a command is due, s of the plant's clock; inf where none is."""
-        return min(self._due.values()) if self._due else math.inf

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -153,13 +153,17 @@ class Plant:
     def _advance(self) -> None:
         """Let the cells to which something happened do what they can, again while that makes them do more."""
         ledger = self.dispatcher.ledger
-        touched = self._take_touched()
-        if not touched and not ledger.changed:
+        soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
+        if self._next_wake <= soon:
+            self._touched.update(name for name, at in self._wakes.items() if at <= soon)
+        if not self._touched and not ledger.changed:
             return
+        touched, self._touched = self._touched, set()
         for _ in range(ROUND_BOUND):
             changed, ledger.changed = ledger.changed, set()
-            touched = sorted({*touched, *changed}, key=self._order.__getitem__)
-            did = [name for name in touched if self.cells[name].advance(woken=name in changed)]
+            touched |= changed
+            in_order = sorted(touched, key=self._order.__getitem__)
+            did = {name for name in in_order if self.cells[name].advance(woken=name in changed)}
             self._plan(touched)
             if did:
                 self._changes += 1
@@ -167,14 +171,6 @@ class Plant:
                 return
             touched = did
         raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
-
-    def _take_touched(self) -> Collection[str]:
-        """The cells to which something happened, those whose trees are to be woken now among them."""
-        touched, self._touched = self._touched, set()
-        soon = math.nextafter(self.now, math.inf)  # after a hold, rounding may bring a wake so much earlier
-        if self._next_wake <= soon:
-            touched.update(name for name, at in self._wakes.items() if at <= soon)
-        return touched
 
     def _plan(self, names: Iterable[str]) -> None:
         """Take over when the trees of these cells are to be woken."""
