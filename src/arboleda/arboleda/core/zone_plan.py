@@ -49,8 +49,8 @@ def recovery_zones(cell: Cell, start: Pose | None) -> frozenset[str]:
     """What the way from `start` to the pick-up pose and home needs; None: from wherever the arm may be."""
     way = (cell.pickup, cell.home)
     starts = cell.poses if start is None else (start,)
-    crossed = (_crossed(cell, pose, goal) for pose in starts for goal in way)
-    return _zones(cell, way, carrying=True).union(*crossed)
+    moves = [(pose, goal) for pose in starts for goal in way]
+    return _zones(cell, way, carrying=True) | _crossed(cell, moves)
 
 
 def plan_problems(cell: Cell) -> dict[str, str]:
@@ -71,12 +71,12 @@ def _zones(cell: Cell, poses: Sequence[Pose], *, carrying: bool) -> frozenset[st
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]
     inside = (pose.zones for pose in (*poses, *recovery))
-    return frozenset[str]().union(*inside, *(_crossed(cell, a, b) for a, b in moves))
+    return _crossed(cell, moves).union(*inside)
 
 
-def _crossed(cell: Cell, a: Pose, b: Pose) -> frozenset[str]:
-    ends = {a.name, b.name}
-    return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} == ends))
+def _crossed(cell: Cell, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[str]:
+    ends = [{a.name, b.name} for a, b in moves] if cell.crossings else []
+    return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} in ends))
 
 
 def _lying(pose: Pose) -> str:
