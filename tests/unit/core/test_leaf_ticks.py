@@ -40,11 +40,12 @@ class OurCalls(Leaf, Calls):
 def _ticked(leaf: Calls) -> list[Any]:
     for _ in range(3):
         leaf.seen.append(("nodes", [node is leaf for node in leaf.tick()], leaf.status))
-    return leaf.seen
+    leaf.stop(Status.INVALID)
+    return [*leaf.seen, leaf.status]
 
 
 @pytest.mark.parametrize("returns", list(product(STATUSES, repeat=3)), ids=str)
-def test_a_leaf_is_ticked_as_py_trees_does_it(returns: tuple[Any, ...]) -> None:
+def test_a_leaf_is_ticked_and_stopped_as_py_trees_does_it(returns: tuple[Any, ...]) -> None:
     assert _ticked(OurCalls(returns)) == _ticked(Calls(returns))
 
 

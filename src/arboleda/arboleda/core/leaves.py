@@ -43,6 +43,12 @@ class Leaf(Behaviour):
         self.status = status
         yield self
 
+    def stop(self, new_status: Status) -> None:
+        """As py_trees ends a leaf, but without words for a log."""
+        self.terminate(new_status)
+        self.status = new_status
+        self.iterator = self.tick()
+
     def failed(self, failure: Failure) -> Status:
         """FAILURE, with its sentence for people."""
         self.feedback_message = self.last_failure = failure.sentence
