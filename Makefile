@@ -6,7 +6,7 @@ export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
 PYTEST_ARGS ?= -n 4 --dist worksteal
-CYCLES ?= 15
+CYCLES ?= 36
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
@@ -19,7 +19,7 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
 	@.colcon/venv/bin/python scripts/ros-test
 
-campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=50 for a longer one
+campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=100 for a longer one
 	$(BIN)/arboleda simulate --seeds 1000 --cycles $(CYCLES) --json campaign.json
 	$(BIN)/python scripts/campaign campaign.json
 

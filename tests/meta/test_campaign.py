@@ -27,7 +27,7 @@ def campaign() -> Any:
 def summary(**faults: int) -> dict[str, Any]:
     """A thousand seeds that held, the first with 100 faults of each kind besides `faults`."""
     seeds = [
-        {"seed": number, "broken": None, "cycles": 25, "faults": {"reboot": 25}} for number in range(1000)
+        {"seed": number, "broken": None, "cycles": 50, "faults": {"reboot": 50}} for number in range(1000)
     ]
     return {"seeds": [{**seeds[0], "faults": {**dict.fromkeys(KINDS, 100), **faults}}, *seeds[1:]]}
 
@@ -43,10 +43,10 @@ def test_a_kind_that_came_too_seldom_is_named(campaign: Any) -> None:
 def test_too_few_cycles_or_faults_are_named(campaign: Any) -> None:
     lazy = summary()
     for seed in lazy["seeds"]:
-        seed.update(cycles=24, faults=dict.fromkeys(KINDS, 1) if seed["seed"] < 100 else {})
+        seed.update(cycles=49, faults=dict.fromkeys(KINDS, 1) if seed["seed"] < 100 else {})
     assert campaign.shortcomings(lazy) == [
-        "24000 cycles, 25000 are needed",
-        f"{100 * len(KINDS)} faults, 25000 are needed",
+        "49000 cycles, 50000 are needed",
+        f"{100 * len(KINDS)} faults, 50000 are needed",
     ]
 
 
