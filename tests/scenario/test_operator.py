@@ -433,6 +433,17 @@ def test_a_held_task_that_holds_no_part_goes_on_after_a_release(stage: Stage) ->
     assert change.state is TaskState.DONE and witness.illegal == []
 
 
+@levels
+def test_a_stop_does_not_hide_that_an_arm_to_be_released_is_not_homed(
+    stage: Stage, evidence: Evidence
+) -> None:
+    rig, _ = stage(evidence)
+    rig.crash("ra_1")
+    rig.wait(1.0)
+    act(rig, Verb.STOP)
+    assert ("ra1 is not homed" in str(rig.operate(Verb.RELEASE, "ra1"))) is (evidence is not Evidence.STATE)
+
+
 def test_release_of_a_mobile_is_refused(stage: Stage) -> None:
     rig, _ = stage()
     assert "has no effector" in str(rig.operate(Verb.RELEASE, "rm_sis_a"))

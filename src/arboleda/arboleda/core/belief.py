@@ -164,7 +164,16 @@ class Belief:
 
     def obstacle(self) -> Failure | None:
         """Why no command may go to this robot; None where it is ready."""
+        return self._failure(self.trouble)
+
+    def obstacle_besides_stop(self) -> Failure | None:
+        """The same for what a stop does not forbid; being stopped hides that a robot is not homed."""
         trouble = self.trouble
+        if trouble is STOPPED:
+            trouble = UNHOMED if self.unhomed else None
+        return self._failure(trouble)
+
+    def _failure(self, trouble: Trouble | None) -> Failure | None:
         if trouble is None:
             return None
         reason, said = trouble
@@ -190,8 +199,9 @@ UNHEARD = (Reason.LINK_LOST, "was not heard yet")
 UNANSWERED = (Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
 UNHOMED = (Reason.NOT_HOMED, "is not homed")
 MOVING = (Reason.REJECTED, "is still moving")
+STOPPED = (Reason.STOPPED, "is stopped (latched)")
 TROUBLES: dict[MotionState | None, Trouble] = {
     MotionState.MOVING: MOVING,
     MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
-    MotionState.STOP_LATCHED: (Reason.STOPPED, "is stopped (latched)"),
+    MotionState.STOP_LATCHED: STOPPED,
 }

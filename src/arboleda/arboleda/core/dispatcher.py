@@ -262,8 +262,7 @@ class Dispatcher:
             return None  # its last code may be older than the end of its last move, which was proven
         opening = isinstance(command, SetEffector) and not command.on
         if opening and obstacle and obstacle.reason is Reason.STOPPED:
-            other = self.beliefs[robot].obstacle()  # a latch hides what else is wrong
-            return other if other and other.reason is not Reason.STOPPED else None
+            return self.beliefs[robot].obstacle_besides_stop()
         return obstacle
 
     def _shows_its_own_end(self, command: Command) -> bool:
