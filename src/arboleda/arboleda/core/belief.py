@@ -54,23 +54,12 @@ class Belief:
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
-        at = report.at
-        if not self.online or at < self.position_at or report.words != self._said:
+        if not self.online or report.at < self.position_at or report.words != self._said:
             return False
-        self.reports += 1
-        self.heard_at = at
-        if self.supervised:
-            self.stale_at = at + self.stale_after_s
-        if report.state is not None:
-            self.state_no = self.reports
-        if (report.q if self._is_arm else report.node) is not None:
-            self._rested_from, self.position_no = self.position_no, self.reports
-        if report.q is not None or report.node is not None:
-            self.position_at = at
-        if report.piece is not None:
-            self.piece_at = at
-        if at - self._counted[0] >= RATE_S:
-            self._count_rate(at)
+        self._count(report)
+        self._hear(report)
+        if report.at - self._counted[0] >= RATE_S:
+            self._count_rate(report.at)
         return True
 
     def merge(self, report: Report) -> None:
