@@ -12,6 +12,7 @@ from arboleda.core.errors import PayloadError
 from arboleda.core.model import Evidence, MotionState
 from arboleda.wire.payloads import Telemetry, decode, read_angles
 from arboleda.wire.repeats import Words
+from arboleda.wire.strict import LIMIT_BYTES
 from arboleda.wire.topics import Channel
 
 from .test_bridge_any_order import BOARDS, HAPPENINGS
@@ -139,6 +140,15 @@ def test_an_arm_that_moves_on_is_known_but_for_its_joints() -> None:
     assert begin[0] == (11.5, 2.25, 0.0)
     assert words.turned(second, begin[1]).number(second) == 10
     assert words.turned(second, begin[1]).number(second.replace(b":1,", b":0,")) is None
+
+
+@pytest.mark.parametrize("raw", [TURNING, TURNING.replace(b',"seq":9', b"")], ids=["numbered", "unnumbered"])
+def test_joints_that_make_a_message_too_long_have_to_be_read(raw: bytes) -> None:
+    long = raw.replace(b"2.25", b"2.25" + b"0" * LIMIT_BYTES)
+    said, begin = read_arm(raw), read_angles(long, 3)
+    assert said is not None and begin is not None
+    words = Words.of(raw, said)
+    assert words is not None and words.turned(long, begin[1]).number(long) is None
 
 
 @pytest.mark.parametrize("state", [state for state in MotionState if state is not MotionState.NO_LINK])

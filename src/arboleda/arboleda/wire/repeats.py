@@ -48,9 +48,11 @@ class Words:
     def number(self, raw: bytes) -> int | None:
         """The number of a message that says the same, 0 where such have none; None for any other message."""
         before, after = self.before, self.after
+        if len(raw) > LIMIT_BYTES:
+            return None
         if after is None:
             return 0 if raw == before else None
-        if not raw.startswith(before) or not raw.endswith(after) or len(raw) > LIMIT_BYTES:
+        if not raw.startswith(before) or not raw.endswith(after):
             return None
         digits = raw[len(before) : len(raw) - len(after)]
         if not digits.isdigit() or len(digits) > LONGEST:
