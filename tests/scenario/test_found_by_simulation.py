@@ -36,6 +36,22 @@ class Found:
 
 
 FOUND = {
+    "a halt that never left seemed to settle the move before it, which a stalled board obeyed late": Found(
+        seed=2,
+        seconds=60,
+        faults=(
+            Fault(kind="board_stall", at=7.3, seconds=13.2, target="arm_left", seed=1),
+            Fault(
+                kind="duplicate",
+                at=20.1,
+                seconds=2.0,
+                target="arm_left",
+                amount=0.5,
+                word="up",
+                seed=2,
+            ),
+        ),
+    ),
     "an arm from which an override took one of its zones went through that zone on its way home": Found(
         seed=2,
         seconds=30,

@@ -160,7 +160,7 @@ class Dispatcher:
     def place(self, cell: Cell) -> Pose | None:
         """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes."""
         belief = self.beliefs[cell.arm.name]
-        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way.last
+        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way.ids
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
@@ -199,7 +199,7 @@ class Dispatcher:
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
-        if name in self.under_way.last or name in self.unheard_clears:
+        if name in self.under_way.ids or name in self.unheard_clears:
             self.under_way.hear(report, now)
             if belief.online:
                 self._say_again(belief, now)

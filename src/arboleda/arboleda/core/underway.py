@@ -6,39 +6,45 @@ from .messages import Command, Report
 from .model import Cell, Evidence, PlantModel
 
 PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last command
+KEPT = 64  # commands per arm; whatever settles a later one settles those before it
 
 
 class UnderWay:
-    """The last command to each arm, until a report names it; only where the arm tells command ids.
+    """The commands to each arm that no report has settled; only where the arm tells command ids.
 
     Until then the arm may carry out something that it has not heard yet, so where it stands does not prove
-    that it stays there. Commands reach a board in order, so the last one settles all before it. `last` are
-    their ids, by robot.
+    that it stays there. Commands reach a board in order, so one that it took settles all before it. One that
+    was rejected settles only itself: the bridge may have kept it. `ids` are theirs by robot, oldest first.
     """
 
     def __init__(self, model: PlantModel) -> None:
         self._watched = frozenset(cell.arm.name for cell in model.cells if _names_commands(cell))
-        self.last: dict[str, str] = {}
-        self._heard_since: dict[str, float] = {}  # since it left
+        self.ids: dict[str, list[str]] = {}
+        self._heard_since: dict[str, float] = {}  # since the last one left
 
     def left(self, command: Command) -> None:
         """A command leaves for its robot."""
         if command.robot in self._watched:
-            self.last[command.robot] = command.id
+            self.ids[command.robot] = [*self.ids.get(command.robot, ())[-KEPT:], command.id]
             self._heard_since.pop(command.robot, None)
 
     def hear(self, report: Report, now: float) -> None:
-        """A robot reports, and may name the last command."""
-        last = self.last.get(report.robot)
-        if last is None:
+        """A robot reports, and may name commands."""
+        ids = self.ids.get(report.robot)
+        if ids is None:
             return
         self._heard_since.setdefault(report.robot, now)
-        if last in (report.accepted, report.done, report.rejected):
-            del self.last[report.robot]
+        for taken in (report.accepted, report.done):
+            if taken in ids:
+                del ids[: ids.index(taken) + 1]
+        if report.rejected in ids:
+            ids.remove(report.rejected)
+        if not ids:
+            del self.ids[report.robot]
 
     def is_overdue(self, robot: str, now: float) -> bool:
-        """Whether the last command must have been lost."""
-        return robot in self.last and now >= self._heard_since.get(robot, now) + PATIENCE_S
+        """Whether one of them must have been lost."""
+        return robot in self.ids and now >= self._heard_since.get(robot, now) + PATIENCE_S
 
 
 def _names_commands(cell: Cell) -> bool:
