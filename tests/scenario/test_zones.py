@@ -153,6 +153,18 @@ def test_a_rebooted_arm_keeps_its_zones_until_it_is_homed_and_seen_outside(zoned
     honest(witness)
 
 
+def test_the_zone_of_an_arm_that_is_being_homed_is_not_overridden(zoned: Plants) -> None:
+    rig, witness = start(zoned(Evidence.IDS))
+    meet(rig)
+    rig.crash("ra_1")
+    rig.wait(12.0)
+    assert rig.operate(Verb.HOME, "ra1") is None
+    assert zone(rig, "centre") == ("quarantined", "ra1")
+    assert "ra1 has not given up its work in centre; stop sis_a" in str(rig.operate(Verb.OVERRIDE, "centre"))
+    assert rig.wait(30.0, until=lambda: zone(rig, "centre") == ("held", "ra2"))
+    honest(witness)
+
+
 @levels
 def test_an_operator_overrides_only_a_quarantine_and_it_is_journalled(
     zoned: Plants, evidence: Evidence

@@ -97,9 +97,8 @@ class Operator:
 
     def _override(self, zone: str) -> None:
         holder = self._zones.holder(zone)
-        cell = self._cells[self._dispatcher.model.cell_of[holder].name] if holder else None
-        if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
-            name = cell.cell.name  # what it does there counts on the zone
+        if holder is not None and self._zones.is_quarantined(zone) and self._works(holder):
+            name = self._dispatcher.model.cell_of[holder].name  # what it does there counts on the zone
             raise Refused(f"{holder} has not given up its work in {zone}; stop {name}, then override {zone}")
         try:
             granted = self._zones.override(zone)
@@ -107,6 +106,12 @@ class Operator:
             raise Refused(str(error)) from error
         self._dispatcher.forget_zone(zone)
         self._dispatcher.wake(granted)
+
+    def _works(self, arm: str) -> bool:
+        """Whether a tree counts on what an arm has, or the arm moves without one: homing needs none."""
+        cell = self._cells[self._dispatcher.model.cell_of[arm].name]
+        moves = any(entry.is_motion for entry in self._dispatcher.ledger.of_robot(arm))
+        return moves or cell.tree is not None
 
     def _cancel_task(self, id: str) -> None:
         task = self._intake.tasks[id]
