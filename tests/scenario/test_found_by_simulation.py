@@ -62,6 +62,14 @@ FOUND = {
             Fault(kind="operator_retry", at=9.9, target="right", seed=1),
         ),
     ),
+    "a task opened the effector of an arm that somebody else had stopped while the plant was stalled": Found(
+        seed=4,
+        seconds=30,
+        faults=(
+            Fault(kind="plant_stall", at=6.9, seconds=2.5, target="plant", seed=1),
+            Fault(kind="second_orchestrator", at=8.3, target="arm_right", word="stop", seed=1),
+        ),
+    ),
     "a move that was sent and lost in one long step seemed open when the next one left in it": Found(
         seed=1,
         seconds=30,

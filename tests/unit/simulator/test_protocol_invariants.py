@@ -221,7 +221,7 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
 
 
 def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_obstacle_to", lambda self, command: None)
+    monkeypatch.setattr(dispatcher.Dispatcher, "_obstacle_to", lambda self, command, by_hand: None)
     watch = Watch()
     watch.world.request_verb(Verb.HOME, "ra1")
     watch.verb(Verb.HOME, "ra1")

@@ -69,12 +69,15 @@ class Dispatcher:
         stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
         return min(self.ledger.next_deadline, stale_at)
 
-    def send(self, make: Make, cell: str, doing: str, now: float) -> Entry:
-        """Give a command its id and let it go, unless its robot is not ready for one."""
+    def send(self, make: Make, cell: str, doing: str, now: float, *, by_hand: bool = False) -> Entry:
+        """Give a command its id and let it go, unless its robot is not ready for one.
+
+        By hand, on an operator's word, an effector is opened even while its arm is stopped.
+        """
         command = make(id=self._new_id())
         deadline = now + self._allowed_s(command)
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
-        obstacle = self._obstacle_to(command)
+        obstacle = self._obstacle_to(command, by_hand=by_hand)
         if obstacle is not None:
             entry.refuse(replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}"))
             return entry
@@ -111,8 +114,8 @@ class Dispatcher:
         return self.beliefs[robot].obstacle()
 
     def obstacle_to_opening(self, arm: str) -> Failure | None:
-        """Why an arm's effector cannot be opened now."""
-        return self._obstacle_to(SetEffector(id="", robot=arm, on=False))
+        """Why an arm's effector cannot be opened by hand now."""
+        return self._obstacle_to(SetEffector(id="", robot=arm, on=False), by_hand=True)
 
     def latch(self, robot: str) -> None:
         """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
@@ -250,7 +253,7 @@ class Dispatcher:
         """What of a belief trees and screens react to: everything but positions."""
         return (belief.trouble, belief.piece, belief.effector)
 
-    def _obstacle_to(self, command: Command) -> Failure | None:
+    def _obstacle_to(self, command: Command, *, by_hand: bool) -> Failure | None:
         robot = command.robot
         if any(entry.is_motion for entry in self.ledger.of_robot(robot)):
             return Failure(reason=Reason.REJECTED, sentence=f"{robot} has an open motion command")
@@ -260,8 +263,7 @@ class Dispatcher:
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command):
             return None  # its last code may be older than the end of its last move, which was proven
-        opening = isinstance(command, SetEffector) and not command.on
-        if opening and obstacle and obstacle.reason is Reason.STOPPED:
+        if by_hand and obstacle and obstacle.reason is Reason.STOPPED:
             return self.beliefs[robot].obstacle_besides_stop()
         return obstacle
 

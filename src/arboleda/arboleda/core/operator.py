@@ -231,7 +231,7 @@ class Operator:
     def _release(self, cell: CellRun, robots: set[str]) -> None:
         cell.let_go()
         make = partial(SetEffector, robot=cell.cell.arm.name, on=False)
-        self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock())
+        self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock(), by_hand=True)
 
 
 def _always(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
