@@ -402,6 +402,19 @@ def test_a_bridge_that_restarted_obeys_no_superseded_orchestrator(rig: Rig) -> N
     assert not body.effector
 
 
+def test_a_task_starts_once_the_homing_before_it_has_ended(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.wait(30.0)
+    rig.to_bridge.troubles.append(lambda message: (0.5,))
+    assert rig.operate(Verb.HOME, "rm_sis_a") is None
+    task = rig.submit("sis_a 0B 7").task
+    rig.wait(0.3)
+    assert rig.outcomes()[task].sentence == "rm_sis_a is still homing"
+    rig.to_bridge.troubles.clear()
+    rig.wait(30.0)
+    assert rig.outcomes()[task].state is TaskState.DONE
+
+
 def test_a_robot_that_still_drives_an_earlier_path_gets_no_other_one() -> None:
     """At `joints` the end of the one would be taken for that of the other."""
     model = shipped("sis_a", evidence=Evidence.JOINTS, assume_homed=True)

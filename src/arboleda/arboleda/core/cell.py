@@ -251,6 +251,8 @@ class CellRun:
         return only_grip and not self.context.holding()
 
     def _unready(self) -> str | None:
+        if busy := self.context.open_commands():
+            return f"{busy[0].command.robot} is still {busy[0].doing}"
         found = [self.context.obstacle(robot.name) for robot in self.cell.reached]
         found += [self.context.astray(), self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)

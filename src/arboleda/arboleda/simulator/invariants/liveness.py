@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import SetEffector
 from arboleda.core.model import Arm, Evidence, MotionState
 from arboleda.sim.board import Board
 
@@ -70,13 +69,13 @@ def _ready(look: Look, cell: KnownCell) -> bool:
         # whether a jump of its joints was a reboot is for the plant's evidence to judge
         if robot.evidence is Evidence.JOINTS and plant.dispatcher.beliefs[robot.name].displaced:
             return False
-    return not _is_switching(look, cell) and _outside(look, cell)
+    return not _is_busy(look, cell) and _outside(look, cell)
 
 
-def _is_switching(look: Look, cell: KnownCell) -> bool:
-    """Whether the effector of its arm was told to switch, and may not have done so yet."""
-    effectors = (sent for sent in look.record.commands.open.values() if isinstance(sent.command, SetEffector))
-    return any(sent.robot == cell.cell.arm.name for sent in effectors)
+def _is_busy(look: Look, cell: KnownCell) -> bool:
+    """Whether one of its robots was told something by hand that it may not have done yet."""
+    robots = {robot.name for robot in cell.cell.robots}
+    return any(sent.robot in robots for sent in look.record.commands.open.values())
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:
