@@ -56,6 +56,16 @@ def test_a_running_command_says_what_it_was_sent_with_and_how_long_it_has_left(r
     assert move["since_s"] + move["deadline_s"] == pytest.approx(10.0)  # timeout_s of an arm
 
 
+def test_a_task_that_failed_says_in_which_leaf(rig: Rig) -> None:
+    rig.submit("sis_a 0B 7")
+    rig.submit("sis_a 0B 3")
+    rig.wait_for("sis_a", "drive path 0B")
+    path = row(rig.snapshot(), "drive path 0B")["path"]
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
+    rig.wait(9.0)
+    assert [task["failed_in"] for task in rig.snapshot()["tasks"]] == [path, None]
+
+
 def test_a_dwell_says_how_long_it_has_left(rig: Rig) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait(0.12)

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from arboleda.core.messages import Verb
-from arboleda.dashboard.tree_memory import ancestors, judged, parent
+from arboleda.dashboard.tree_memory import TreeMemory, ancestors, judged, parent
+from arboleda.testing import Rig, shipped
 
 
 def row(path: str, status: str, *, kind: str = "command", failure: str | None = None) -> dict[str, Any]:
@@ -42,6 +44,23 @@ def test_after_a_recovery_the_recovery_succeeded_and_the_task_failed(told: Calla
     assert rig.wait(60.0, until=lambda: not rig.snapshot()["cells"][0]["tree"])
     statuses = rig.statuses()
     assert statuses["recovery"] == "success" and statuses["storage"] == statuses["main"] == "failure"
+
+
+def test_a_step_that_failed_between_two_snapshots_shows_it() -> None:
+    cell = replace(shipped().cells[0], drive_to_start=False)
+    rig, memory = Rig(replace(shipped(), cells=(cell,))), TreeMemory()
+    rig.wait(0.5)
+    task = rig.submit("sis_a 2A 5").task
+    rig.wait_for("sis_a", "system start/dwell")
+    for seconds in (0.0, 5.0):
+        rig.wait(seconds)
+        snapshot = rig.snapshot()
+        memory.see(snapshot["cells"][0], snapshot["tasks"], 1000.0 + rig.now)
+    statuses = {row["name"]: memory.statuses[row["path"]] for row in memory.rows}
+    assert statuses["storage"] == statuses["main"] == statuses["at start"] == "failure"
+    assert statuses["system start"] == "success" and statuses["drive path 2A"] == "idle"
+    failures = {row["name"]: row["failure"] for row in memory.rows if row["failure"]}
+    assert failures == {"at start": rig.outcomes()[task].sentence}
 
 
 def test_what_a_stop_interrupts_is_called_interrupted(told: Callable[..., Any]) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import recipes
+from . import recipes, tree_view
 from .cell_states import Cause, CellState, after
 from .context import Context
 from .errors import QueueFull
@@ -314,7 +314,7 @@ class CellRun:
 
     def _ended(self, *, recovered: bool) -> None:
         """The tree has come to its end: the task is over, and the cell ready or held."""
-        task, found = self.task, self.context.failure
+        task, found, leaf = self.task, self.context.failure, self.context.failed_leaf
         self.run.drop()
         if not recovered:
             unknown = Failure(reason=Reason.INTERNAL, sentence=f"{self.cell.name} failed without a cause")
@@ -324,7 +324,7 @@ class CellRun:
         if task is None:
             return
         if found is not None:
-            task.fail(found)
+            task.fail(found, tree_view.path_of(leaf) if leaf else None)
         if self._cancelling:
             self._finish(task, TaskState.CANCELLED)
         else:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from py_trees.behaviour import Behaviour
+
 from . import zone_plan
 from .dispatcher import Dispatcher, Make
 from .grips import Grip
@@ -32,6 +34,7 @@ class Context:
         self.awaits_piece = False  # for a report newer than the last one that had it
         self.carried = False  # a part that was seen in the effector is on its way
         self.failure: Failure | None = None
+        self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
         self._dispatcher = dispatcher
         self._zones = zones
@@ -75,7 +78,7 @@ class Context:
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""
         self.wakes, self.awaits_piece, self.carried = [], False, False
-        self.failure = self.last_failure = None
+        self.failure = self.failed_leaf = self.last_failure = None
         self._plan()
 
     def send(self, make: Make, doing: str) -> Entry:
@@ -230,8 +233,9 @@ class Context:
         """Tell the outside."""
         self._dispatcher.outbox.append(notice)
 
-    def fail(self, failure: Failure) -> None:
+    def fail(self, failure: Failure, leaf: Behaviour | None = None) -> None:
         """Name the cause of a failure; the first one named counts. What was carried is now for recovery."""
-        self.failure = self.failure or failure
+        if self.failure is None:
+            self.failure, self.failed_leaf = failure, leaf
         self.last_failure = failure
         self.carried = False

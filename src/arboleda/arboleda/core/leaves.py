@@ -112,7 +112,7 @@ class Act(Leaf):
         return Status.RUNNING
 
     def _failed(self, failure: Failure) -> Status:
-        self.context.fail(failure)
+        self.context.fail(failure, self)
         self._halt()
         return self.failed(failure)
 
@@ -167,7 +167,7 @@ class Require(Leaf):
         failure = self.obstacle()
         if failure is None:
             return Status.SUCCESS
-        self.context.fail(failure)
+        self.context.fail(failure, self)
         return self.failed(failure)
 
 
@@ -214,7 +214,7 @@ class Await(Leaf):
             return Status.RUNNING
         failure = self.otherwise()
         if self.final:
-            self.context.fail(failure)
+            self.context.fail(failure, self)
         return self.failed(failure)
 
 

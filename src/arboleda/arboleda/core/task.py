@@ -46,6 +46,7 @@ class Task:
         self.order = order
         self.state = TaskState.QUEUED
         self.failure: Failure | None = None
+        self.failed_in: str | None = None  # the path of the leaf that named its failure
         self.started_at: float | None = None
         self.ended_at: float | None = None
 
@@ -59,6 +60,7 @@ class Task:
         else:
             self.ended_at = now
 
-    def fail(self, failure: Failure) -> None:
-        """Keep the first cause of a failure; later ones are consequences."""
-        self.failure = self.failure or failure
+    def fail(self, failure: Failure, leaf: str | None = None) -> None:
+        """Keep the first cause of a failure, and the path of its leaf; later ones are consequences."""
+        if self.failure is None:
+            self.failure, self.failed_in = failure, leaf

@@ -23,6 +23,15 @@ def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
     return found
 
 
+def path_of(node: Behaviour) -> str:
+    """The path of a node in its tree, as `rows` names it."""
+    numbers = []
+    while node.parent is not None:
+        numbers.append(node.parent.children.index(node))
+        node = node.parent
+    return ".".join(str(number) for number in reversed(numbers)) or "root"
+
+
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
     running = node.status is Status.RUNNING
     since_s, deadline_s = _times(node, now) if running else UNKNOWN

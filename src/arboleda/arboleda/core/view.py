@@ -136,6 +136,7 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "state": task.state.value,
         "reason": task.failure.reason.value if task.failure else None,
         "sentence": task.failure.sentence if task.failure else "",
+        "failed_in": task.failed_in,
         "elapsed_s": None if started is None else ended - started,
         "started_at": started,
         "ended_at": task.ended_at,

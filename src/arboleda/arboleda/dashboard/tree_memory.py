@@ -63,13 +63,29 @@ class TreeMemory:
 
     def _finish(self, cell: Row, tasks: list[Row], unix_s: float) -> None:
         """The tree is gone: what ran in it came to the end of its task."""
-        state = next((task["state"] for task in tasks if task["id"] == self.task), None)
+        task = next((task for task in tasks if task["id"] == self.task), {})
         recovered = cell["state"] == "idle"
+        after = self.statuses | {
+            row["path"]: last_status(row, self.rows, task.get("state"), recovered=recovered)
+            for row in self.rows
+            if self.statuses.get(row["path"]) == RUNNING
+        }
+        self._blame(task, after)
         for row in self.rows:
-            if self.statuses.get(row["path"]) == RUNNING:
-                end = last_status(row, self.rows, state, recovered=recovered)
-                self._become(row["path"], row["name"], end, unix_s)
+            self._become(row["path"], row["name"], after[row["path"]], unix_s)
         self.over = True
+
+    def _blame(self, task: Row, after: dict[str, str]) -> None:
+        """Show the leaf that failed the task as failed, also where no snapshot said so in time."""
+        leaf = task.get("failed_in")
+        if leaf not in after:
+            return
+        self.rows = [row | {"failure": task["sentence"]} if row["path"] == leaf else row for row in self.rows]
+        after[leaf] = FAILURE
+        kinds = {row["path"]: row["kind"] for row in self.rows}
+        for above in ancestors(leaf):
+            if kinds[above] == "sequence":
+                _conclude(above, list(kinds), after)
 
     def _become(self, path: str, name: str, status: str, unix_s: float) -> None:
         if self.statuses.get(path, IDLE) != status:
