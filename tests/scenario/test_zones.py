@@ -188,6 +188,22 @@ def test_an_operator_overrides_only_a_quarantine_and_it_is_journalled(
     assert (witness.false_successes, witness.illegal) == ([], [])
 
 
+def test_an_arm_inside_goes_on_as_soon_as_what_an_override_took_from_it_is_free(zoned: Plants) -> None:
+    rig, witness = start(zoned(Evidence.IDS))
+    meet(rig, 4)
+    rig.lost = lambda publication: publication.topic.startswith("ra_1/")
+    rig.wait(10.0)
+    assert rig.operate(Verb.OVERRIDE, "centre") is None
+    rig.lost = lambda publication: False
+    rig.wait(1.0)
+    assert (zone(rig, "centre"), zone(rig, "rack")) == (("held", "ra2"), ("quarantined", "ra1"))
+    assert rig.operate(Verb.RETRY, "sis_a") is None
+    assert rig.wait(30.0, until=lambda: zone(rig, "centre")[1] != "ra2")
+    assert zone(rig, "centre")[1] == "ra1"
+    assert rig.wait(30.0, until=lambda: at_rest(rig))
+    assert (witness.false_successes, witness.illegal) == ([], [])
+
+
 @levels
 def test_a_crash_of_the_plant_keeps_the_zones_of_an_arm_inside(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))

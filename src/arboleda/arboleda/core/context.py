@@ -211,6 +211,7 @@ class Context:
             granted += self._zones.restore(arm) + self._zones.release(arm)
             for zone in sorted(held):
                 self._dispatcher.remember(Fact.QUARANTINE, zone, None)
+            self._dispatcher.wake(self._zones.robbed)
         self._dispatcher.wake(granted)
         return not self._zones.held_by(arm)
 

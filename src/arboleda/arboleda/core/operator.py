@@ -105,7 +105,7 @@ class Operator:
         except IllegalTransition as error:
             raise Refused(str(error)) from error
         self._dispatcher.forget_zone(zone)
-        self._dispatcher.wake(granted)
+        self._dispatcher.wake({*granted, *self._zones.robbed})
 
     def _works(self, arm: str) -> bool:
         """Whether a tree counts on what an arm has, or the arm moves without one: homing needs none."""

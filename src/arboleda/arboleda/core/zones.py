@@ -41,6 +41,11 @@ class Zones:
         """Who holds any."""
         return set(self._holders.values())
 
+    @property
+    def robbed(self) -> set[str]:
+        """Who is inside and may lack what an override took; each may look whether it can `regain` that."""
+        return set(self._robbed)
+
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
 
