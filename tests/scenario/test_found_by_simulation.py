@@ -9,6 +9,7 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import State
 from arboleda.core.messages import FollowPath, Home, Journal, SetEffector, TaskState, Verb
 from arboleda.core.model import Evidence, PlantModel, Retry
 from arboleda.sim.arm import ArmBody
@@ -400,6 +401,25 @@ def test_a_bridge_that_restarted_obeys_no_superseded_orchestrator(rig: Rig) -> N
     body = rig.boards["ra_1"].body
     assert isinstance(body, ArmBody)
     assert not body.effector
+
+
+def test_the_late_end_of_an_earlier_homing_is_not_that_of_the_next_one(rig: Rig) -> None:
+    """All that the plant hears is 4 s old: a silence, and then the first homing, which took no time."""
+    body, belief = rig.boards["ra_1"].body, rig.plant.dispatcher.beliefs["ra1"]
+    assert isinstance(body, ArmBody)
+    rig.crash("ra_1")
+    rig.wait(0.5)
+    rig.to_plant.troubles.append(lambda message: (4.0,))
+    rig.wait(1.0)
+    cut(rig, "ra_1")
+    mend(rig)
+    assert rig.operate(Verb.HOME, "ra1") is None
+    assert rig.wait(2.0, until=lambda: not belief.online) and rig.wait(3.0, until=lambda: belief.online)
+    body.lose_steps(1, 500)
+    assert rig.operate(Verb.HOME, "ra1") is None
+    homing = rig.plant.dispatcher.last_sent["ra1"]
+    assert rig.wait(20.0, until=lambda: not homing.open)
+    assert (homing.state, body.moving) == (State.DONE, False)
 
 
 def test_a_task_starts_once_the_homing_before_it_has_ended(rig: Rig) -> None:

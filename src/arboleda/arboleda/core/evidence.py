@@ -64,7 +64,10 @@ def _look(entry: Entry, report: Report) -> None:
     has_position = report.q is not None or report.node is not None
     seen.position = seen.position or has_position
     seen.moving = seen.moving or report.state is MotionState.MOVING
+    if report.done not in (None, seen.ended, entry.command.id):
+        seen.unhomed = False  # the end of another command is told only now: what was seen is from before ours
     seen.unhomed = seen.unhomed or report.homed is False
+    seen.ended = report.done or seen.ended
     seen.position_since_state = has_position or (seen.position_since_state and report.state is None)
 
 

@@ -63,6 +63,7 @@ class Seen:
         self.position = False
         self.position_since_state = False
         self.unhomed = False
+        self.ended: str | None = None  # the command that was named last as done
 
 
 class Entry:
