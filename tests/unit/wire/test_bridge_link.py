@@ -149,6 +149,20 @@ def test_telemetry_that_was_overtaken_is_counted_and_dropped(linked) -> None:
     assert states(linked.tell(seq=10)) == [("ra1", STOPPED)]
 
 
+def test_a_number_that_was_too_high_makes_a_board_mute_for_a_while_only(linked) -> None:
+    linked.tell(seq=2**31)
+    linked.wait(STALE_AFTER_S)
+    heard = [bool(linked.tell(seq=number)) for number in range(40)]
+    assert heard.index(True) * 0.1 == pytest.approx(STALE_AFTER_S, abs=0.11)
+    assert all(heard[heard.index(True) :])
+
+
+def test_old_numbers_that_do_not_rise_bring_no_lost_board_back(linked) -> None:
+    linked.tell(seq=99)
+    linked.wait(STALE_AFTER_S)
+    assert all(linked.tell(seq=number % 8) == [] for number in range(80))
+
+
 def test_overtaken_telemetry_is_no_sign_of_life(linked) -> None:
     linked.tell(seq=9)
     deadline = linked.bridge.next_deadline

@@ -36,6 +36,7 @@ class BoardLink:
         )
         self._absent = False
         self._seq: int | None = None
+        self._below: tuple[float, int] | None = None  # since when old numbers rise, and the last of them
 
     def connection(self, up: bool) -> None:
         self._connected = up
@@ -48,7 +49,7 @@ class BoardLink:
 
     def lose(self) -> bool:
         """There is no way to the board; whether that is new."""
-        was_up, self.up, self.stale_at = self.up, False, math.inf
+        was_up, self.up, self.stale_at, self._below = self.up, False, math.inf, None
         return was_up
 
     def hear(self, at: float, said: Telemetry) -> Heard:
@@ -57,7 +58,7 @@ class BoardLink:
             return Heard.LATE
         if self._absent:
             return Heard.ABSENT
-        if self._overtaken(said):
+        if self._overtaken(said) and not self._counts_anew(at, said.seq):
             return Heard.OLD
         rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
@@ -83,3 +84,15 @@ class BoardLink:
         if said.boot_id is None or said.boot_id != self.boot_id:
             return False
         return said.seq is not None and self._seq is not None and said.seq <= self._seq
+
+    def _counts_anew(self, at: float, seq: int | None) -> bool:
+        """Whether a lost board's old numbers have risen for as long as made it lost: the high one was wrong.
+
+        A damaged number, or a counter that began anew without a boot, would make the board mute for ever.
+        """
+        if self.up or seq is None:
+            return False
+        since, last = self._below or (at, seq)
+        since = since if seq >= last else at
+        self._below = since, seq
+        return at - since >= self._stale_after_s
