@@ -88,7 +88,7 @@ class BoardLink:
     def _counts_anew(self, at: float, seq: int | None) -> bool:
         """Whether a lost board's old numbers have risen for as long as made it lost: the high one was wrong.
 
-        A damaged number, or a counter that began anew without a boot, would make the board mute for ever.
+        After a damaged number, or where a counter begins anew without a boot, nobody would hear it for long.
         """
         if self.up or seq is None:
             return False
