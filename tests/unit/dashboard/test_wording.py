@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.app.simulate.request import Request
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import State
 from arboleda.core.messages import Reason, TaskState, Verb
@@ -13,6 +14,8 @@ from arboleda.core.tree_view import KINDS
 from arboleda.dashboard.wording import LANGUAGES, SLOT, flat, tree_of, words
 
 ENGLISH = LANGUAGES[0]
+# The end of a line of a simulation's trace: an operator's refusal, or a task's state, reason and sentence.
+SAID = re.compile(r"(?: refusal=|: (?:queued|refused|failed|cancelled) (?:\(\w+\) )?)(?P<sentence>.+)$")
 
 
 def keys(language: str) -> dict[str, str]:
@@ -72,6 +75,15 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
             "rm_sis_a: sin telemetría durante 1.5 s mientras estaba recorriendo el camino 0B",
         ),
         (
+            "ra1: stopped before its target while moving to station 3",
+            "ra1: se paró antes de su destino mientras estaba moviendo a estación 3",
+        ),
+        ("rm_sis_a is still homing", "rm_sis_a sigue buscando la referencia"),
+        (
+            "zone centre is held by ra1, which still reports; only a quarantined zone can be overridden",
+            "la zona centre está ocupada por ra1, que aún informa; solo se anula una zona en cuarentena",
+        ),
+        (
             "'0D' is not a path of sis_a; there are 0A, 0B; did you mean 0A?",
             "'0D' no es un camino de sis_a; hay 0A, 0B; ¿quiso decir 0A?",
         ),
@@ -80,6 +92,15 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
 def test_the_plants_sentences_are_said_in_spanish(plant: str, spanish: str) -> None:
     assert words("es").say(plant) == spanish
     assert words("en").say(plant) == plant
+
+
+def test_what_a_plant_says_under_every_kind_of_fault_is_said_in_spanish() -> None:
+    lines: list[str] = []
+    for seed in range(1, 5):
+        Request(cycles=40).setting.run(seed, tell=lines.append)
+    sentences = {found["sentence"] for line in lines if (found := SAID.search(line))}
+    assert len(sentences) > 50
+    assert [sentence for sentence in sorted(sentences) if words("es").say(sentence) == sentence] == []
 
 
 def test_a_sentence_that_nobody_knows_stays_as_it_is() -> None:
