@@ -30,7 +30,11 @@ class Hand:
         return self._step([TaskRequest(at=self.now, text=text)])
 
     def tell(self, robot: str, after: float = 0.05, **said: Any) -> list[Any]:
-        self.now += after
+        until = self.now + after
+        while self.plant.next_deadline < until:  # the plant beats: one that does not was away
+            self.now = max(self.now, self.plant.next_deadline)
+            self._step([])
+        self.now = until
         return self._step([Report(at=self.now, robot=robot, **said)])
 
     def wait(self, seconds: float) -> list[Any]:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -20,7 +21,7 @@ from arboleda.core.messages import (
     TaskChanged,
     TaskRequest,
 )
-from arboleda.core.model import Evidence, MotionState
+from arboleda.core.model import Evidence, MotionState, Timing
 from arboleda.core.plant import Plant
 from arboleda.testing import shipped
 
@@ -41,6 +42,19 @@ def driven_to_the_arm(
     plant.tell("rm_sis_a", state=STILL, node=7, accepted=path.id, done=path.id)
     (move,) = plant.commands(MoveJoints)
     return plant, move
+
+
+def test_a_plant_that_is_fenced_off_says_by_whom_and_how_to_get_back(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.tell("ra1", state=STILL, epoch=1, plant=4_000_000_000)
+    (robot,) = (row for row in view.snapshot(plant.plant)["robots"] if row["name"] == "ra1")
+    assert "obeys plant 4000000000, which started after this one (7)" in robot["obstacle"]
+    assert "start the bridge anew" in robot["obstacle"]
+    plant.submit("sis_a 0B 7")
+    assert "obeys plant 4000000000" in last_change(plant).sentence
+    plant.tell("ra1", state=STILL, epoch=1, plant=6)
+    assert "does not hear this plant yet" in str(plant.plant.dispatcher.obstacle("ra1"))
 
 
 def last_change(plant: Any) -> TaskChanged:
@@ -66,9 +80,8 @@ def test_a_storage_task_sends_its_commands_in_order(hand: Any) -> None:
     assert len(plant.commands(SystemStart)) == 1 and not plant.commands(Stop)
 
 
-@pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
-def test_a_robot_already_at_its_goal_is_done_by_its_next_report(hand: Any, evidence: Evidence) -> None:
-    plant, move = driven_to_the_arm(hand, evidence, at_goal=True)
+def test_a_robot_already_at_its_goal_is_done_by_its_next_report(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.IDS, at_goal=True)
     plant.tell("ra1", state=STILL, q=move.q, accepted=move.id, done=move.id)
     assert plant.commands(SetEffector)
 
@@ -108,7 +121,7 @@ FAULTS: dict[str, tuple[Evidence, list[dict[str, Any]], Reason]] = {
     ),
     "joints: short": (
         Evidence.JOINTS,
-        [{"state": MOVING, "q": (0.05, 0.0, 0.0)}, {"state": STILL, "q": (0.1, 0.0, 0.0)}],
+        [{"state": MOVING, "q": (0.05, 0.0, 0.0)}, *[{"state": STILL, "q": (0.1, 0.0, 0.0)}] * 10],
         Reason.STOPPED_SHORT,
     ),
     "joints: jumped": (
@@ -193,6 +206,7 @@ def test_a_full_queue_refuses_with_its_limit(hand: Any) -> None:
         plant.submit("sis_a 0B 7")
     assert last_change(plant).state.value == "refused"
     assert f"{limit} tasks waiting" in last_change(plant).sentence
+    assert last_change(plant).for_now
 
 
 def test_a_task_waits_for_robots_that_were_never_heard_and_says_so(hand: Any) -> None:
@@ -272,7 +286,7 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
     plant.tell("ra1", state=MOVING, q=(0.05, 0.0, 0.0), accepted=move.id)
     plant.plant.step(plant.now, [Shutdown(at=plant.now)])
     assert not plant.plant.at_rest
-    for _ in range(2):
+    for _ in range(2 if evidence is not Evidence.JOINTS else 6):
         plant.tell("ra1", state=STILL, q=(0.08, 0.0, 0.0), accepted=move.id)
     assert plant.plant.at_rest
     assert plant.plant.intake.tasks.popitem()[1].failure.reason is Reason.INTERRUPTED
@@ -283,6 +297,7 @@ def test_a_snapshot_shows_open_tasks_and_the_last_ended_ones(hand: Any) -> None:
     for number in range(view.RECENT + 5):
         plant.submit(f"sis_a 0B 7 #n{number}")
         plant.plant.intake.tasks[f"n{number}"].ended_at = plant.now
+        plant.plant.cells["sis_a"].queue.clear()
     plant.submit("sis_b 0B 7 #open")
     shown = [task["id"] for task in view.snapshot(plant.plant)["tasks"]]
     assert shown == [*(f"n{number}" for number in range(5, view.RECENT + 5)), "open"]
@@ -314,3 +329,11 @@ def test_the_same_inputs_give_the_same_outputs() -> None:
         return [plant.step(0.1 * n, [TaskRequest(at=0.1 * n, text="sis_a 0B 7")]) for n in range(5)]
 
     assert run() == run()
+
+
+@pytest.mark.parametrize(("stale_after_s", "away_after_s"), [(0.3, 1.0), (1.2, 1.2), (30.0, 1.5)])
+def test_how_long_a_plant_may_do_nothing_hangs_on_silence_and_on_the_boards_own_watch(
+    stale_after_s: float, away_after_s: float
+) -> None:
+    model = replace(shipped(), timing=Timing(stale_after_s=stale_after_s))
+    assert Plant(model, epoch=7, now=0.0).away_after_s == away_after_s

@@ -11,7 +11,8 @@ import pytest
 from arboleda.core.messages import Command, Heartbeat, Report
 from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import shipped
-from arboleda.wire.bridge import Bridge, FromPlant, Message
+from arboleda.wire.bridge import Bridge, Message
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Payload, Presence, Telemetry, decode, encode
 from arboleda.wire.topics import Channel, parse, topic
 from arboleda.wire.transport import Connection, Delivery, Publication

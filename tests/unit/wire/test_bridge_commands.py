@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.core.messages import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import Evidence, MotionState
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 
 EPOCH = 1_000
@@ -24,6 +25,21 @@ def test_a_move_leaves_quantised_to_motor_steps_after_one_beat(linked, sent) -> 
         ("ra_1/latido", Beat(epoch=EPOCH)),
         ("ra_1/juntas", JointsGoal(q=(45.0036, 9.9, 126.9), seq=1, epoch=EPOCH)),
     ]
+
+
+def test_what_lay_here_while_the_process_was_stopped_is_refused_but_a_stop_is_not(
+    linked, sent, reports
+) -> None:
+    linked.heartbeat()
+    ordered_at, linked.now = linked.now, linked.now + 20.0
+    grip, halt = (
+        SetEffector(id="7-2", robot="ra1", on=False),
+        Stop(id="7-3", robot="ra1", mode=StopMode.HALT),
+    )
+    out = linked.step(*(FromPlant(at=ordered_at, message=each) for each in (move(1), grip, halt)))
+    assert [topic for topic, _ in sent(out)] == ["ra_1/paro"]
+    refused = [(each.rejected, each.refusal) for each in reports(out)]
+    assert refused[:2] == [("7-1", "no_link"), ("7-2", "no_link")]
 
 
 def test_quantising_rounds_and_never_truncates(linked, sent) -> None:
@@ -158,14 +174,14 @@ def test_a_goal_at_its_limit_survives_binary32(linked, sent) -> None:
 
 def test_a_refused_unlabelled_command_is_counted(linked, reports) -> None:
     before = linked.bridge.counters["ra1"].refused
-    assert linked.order(MoveJoints(id="", robot="ra1", q=(9.0, 0.0, 0.0))) == []
+    assert reports(linked.order(MoveJoints(id="", robot="ra1", q=(9.0, 0.0, 0.0)))) == []
     assert linked.bridge.counters["ra1"].refused == before + 1
     assert "limite" in linked.bridge.counters["ra1"].last
 
 
 def test_boards_without_a_stop_are_sent_none(make_linked, reports) -> None:
     bench = make_linked(has_stop=False)
-    (report,) = bench.order(Stop(id="7-1", robot="ra1", mode=StopMode.HALT))
+    (report,) = reports(bench.order(Stop(id="7-1", robot="ra1", mode=StopMode.HALT)))
     assert (report.rejected, report.refusal) == ("7-1", "no_stop")
 
 

@@ -6,8 +6,9 @@ import math
 
 import pytest
 
-from arboleda.core.messages import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import FollowPath, Heartbeat, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import Evidence, MotionState
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat
 
 EPOCH = 1_000
@@ -27,6 +28,31 @@ def test_a_heartbeat_is_relayed_to_the_boards_in_motion(linked, sent) -> None:
     assert sent(linked.heartbeat()) == BEAT
     linked.order(FollowPath(id="7-2", robot="rm_sis_a", nodes=(0, 3)))
     assert sent(linked.heartbeat()) == [*BEAT, ("rm_sis_a/latido", Beat(epoch=EPOCH))]
+
+
+@pytest.mark.parametrize(
+    ("epoch", "unix_s"), [(2**32 - 1, None), (2**32 - 1, 1_800_000_000), (1_832_000_000, 1_800_000_000)]
+)
+def test_a_plant_of_the_far_future_is_refused_and_ours_goes_on(
+    linked, sent, reports, epoch: int, unix_s: int | None
+) -> None:
+    linked.order(MOVE)
+    beat = FromPlant(at=linked.now, message=Heartbeat(epoch=epoch), unix_s=unix_s)
+    assert linked.step(beat) == []
+    strays = linked.bridge.counters[""]
+    assert strays.refused == 1 and f"plant {epoch} is refused" in strays.last
+    assert sent(linked.heartbeat()) == BEAT
+    assert {report.plant for report in reports(linked.tell())} == {7}
+
+
+@pytest.mark.parametrize(
+    ("epoch", "unix_s"),
+    [(1_800_000_000, 1_800_000_000), (1_810_000_000, 1_800_000_000), (4_000_000_000, None)],
+)
+def test_a_plant_whose_clock_is_a_little_ahead_is_obeyed(bench, reports, epoch, unix_s) -> None:
+    bench.connect()
+    bench.step(FromPlant(at=bench.now, message=Heartbeat(epoch=epoch), unix_s=unix_s))
+    assert {report.plant for report in reports(bench.tell())} == {epoch}
 
 
 def test_homing_is_a_motion(linked, sent) -> None:
@@ -71,21 +97,40 @@ def test_without_ids_moving_and_then_still_ends_it(make_linked, sent, evidence: 
     assert sent(bench.heartbeat()) == BEAT
     bench.tell(state=MOVING)
     bench.tell(state=STOPPED)
+    assert sent(bench.heartbeat()) == BEAT
+    stays(bench, state=STOPPED)
     assert sent(bench.heartbeat()) == []
+
+
+@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
+def test_without_ids_the_late_end_of_an_earlier_move_ends_no_beats(make_linked, sent, evidence) -> None:
+    bench = make_linked(evidence=evidence)
+    bench.order(MOVE)
+    bench.tell(state=MOVING)
+    bench.tell(state=STOPPED)
+    bench.tell(state=MOVING)
+    stays(bench, state=MOVING)
+    assert sent(bench.heartbeat()) == BEAT
 
 
 def test_at_joints_a_robot_already_at_its_goal_needs_no_beats(make_linked, sent) -> None:
     bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(MOVE)
-    bench.tell(state=STOPPED, q=TARGET_DEG)
+    stays(bench, state=STOPPED, q=TARGET_DEG)
     assert sent(bench.heartbeat()) == []
 
 
 def test_at_joints_a_mobile_at_its_last_node_needs_no_beats(make_linked, sent) -> None:
     bench = make_linked(evidence=Evidence.JOINTS)
     bench.order(FollowPath(id="7-1", robot="rm_sis_a", nodes=(0, 3)))
-    bench.tell("rm_sis_a", node=3)
+    stays(bench, "rm_sis_a", node=3)
     assert sent(bench.heartbeat()) == []
+
+
+def stays(bench, robot: str = "ra_1", **said: object) -> None:
+    """The board says the same for longer than it would drive on without beats."""
+    for _ in range(12):
+        bench.tell(robot, **said)
 
 
 def test_when_the_plant_falls_silent_so_does_the_bridge(linked) -> None:

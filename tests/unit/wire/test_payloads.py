@@ -45,14 +45,14 @@ def goals(kind: type, **fields: st.SearchStrategy) -> st.SearchStrategy:
     return st.builds(lambda body, stamp: kind(**body, **stamp), st.fixed_dictionaries(fields), NUMBERS)
 
 
-def telemetry(q: st.SearchStrategy, node: st.SearchStrategy) -> st.SearchStrategy:
+def telemetry(q: st.SearchStrategy, node: st.SearchStrategy, *flags: str) -> st.SearchStrategy:
     body = st.fixed_dictionaries(
         {
             "state": st.sampled_from([state for state in MotionState if state is not MotionState.NO_LINK]),
             "q": q,
             "node": node,
             **{name: maybe(UINT) for name in ("seq", "ack_epoch", "ack", "done", "boot_id")},
-            **{name: maybe(st.booleans()) for name in ("homed", "effector", "piece")},
+            **{name: maybe(st.booleans()) for name in ("homed", *flags)},
         }
     )
     return st.builds(lambda said, refused: Telemetry(**said, **refused), body, REFUSED)
@@ -65,7 +65,7 @@ ARM = {
     Channel.STOP: goals(StopGoal, mode=st.sampled_from(StopMode)),
     Channel.HOME: goals(HomeGoal),
     Channel.BEAT: st.builds(Beat, epoch=UINT),
-    Channel.TELEMETRY: telemetry(ANGLES, st.none()),
+    Channel.TELEMETRY: telemetry(ANGLES, st.none(), "effector", "piece"),
     Channel.PRESENCE: st.builds(Presence, online=st.booleans()),
 }
 MOBILE = {

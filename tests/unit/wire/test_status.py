@@ -25,16 +25,16 @@ SAID = {
     "done": IDS,
     "state": st.none() | st.sampled_from(MotionState),
     "homed": FLAG,
-    "effector": FLAG,
-    "piece": FLAG,
 }
+FOREIGN = st.sampled_from([{}, {"foreign": "ra1: effector_cmd 1 of /teleop was obeyed", "foreign_obeyed": 3}])
+OF_ARMS = {"effector": FLAG, "piece": FLAG}
 JOINTS = st.none() | st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3)
 REJECTED = st.sampled_from([{}, {"rejected": "7-1", "refusal": "sin_ref"}])
 
 
-@given(said=st.fixed_dictionaries(SAID), q=JOINTS, rejected=REJECTED)
-def test_a_report_of_an_arm_comes_back(said: dict, q: tuple | None, rejected: dict) -> None:
-    report = Report(at=3.0, robot="ra1", q=q, **said, **rejected)
+@given(said=st.fixed_dictionaries({**SAID, **OF_ARMS}), q=JOINTS, rejected=REJECTED, foreign=FOREIGN)
+def test_a_report_of_an_arm_comes_back(said: dict, q: tuple | None, rejected: dict, foreign: dict) -> None:
+    report = Report(at=3.0, robot="ra1", q=q, **said, **rejected, **foreign)
     assert from_status(3.0, ROBOTS["ra1"], to_status(ROBOTS["ra1"], report)) == report
 
 
@@ -93,6 +93,21 @@ def test_a_wrong_value_is_refused_by_key(values: dict[str, str]) -> None:
     good = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", state=MotionState.STOPPED))
     with pytest.raises(PayloadError, match=next(iter(values))):
         from_status(0.0, ROBOTS["ra1"], replace(good, values={**good.values, **values}))
+
+
+@pytest.mark.parametrize(
+    ("robot", "key", "value"),
+    [
+        ("rm_sis_a", "effector", "true"),
+        ("rm_sis_a", "piece", "false"),
+        ("rm_sis_a", "q", "0"),
+        ("ra1", "node", "0"),
+    ],
+)
+def test_what_its_kind_of_robot_cannot_say_is_refused_by_key(robot: str, key: str, value: str) -> None:
+    good = to_status(ROBOTS[robot], Report(at=0.0, robot=robot, state=MotionState.STOPPED))
+    with pytest.raises(PayloadError, match=f"{key} .*{robot}"):
+        from_status(0.0, ROBOTS[robot], replace(good, values={**good.values, key: value}))
 
 
 def test_the_status_of_another_robot_is_refused() -> None:

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from operator import attrgetter
+from typing import NamedTuple
 
 from .messages import Failure, Reason, Report
 from .model import Arm, Evidence, Link, MotionState, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
+APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
 RATE_S = 2.0  # the telemetry rate is counted over at least this long
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
 _merged = attrgetter(*MERGED)
+
+
+class Moment(NamedTuple):
+    """A time as a robot's reports tell it: how many there were, and s of the plant's clock."""
+
+    reports: int
+    at: float
 
 
 class Belief:
@@ -40,15 +50,18 @@ class Belief:
         self.position_at = 0.0
         self.position_no = 0
         self.state_no = 0
+        self.state_at = 0.0
         self.reports = 0
         self.rate_hz: float | None = None
         self._counted = (0.0, 0)  # when the rate was counted last, and the number of reports then
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
-        self._rested_from = 0
+        self._rested_from = 0  # of two equal positions in a row the first, by number and by time
+        self._rested_at = 0.0
         self.homed: bool | None = None
         self.effector: bool | None = None
+        self.effector_boot: int | None = None  # the boot in which its board said that
         self.piece: bool | None = None
         self._said: tuple[object, ...] = ()  # the words of the last report
 
@@ -68,6 +81,8 @@ class Belief:
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
+        if report.effector is not None:
+            self.effector_boot = self.boot_id
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._said = report.words
@@ -106,11 +121,13 @@ class Belief:
     def _count(self, report: Report) -> None:
         """Number the reports, so that "since" never hangs on two clocks agreeing."""
         self.reports += 1
-        self.state_no = self.reports if report.state is not None else self.state_no
+        if report.state is not None:
+            self.state_no, self.state_at = self.reports, report.at
         said, before = (report.q, self.q) if self._is_arm else (report.node, self.node)
         if said is not None:
-            moved = said != before
-            self._rested_from = self.reports if moved or not self._rested_from else self.position_no
+            moved = said != before or not self._rested_from
+            self._rested_from = self.reports if moved else self.position_no
+            self._rested_at = report.at if moved else self.position_at
             self.position_no = self.reports
         if report.piece is not None:
             self.piece_at = report.at
@@ -119,14 +136,36 @@ class Belief:
     @property
     def still(self) -> bool:
         """Whether its last two words agree that it stands still."""
-        return self.still_since(0)
+        return self.still_since(Moment(0, -math.inf))
 
-    def still_since(self, count: int) -> bool:
+    @property
+    def moves(self) -> bool:
+        """Whether nothing but its moving keeps it from a command."""
+        return self.trouble is MOVING
+
+    def moment(self, now: float) -> Moment:
+        """Now, for `still_since`."""
+        return Moment(self.reports, now)
+
+    def rested_since(self, at: float) -> bool:
+        """Whether it reported the same position at least twice from `at` on, and no other one since."""
+        return self._rested_from < self.position_no and self._rested_at >= at
+
+    def still_since(self, moment: Moment) -> bool:
         """Whether it stands still for sure: a still code and, where it reports its position, the same one in
-        two reports, all of them after its first `count` reports."""
+        two reports, all of them after that moment.
+
+        At `joints` a report may be older than the other one that came before it; so old ones do not count.
+        """
+        count, at = moment
         if self.state not in STILL or self.state_no <= count:
             return False
-        return not self.supervised or count < self._rested_from < self.position_no
+        if self.robot.evidence is Evidence.JOINTS and self.state_at < at + APART_S:
+            return False
+        if not self.supervised:
+            return True
+        rested = count < self._rested_from < self.position_no
+        return rested and (self.robot.evidence is Evidence.IDS or self.rested_since(at + APART_S))
 
     @property
     def answered(self) -> bool:
@@ -168,6 +207,12 @@ class Belief:
         reason, said = trouble
         return Failure(reason=reason, sentence=f"{self.robot.name} {said}")
 
+    def _unanswered(self) -> Trouble:
+        """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""
+        if self.plant is None or self.plant < self.plant_epoch:
+            return UNANSWERED
+        return (Reason.LINK_LOST, FENCED.format(self.plant, self.plant_epoch))
+
     @property
     def trouble(self) -> Trouble | None:
         """What an obstacle is made of, without the robot's name."""
@@ -176,12 +221,16 @@ class Belief:
         if not self.online:
             return OFFLINE if self.heard_at is not None else UNHEARD
         if not self.answered:
-            return UNANSWERED
+            return self._unanswered()
         trouble = TROUBLES.get(self.state)
         return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
 
 
 Trouble = tuple[Reason, str]
+FENCED = (
+    "is fenced off: its bridge obeys plant {}, which started after this one ({}); "
+    "end that plant, then start the bridge anew, or this plant where it brings the bridge"
+)
 DRAWN = (Reason.LINK_LOST, "is only drawn (link: none)")
 OFFLINE = (Reason.LINK_LOST, "is offline")
 UNHEARD = (Reason.LINK_LOST, "was not heard yet")

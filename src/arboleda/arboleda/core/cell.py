@@ -9,7 +9,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from . import recipes, tree_view
-from .cell_states import Cause, CellState, after
+from .belief import Moment
+from .cell_states import TABLE, Cause, CellState, after
 from .context import Context
 from .errors import QueueFull
 from .ledger import State
@@ -43,7 +44,7 @@ class CellRun:
         self._changed = changed
         self._build = build
         self._cancelling = False
-        self._stopped_after: dict[str, int] = {}
+        self._stopped_after: dict[str, Moment] = {}
         self._stop_by = 0.0
 
     @property
@@ -114,7 +115,7 @@ class CellRun:
         self.become(Cause.STOP)
         self.context.go_on()
         self.trouble = None
-        self._stopped_after = self.context.reports()
+        self._stopped_after = self.context.moments()
         self._stop_by = self.context.now + self.context.timing.stop_timeout_s
         failure = Failure(reason=Reason.STOPPED, sentence=f"{self.cell.name} was stopped by the operator")
         self.interrupt(failure)
@@ -123,8 +124,19 @@ class CellRun:
 
     def hold(self) -> None:
         """Halt at once and keep everything for `resume`."""
+        self._hold(Cause.HOLD)
+
+    def hold_after_absence(self, failure: Failure) -> None:
+        """The plant was away: what was at work is held, and nothing that waits starts by itself."""
+        if self.state is CellState.EXECUTE:
+            self._hold(Cause.AWAY, failure)
+        self.queue_paused = self.queue_paused or bool(self.queue)
+        self.context.cancel_motions()
+
+    def _hold(self, cause: Cause, trouble: Failure | None = None) -> None:
         self.queue_paused = True
-        self.become(Cause.HOLD)
+        self.trouble = trouble
+        self.become(cause)
         self.context.pause()
         self.context.cancel_motions()
 
@@ -161,11 +173,11 @@ class CellRun:
         task.become(TaskState.CANCELLED, self.context.plant_now)
         self._changed(task)
 
-    def cancel(self) -> None:
+    def cancel(self, failure: Failure) -> None:
         """End the running task: halt, recover, then it is cancelled."""
         self._cancelling = True
         if self.task is not None:
-            self.task.fail(Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator"))
+            self.task.fail(failure)
         held = self.state is CellState.HELD
         if held:
             self.become(Cause.ABANDON)
@@ -186,6 +198,13 @@ class CellRun:
             task.fail(failure)
             self._finish(task, TaskState.CANCELLED if cancelled else TaskState.FAILED)
 
+    def break_down(self, failure: Failure) -> None:
+        """Something of the cell raised: its task has failed, and it is held unless it is stopped."""
+        self.context.go_on()
+        self.interrupt(failure)
+        if (self.state, Cause.STUCK) in TABLE:
+            self._stuck(failure)
+
     def become(self, cause: Cause) -> None:
         """Change the state by its table; IllegalTransition where it has no row."""
         self.state = after(self.state, cause, self.cell.name)
@@ -201,7 +220,8 @@ class CellRun:
         if any(entry.is_motion for entry in self.context.open_commands()):
             return False
         self.become(Cause.HALTED)
-        self.trouble = self._fault()
+        self.trouble = self.trouble or self._fault()
+        self._miss_part()
         return True
 
     def _cleared(self) -> bool:
@@ -226,7 +246,16 @@ class CellRun:
             return True
         if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
+        self._miss_part()
         return False
+
+    def _miss_part(self) -> None:
+        """A held task whose effector was opened meanwhile has nothing to go on with."""
+        gone = self.context.part_gone()
+        if gone is not None and self.task is not None and not self.stranded:
+            self.trouble = gone
+            self.stranded = f"{self.cell.arm.name} has no part to go on with"
+            self.dirty = True
 
     def _leave_as_it_is(self) -> None:
         """From held to idle without a move; a recovery that was held is given up."""
@@ -266,8 +295,9 @@ class CellRun:
     def _fault(self) -> Failure | None:
         """What went wrong while the cell was held: an interrupted step that failed, a robot that cannot."""
         for act in self.run.interrupted():
-            if act.entry is not None and act.entry.state is State.FAILED:
-                return act.entry.failure
+            entry = act.entry
+            if entry is not None and entry.state is State.FAILED and not entry.too_early:
+                return entry.failure
         found = (self.context.obstacle(robot.name) for robot in self.cell.reached)
         return next((failure for failure in found if failure), None)
 
@@ -305,7 +335,7 @@ class CellRun:
         self.run.drop()
         self.context.go_on()
         self.trouble = None
-        self.context.carried = False
+        self.context.carried = self.context.delivers = False
         self._look(self.run.begin(lambda: recipes.recovery(self.context)))
 
     def _look(self, status: Status) -> None:

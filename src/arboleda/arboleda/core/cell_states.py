@@ -25,12 +25,17 @@ class CellState(str, Enum):
 
 
 class Cause(str, Enum):
-    """What moves a cell; `stuck` is a recovery that failed, or a part found in an idle arm's effector."""
+    """What moves a cell.
+
+    `stuck` is a recovery that failed, a part found in an idle arm's effector, or a defect; `away` is a
+    plant that finds that it did nothing for long, as after a suspend of its machine.
+    """
 
     TASK = "task"
     ENDED = "ended"
     STUCK = "stuck"
     HOLD = "hold"
+    AWAY = "away"
     HALTED = "halted"
     RESUME = "resume"
     RETRY = "retry"
@@ -48,11 +53,14 @@ TABLE: dict[tuple[CellState, Cause], CellState] = {
     (CellState.EXECUTE, Cause.ENDED): CellState.IDLE,
     (CellState.EXECUTE, Cause.STUCK): CellState.HELD,
     (CellState.EXECUTE, Cause.HOLD): CellState.HOLDING,
+    (CellState.EXECUTE, Cause.AWAY): CellState.HOLDING,
     (CellState.HOLDING, Cause.HALTED): CellState.HELD,
+    (CellState.HOLDING, Cause.STUCK): CellState.HELD,
     (CellState.HELD, Cause.RESUME): CellState.EXECUTE,
     (CellState.HELD, Cause.RETRY): CellState.EXECUTE,
     (CellState.HELD, Cause.ABANDON): CellState.EXECUTE,
     (CellState.HELD, Cause.ENDED): CellState.IDLE,
+    (CellState.HELD, Cause.STUCK): CellState.HELD,
     (CellState.ABORTING, Cause.HALTED): CellState.ABORTED,
     (CellState.ABORTED, Cause.CLEAR): CellState.CLEARING,
     (CellState.CLEARING, Cause.CLEAR): CellState.CLEARING,

@@ -8,11 +8,12 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 
 from . import zone_plan
+from .belief import Moment
 from .dispatcher import Dispatcher, Make
 from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
-from .model import Cell, Evidence, MotionState, Pose, Timing
+from .model import Cell, MotionState, Pose, Timing
 from .zones import Zones
 
 __all__ = ["Context", "Make"]
@@ -33,6 +34,7 @@ class Context:
         self.sent = 0
         self.awaits_piece = False  # for a report newer than the last one that had it
         self.carried = False  # a part that was seen in the effector is on its way
+        self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
@@ -53,10 +55,10 @@ class Context:
         """The plant's time, s; it never stands still."""
         return self._clock()
 
-    def pause(self) -> None:
-        """The cell's time stands still from now on."""
+    def pause(self, at: float | None = None) -> None:
+        """The cell's time stands still from now on, or since `at`, s of the plant's time."""
         if self._paused_at is None:
-            self._paused_at = self._clock()
+            self._paused_at = self._clock() if at is None else at
             self._plan()
 
     def go_on(self) -> None:
@@ -78,6 +80,8 @@ class Context:
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""
         self.wakes, self.awaits_piece, self.carried = [], False, False
+        self.delivers = True
+        self._dispatcher.opened.pop(self.cell.arm.name, None)
         self.failure = self.failed_leaf = self.last_failure = None
         self._plan()
 
@@ -112,6 +116,10 @@ class Context:
         """Why a robot takes no command now."""
         return self._dispatcher.obstacle(robot)
 
+    def moves(self, robot: str) -> bool:
+        """Whether a robot says that it is still moving."""
+        return self._dispatcher.beliefs[robot].moves
+
     @property
     def grip(self) -> Grip:
         """What the arm's effector is known to be."""
@@ -121,6 +129,13 @@ class Context:
         """Whether a part may hang in the arm's effector."""
         return self._dispatcher.grips.holding(self.cell.arm.name)
 
+    def part_gone(self) -> Failure | None:
+        """Why the part that was gripped is lost: its effector opened, and this plant did not say so."""
+        sentence = self._dispatcher.opened.get(self.cell.arm.name)
+        if sentence is None or not self.delivers or self.failure is not None:
+            return None
+        return Failure(reason=Reason.PART_LOST, sentence=sentence)
+
     def recovery_zones(self) -> frozenset[str]:
         """What the way of a recovery needs, from where the arm stands now."""
         return zone_plan.recovery_zones(self.cell, self._dispatcher.place(self.cell))
@@ -129,14 +144,15 @@ class Context:
         """The zone-free pose at which the arm's next way begins: where it is seen, else home."""
         return self._dispatcher.place(self.cell) or self.cell.home
 
-    def reports(self) -> dict[str, int]:
-        """How many reports each robot of the cell has given, for `still_since`."""
-        return {robot.name: self._dispatcher.beliefs[robot.name].reports for robot in self.cell.robots}
+    def moments(self) -> dict[str, Moment]:
+        """Now, as each robot of the cell tells the time, for `moving_since`."""
+        beliefs = self._dispatcher.beliefs
+        return {robot.name: beliefs[robot.name].moment(self._clock()) for robot in self.cell.robots}
 
-    def moving_since(self, reports: dict[str, int]) -> list[str]:
+    def moving_since(self, moments: dict[str, Moment]) -> list[str]:
         """The online robots of the cell that were not seen still since then."""
-        beliefs = {name: self._dispatcher.beliefs[name] for name in reports}
-        return [name for name, b in beliefs.items() if b.online and not b.still_since(reports[name])]
+        beliefs = {name: self._dispatcher.beliefs[name] for name in moments}
+        return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:
         """Whether an online robot of the cell still says that it is stopped and latched."""
@@ -171,7 +187,7 @@ class Context:
         unknown = not self._dispatcher.beliefs[arm].supervised and arm not in self._dispatcher.reached
         if not self.cell.zones or unknown or self._dispatcher.place(cell) is not None:
             return None
-        by_hand = "" if cell.arm.evidence is Evidence.IDS else " --by-hand, once it stands at its reference,"
+        by_hand = "" if cell.arm.says_homed else " --by-hand, once it stands at its reference,"
         sentence = f"{arm} is not seen at a pose outside the shared zones; home {arm}{by_hand} mends that"
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 

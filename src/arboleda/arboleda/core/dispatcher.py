@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from . import evidence
+from . import evidence, report_check
 from .belief import Belief
 from .evidence import Before, Verdict
 from .grips import Grip, Grips
+from .interference import Interferences
 from .ledger import Entry, Feed, Ledger, State
 from .messages import (
     Command,
@@ -31,10 +32,16 @@ from .model import Arm, Cell, Evidence, Link, Mobile, MotionState, PlantModel, P
 from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
+Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
 Memory = Mapping[Fact, Mapping[str, str]]
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
+
+
+def unguarded(cell: str, act: Callable[[], None]) -> None:
+    """What it raises is for the caller to handle."""
+    act()
 
 
 class Dispatcher:
@@ -53,7 +60,11 @@ class Dispatcher:
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
+        self.opened: dict[
+            str, str
+        ] = {}  # arms whose effector opened unbidden since its last command, and how
         self.reached: dict[str, tuple[float, ...]] = {}  # the goal of each arm's last move, once it is done
+        self._arrived: dict[str, int] = {}  # the end of each mobile's last path, once it is done
         self._kept: dict[tuple[Fact, str], str | None] = {
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
         }
@@ -61,6 +72,7 @@ class Dispatcher:
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
         self.rejected: dict[str, tuple[int, str]] = {}  # how often a robot refused, and the last why
+        self.interference = Interferences()
         self._count = 0
 
     @property
@@ -79,15 +91,18 @@ class Dispatcher:
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
         obstacle = self._obstacle_to(command, by_hand=by_hand)
         if obstacle is not None:
-            entry.refuse(replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}"))
+            failure = replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}")
+            entry.refuse(failure, too_early=self._may_be_the_end_of_its_last_move(command.robot))
             return entry
-        entry.settles_at = self._settles_at(command, now)
+        entry.origin = self.beliefs[command.robot].position
+        entry.settles_at = self._settles_at(command, now, deadline)
         self.ledger.open(entry)
         self.last_sent[command.robot] = entry
         if isinstance(command, SetEffector):
+            self.opened.pop(command.robot, None)
             self._grip(command.robot, Grip.SWITCHING)
         elif not isinstance(command, Stop):
-            self.reached.pop(command.robot, None)
+            self._forget_place(command.robot)
         self._leave(command)
         return entry
 
@@ -96,7 +111,8 @@ class Dispatcher:
         if entry.state is State.CANCELLING:
             return
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
-        entry.cancelled_after = self.beliefs[entry.command.robot].reports
+        entry.settles_at = None if entry.is_motion else entry.settles_at
+        entry.cancelled_after = self.beliefs[entry.command.robot].moment(now)
         entry.deadline = now + self.model.timing.stop_timeout_s
         self.ledger.plan(entry)
         if entry.is_motion and entry.command.robot not in self.latched:
@@ -172,16 +188,28 @@ class Dispatcher:
         return next((pose for q, pose in cell.free_spots if cell.arm.reached(here, q)), None)
 
     def report(self, report: Report, now: float) -> None:
-        """Merge a report and book what it proves; reports of unknown or only drawn robots are ignored."""
+        """Merge a report and book what it proves.
+
+        Reports of unknown or only drawn robots are ignored, and those that say what such a robot cannot.
+        """
         belief = self.beliefs.get(report.robot)
         if belief is None or belief.drawn:
             return
         if belief.hear_again(report):
             self._prove(belief, report, now)
             return
+        if report_check.objection(belief.robot, report) is not None:
+            self.ledger.ignored["report"] += 1
+            return
         before, told = Before.of(belief), self._told(belief)
+        was_on, on_since_boot = belief.effector, belief.effector_boot
+        self._hear_of_others(report)
         returned = _returned(belief, report)
         belief.merge(report)
+        if was_on and belief.effector is False:
+            self._note_opening(belief, rebooted=belief.effector_boot != on_since_boot)
+        if not belief.supervised and report.state not in (None, MotionState.STOPPED):
+            self._moves_again(report.robot)
         goal = self.reached.get(report.robot)
         astray = goal is not None and evidence.strayed(before, belief, report, goal)
         if astray or evidence.displaced(before, belief, report):
@@ -192,6 +220,19 @@ class Dispatcher:
         if self._told(belief) != told:
             self.version += 1
             self.ledger.changed.add(self.model.cell_of[report.robot].name)
+
+    def interfere(self, robot: str, sentence: str, now: float, *, obeyed: bool) -> None:
+        """Somebody else commanded a robot; what it did of that may be why an open command fails."""
+        self.interference.note(robot, sentence, now, obeyed=obeyed)
+        self.version += 1
+        for entry in self.ledger.of_robot(robot) if obeyed else ():
+            entry.interference = sentence
+
+    def _hear_of_others(self, report: Report) -> None:
+        """A bridge counts the commands of others; each count that rose is news."""
+        refused, obeyed = self.interference.rise(report)
+        if report.foreign is not None and (refused or obeyed):
+            self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
 
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves; `before` is None where it only repeats what was believed."""
@@ -209,6 +250,26 @@ class Dispatcher:
         if belief.effector is not None:
             self._settle_grip(belief)
 
+    def give_up(self, cell: str, failure: Failure, now: float) -> None:
+        """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
+        self.version += 1
+        for entry in self.ledger.of_cell(cell):
+            self.ledger.feed(entry.command.id, Feed.FAILED, now, failure)
+            if entry.is_motion:
+                self._stop(entry.command.robot, StopMode.HALT)
+
+    def _moves_again(self, robot: str) -> None:
+        """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
+        self._forget_place(robot)
+        for entry in self.ledger.of_robot(robot):
+            if entry.is_motion and entry.settles_at is not None:
+                entry.settles_at = None
+                self.ledger.plan(entry)
+
+    def _forget_place(self, robot: str) -> None:
+        self.reached.pop(robot, None)
+        self._arrived.pop(robot, None)
+
     def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
         """Fail a command that could not leave this process."""
         failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
@@ -216,15 +277,18 @@ class Dispatcher:
             if entry.command.id == id:
                 self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
 
-    def expire(self, limit: float, now: float) -> None:
+    def expire(self, limit: float, now: float, guard: Guard = unguarded) -> None:
         """End what is due up to and including `limit`: settling times, deadlines, silence."""
         if self.next_deadline > limit:
             return
         for entry in [entry for entry in self.ledger.entries.values() if entry.next_deadline <= limit]:
-            self._book(entry, _overdue(entry), now)
-        for belief in self.beliefs.values():
+            guard(entry.cell, partial(self._end_overdue, entry, now))
+        for name, belief in self.beliefs.items():
             if belief.stale_at is not None and belief.stale_at <= limit:
-                self._went_stale(belief, now)
+                guard(self.model.cell_of[name].name, partial(self._went_stale, belief, now))
+
+    def _end_overdue(self, entry: Entry, now: float) -> None:
+        self._book(entry, _overdue(entry), now)
 
     def _new_id(self) -> str:
         self._count += 1
@@ -267,6 +331,14 @@ class Dispatcher:
             return self.beliefs[robot].obstacle_besides_stop()
         return obstacle
 
+    def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
+        """Whether "moving" may be what a robot, whose position proved that move done, says of it only now.
+
+        At `state` nothing but that code proves a move: who says it again after its end is not to be trusted.
+        """
+        belief = self.beliefs[robot]
+        return belief.moves and belief.robot.evidence is Evidence.JOINTS
+
     def _shows_its_own_end(self, command: Command) -> bool:
         """Whether the end of an earlier move cannot be taken for that of this command."""
         evidence_level = self.beliefs[command.robot].robot.evidence
@@ -279,12 +351,25 @@ class Dispatcher:
             self.version += 1
             self.remember(Fact.EFFECTOR, arm, grip.value)
 
+    def _note_opening(self, belief: Belief, *, rebooted: bool) -> None:
+        """An effector that was on is off; where no command of this plant is open for it, that is news."""
+        arm = belief.robot.name
+        if self.grips[arm] is not Grip.ON or self._switches(arm):
+            return
+        how = "as its board rebooted" if rebooted else "not commanded by this plant"
+        sentence = f"{arm}: the effector opened while it held a part, {how}"
+        others = None if rebooted else self.interference.lately_obeyed(arm, belief.heard_at or 0.0)
+        self.opened[arm] = f"{sentence}; {others}" if others else sentence
+
+    def _switches(self, arm: str) -> bool:
+        return any(isinstance(entry.command, SetEffector) for entry in self.ledger.of_robot(arm))
+
     def _settle_grip(self, belief: Belief) -> None:
         """An effector that nobody is switching is what its board reports."""
         arm, grip = belief.robot.name, Grip.ON if belief.effector else Grip.OFF
         if self.grips[arm] is grip:
             return
-        if not any(isinstance(entry.command, SetEffector) for entry in self.ledger.of_robot(arm)):
+        if not self._switches(arm):
             self._grip(arm, grip)
 
     def _allowed_s(self, command: Command) -> float:
@@ -300,20 +385,32 @@ class Dispatcher:
             return timing.effector_timeout_s
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
-    def _settles_at(self, command: Command, now: float) -> float | None:
-        """When an effector that reports nothing counts as switched; None where it must report."""
+    def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
+        """When a command that the robot need not answer counts as done; None where it must report.
+
+        So does an effector that reports nothing; and a move, by a robot that tells no position, to where its
+        last move ended: it may have nothing to say, and has `stop_timeout_s` to say that it moves.
+        """
         belief = self.beliefs[command.robot]
         evidence_level = belief.robot.evidence
+        if evidence_level is Evidence.STATE and self._is_there(command):
+            return min(now + self.model.timing.stop_timeout_s, deadline)
         if not isinstance(command, SetEffector) or evidence_level is Evidence.IDS:
             return None
         if evidence_level is Evidence.JOINTS and belief.effector is not None:
             return None
         return now + self.model.timing.effector_settle_s
 
+    def _is_there(self, command: Command) -> bool:
+        """Whether a motion ends where the robot's last one, which was done, has left it."""
+        if isinstance(command, MoveJoints):
+            return self.reached.get(command.robot) == command.q
+        return isinstance(command, FollowPath) and command.nodes == (self._arrived.get(command.robot),)
+
     def _book(self, entry: Entry, verdict: Verdict, now: float) -> None:
         """Feed the ledger; a motion that failed and may still be under way is halted."""
         before = entry.state
-        self.ledger.feed(entry.command.id, verdict.feed, now, verdict.failure)
+        self.ledger.feed(entry.command.id, verdict.feed, now, _explained(entry, verdict.failure))
         self.version += entry.state is not before
         if entry.state is State.DONE:
             self._done(entry.command)
@@ -332,6 +429,8 @@ class Dispatcher:
             self._grip(command.robot, Grip.ON if command.on else Grip.OFF)
         elif isinstance(command, MoveJoints):
             self.reached[command.robot] = command.q
+        elif isinstance(command, FollowPath):
+            self._arrived[command.robot] = command.nodes[-1]
         elif isinstance(command, Home):
             self.beliefs[command.robot].displaced = False
 
@@ -352,6 +451,13 @@ def _returned(belief: Belief, report: Report) -> bool:
     back = not belief.online and report.state is not MotionState.NO_LINK
     new_bridge = report.epoch is not None and report.epoch != belief.epoch
     return back or new_bridge or (report.boot_id is not None and report.boot_id != belief.boot_id)
+
+
+def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
+    """A failure that a command of somebody else may have caused says so."""
+    if failure is None or entry.interference is None:
+        return failure
+    return replace(failure, sentence=f"{failure.sentence}; {entry.interference}")
 
 
 def _overdue(entry: Entry) -> Verdict:

@@ -2,7 +2,7 @@
 
 ArboledaError            one sentence for a person; never shown as a traceback
 ├── TextError            a task text that names something the plant does not have
-├── QueueFull            a valid task that the cell's queue has no room for
+├── QueueFull            a task that is not taken now: no room in the cell's queue, or the plant ends
 ├── IllegalTransition    a state table was fed a pair it does not list
 ├── ConfigError          a plant file or a robot file, all problems at once
 ├── PayloadError         bytes or a message that break the wire contract
@@ -21,7 +21,7 @@ class TextError(ArboledaError):
 
 
 class QueueFull(ArboledaError):
-    """The cell's queue is at its limit; the sentence says how many wait."""
+    """The plant takes this task not now, but may later; the sentence says why, e.g. how many wait."""
 
 
 class IllegalTransition(ArboledaError):

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .belief import Belief
+from .belief import APART_S, Belief
 from .ledger import Entry, Feed, State
 from .messages import Failure, FollowPath, Home, MoveJoints, Reason, Report, SetEffector
 from .model import Arm, Evidence, MotionState
@@ -20,8 +20,9 @@ REFUSALS: dict[str, Reason] = {
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
 }
+QUIET_S = 0.3  # what a command takes to a robot, one telemetry period, and APART_S for its answer
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
-JITTER_S = 0.1  # one telemetry period: two reports may arrive closer together than they were made
+JITTER_S = APART_S  # two positions may arrive so much closer together than they were made
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,21 +55,41 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
     broken = _refused(entry, report) if before is None else _broken(entry, before, belief, report)
     if broken is not None or report.at < entry.sent_at:
         return broken
-    _look(entry, report)
+    _look(entry, belief, report)
     return _device(entry, report) or _progress(entry, belief, report) or _stopping(entry, belief)
 
 
-def _look(entry: Entry, report: Report) -> None:
+def _look(entry: Entry, belief: Belief, report: Report) -> None:
     """Keep what a report shows about the command since it was sent."""
     seen = entry.seen
-    has_position = report.q is not None or report.node is not None
-    seen.position = seen.position or has_position
+    _look_at_place(entry, belief, report)
     seen.moving = seen.moving or report.state is MotionState.MOVING
+    if report.state is not None:
+        stopped = report.state is MotionState.STOPPED
+        seen.stopped_since = (seen.stopped_since or report.at) if stopped else None
     if report.done not in (None, seen.ended, entry.command.id):
         seen.unhomed = False  # the end of another command is told only now: what was seen is from before ours
     seen.unhomed = seen.unhomed or report.homed is False
     seen.ended = report.done or seen.ended
-    seen.position_since_state = has_position or (seen.position_since_state and report.state is None)
+
+
+def _look_at_place(entry: Entry, belief: Belief, report: Report) -> None:
+    """Keep since when each position is the goal, and how far along its path a mobile robot was seen."""
+    seen = entry.seen
+    if report.q is None and report.node is None:
+        return
+    if isinstance(entry.command, FollowPath) and report.node != seen.node:
+        seen.node = report.node
+        ahead = entry.command.nodes[seen.passed + 1 :]
+        seen.passed += ahead.index(report.node) + 1 if report.node in ahead else 0
+    seen.on_goal_since = (seen.on_goal_since or report.at) if _at_end(entry, belief) else None
+
+
+def _at_end(entry: Entry, belief: Belief) -> bool:
+    """Whether the last position is the goal; a path that comes by there before was seen driven to its end."""
+    command = entry.command
+    driven = not isinstance(command, FollowPath) or entry.seen.passed == len(command.nodes) - 1
+    return driven and reached(entry, belief)
 
 
 def reached(entry: Entry, belief: Belief) -> bool:
@@ -119,9 +140,10 @@ def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Ver
 
 def displaced(before: Before, belief: Belief, report: Report) -> bool:
     """Whether a robot that cannot say so must have lost its position: a new boot, or a jump."""
-    if belief.robot.evidence is not Evidence.JOINTS:
+    if belief.robot.says_homed:
         return False
-    return rebooted(before, belief, report) or _jumped(before, belief, report)
+    jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
+    return jumped or rebooted(before, belief, report)
 
 
 def strayed(before: Before, belief: Belief, report: Report, goal: tuple[float, ...]) -> bool:
@@ -190,20 +212,28 @@ def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None
 
 
 def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    seen, stopped = entry.seen, belief.state is MotionState.STOPPED
-    if stopped and seen.position and reached(entry, belief) and (seen.moving or not _is_round_trip(entry)):
-        return Verdict(feed=Feed.DONE)
-    if stopped and seen.moving and seen.position_since_state:
-        return _short(entry)
+    """State and position come apart, in any order: an old "stopped" may meet a new position, and a new
+    command the late end of the move before it.
+
+    Done is a robot on its goal that was seen to move and to stop since, or said nothing of moving for
+    QUIET_S. It has stopped short where it has left its origin, says stopped and stays elsewhere for QUIET_S.
+    """
+    seen = entry.seen
+    if belief.state is MotionState.STOPPED:
+        if seen.on_goal_since is not None:
+            moved = seen.moving and seen.stopped_since is not None
+            if moved or report.at >= seen.on_goal_since + QUIET_S:
+                return Verdict(feed=Feed.DONE)
+        elif _stays_short(entry, belief, report.at):
+            return _short(entry)
     return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
 
 
-def _is_round_trip(entry: Entry) -> bool:
-    """Whether a path ends where it begins: to stand there proves nothing before the robot was seen moving."""
-    command = entry.command
-    return (
-        isinstance(command, FollowPath) and len(command.nodes) > 1 and command.nodes[0] == command.nodes[-1]
-    )
+def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
+    seen = entry.seen
+    if not seen.moving or seen.stopped_since is None or belief.position == entry.origin:
+        return False  # who never left may have said only the end of an earlier move
+    return at >= seen.stopped_since + QUIET_S and belief.rested_since(seen.stopped_since + APART_S)
 
 
 def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from . import text
-from .errors import TextError
+from .errors import QueueFull, TextError
 from .model import PlantModel
 from .task import Task
 
@@ -21,9 +21,9 @@ class Intake:
         self._count = 0
 
     def task(self, words: str) -> Task:
-        """The new or already known task of a text; TextError says why there is none."""
+        """The new or already known task of a text; TextError or QueueFull says why there is none."""
         if self.closed:
-            raise TextError("the plant is ending; no new task is taken")
+            raise QueueFull("the plant is ending; no new task is taken")
         order = text.parse(words, self.model)
         known = self.tasks.get(order.id) if order.id else None
         if known is None:

@@ -58,8 +58,11 @@ class Leaf(Behaviour):
 class Act(Leaf):
     """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted.
 
-    A failure that a retry can help is tried again as the cell's `retry` says, after its back-off.
-    `guard`, where given, is asked at every tick; what it returns fails the command at once.
+    A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
+    that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
+    its last move.
+    `guard`, where given, is asked at every tick; what it returns fails the command at once. So does an
+    effector that opened unbidden while it held a part.
     """
 
     def __init__(
@@ -73,6 +76,7 @@ class Act(Leaf):
         self.entry: Entry | None = None
         self.tries = 0
         self.again_at: float | None = None
+        self.patient_until = 0.0
 
     def initialise(self) -> None:
         self.tries = 0
@@ -82,13 +86,21 @@ class Act(Leaf):
         """Give the command, or give it anew."""
         self.feedback_message = self.doing
         self.again_at = None
+        self.patient_until = self.context.now + self.context.timing.stop_timeout_s
+        self._give()
+
+    def _give(self) -> None:
         self.entry = self.context.send(self.make, self.doing)
+        if self.entry.too_early:
+            self.context.wake_at(self.patient_until)
 
     def update(self) -> Status:
         if self.again_at is not None:
             return self._wait()
-        if self.guard is not None and (found := self.guard()) is not None:
+        if (found := self._obstacle()) is not None:
             return self._failed(found)
+        if self.entry is not None and self._waits_for_the_robot(self.entry):
+            return Status.RUNNING
         if self.entry is None or self.entry.open:
             return Status.RUNNING
         if self.entry.state is State.DONE:
@@ -104,6 +116,21 @@ class Act(Leaf):
             self.context.wake_at(self.again_at)
             return Status.RUNNING
         return self._failed(failure)
+
+    def _obstacle(self) -> Failure | None:
+        """Why the command is in vain whatever becomes of it, unless it failed for a cause of its own."""
+        ended = self.entry.failure if self.entry is not None and not self.entry.open else None
+        if ended is not None and ended.reason not in RETRYABLE:
+            return None
+        return (self.guard() if self.guard is not None else None) or self.context.part_gone()
+
+    def _waits_for_the_robot(self, entry: Entry) -> bool:
+        """Whether the robot is still moving, and there is time; one that no longer is gets its command."""
+        if not entry.too_early or self.context.now >= self.patient_until:
+            return False
+        if not self.context.moves(entry.command.robot):
+            self._give()
+        return self.entry is not None and self.entry.too_early
 
     def _wait(self) -> Status:
         if self.again_at is not None and self.context.now >= self.again_at:

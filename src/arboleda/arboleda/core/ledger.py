@@ -6,6 +6,7 @@ import math
 from collections import Counter, defaultdict
 from enum import Enum
 
+from .belief import Moment
 from .errors import IllegalTransition
 from .messages import Command, Failure, FollowPath, Home, MoveJoints
 
@@ -60,8 +61,10 @@ class Seen:
 
     def __init__(self) -> None:
         self.moving = False
-        self.position = False
-        self.position_since_state = False
+        self.stopped_since: float | None = None  # since when its state code says stopped, without a break
+        self.on_goal_since: float | None = None  # since when each position that it reports is the goal
+        self.node: int | None = None
+        self.passed = -1  # up to which node of its path the reported nodes show that it has come
         self.unhomed = False
         self.ended: str | None = None  # the command that was named last as done
 
@@ -75,12 +78,15 @@ class Entry:
         self.doing = doing
         self.sent_at = sent_at
         self.deadline = deadline
+        self.origin: tuple[float, ...] | int | None = None  # where its robot was believed to stand then
         self.settles_at: float | None = None
+        self.too_early = False  # it never left, because its robot was still moving
         self.state = State.SENT
         self.accepted_at: float | None = None
         self.cancelled_at: float | None = None
-        self.cancelled_after = 0  # the count of the robot's reports then
+        self.cancelled_after = Moment(0, -math.inf)
         self.failure: Failure | None = None
+        self.interference: str | None = None  # the last command of somebody else meanwhile, in a sentence
         self.seen = Seen()
         self.is_motion = isinstance(command, MoveJoints | FollowPath | Home)
 
@@ -92,9 +98,9 @@ class Entry:
     def next_deadline(self) -> float:
         return self.deadline if self.settles_at is None else min(self.deadline, self.settles_at)
 
-    def refuse(self, failure: Failure) -> None:
+    def refuse(self, failure: Failure, *, too_early: bool = False) -> None:
         """End a command that never left: it must not be opened in a ledger."""
-        self.state, self.failure = State.FAILED, failure
+        self.state, self.failure, self.too_early = State.FAILED, failure, too_early
 
 
 class Ledger:

@@ -135,7 +135,8 @@ class SystemStart:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskChanged:
-    """One change of a task; `request` is the token of the request that caused it, if one did."""
+    """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
+    says of a refused one that the same text may be taken later."""
 
     task: str
     text: str
@@ -144,6 +145,7 @@ class TaskChanged:
     reason: Reason | None = None
     sentence: str = ""
     request: str | None = None
+    for_now: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,9 +184,27 @@ class Journal:
     sentence: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class InternalError:
+    """A defect: something raised what nobody handles. `cell` is held for it, "" where it belongs to none.
+
+    `error` carries its traceback, for the log.
+    """
+
+    cell: str
+    error: Exception
+
+
+@dataclass(frozen=True, kw_only=True)
+class Absence:
+    """The plant did nothing for so many seconds: its process was stopped, or its machine suspended."""
+
+    seconds: float
+
+
 Motion = MoveJoints | FollowPath | Home
 Command = MoveJoints | FollowPath | SetEffector | Stop | Home
-Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal
+Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal | InternalError | Absence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,7 +213,8 @@ class Report:
 
     `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
     `boot_id` the board's; `accepted`, `done` and `rejected` are
-    command ids, the last of each; `refusal` is the word that came with `rejected`.
+    command ids, the last of each; `refusal` is the word that came with `rejected`. `foreign_refused` and
+    `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
     """
 
     at: float
@@ -211,6 +232,9 @@ class Report:
     homed: bool | None = None
     effector: bool | None = None
     piece: bool | None = None
+    foreign_refused: int | None = None
+    foreign_obeyed: int | None = None
+    foreign: str | None = None
 
     @cached_property
     def words(self) -> tuple[object, ...]:
@@ -256,6 +280,15 @@ class Undelivered:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Interference:
+    """Somebody else commanded a robot that its link lets everybody command."""
+
+    at: float
+    robot: str
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Shutdown:
     """The plant is asked to end: no new task, whatever moves is halted."""
 
@@ -266,14 +299,16 @@ class Shutdown:
 class OperatorRequest:
     """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override) or a task (cancel).
 
-    `by_hand` (home) declares a robot homed that stands at its reference.
+    `by_hand` (home) declares a robot homed that stands at its reference. `client` (cancel): who asks is no
+    operator but the client of the task itself.
     """
 
     at: float
     verb: Verb
     scope: str = ""
     by_hand: bool = False
+    client: bool = False
     request: str | None = None
 
 
-Event = Report | TaskRequest | OperatorRequest | Undelivered | Shutdown
+Event = Report | TaskRequest | OperatorRequest | Undelivered | Interference | Shutdown

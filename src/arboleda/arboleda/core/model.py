@@ -25,6 +25,13 @@ class Link(str, Enum):
     NONE = "none"
 
 
+class ForeignCommands(str, Enum):
+    """What a bridge that hears its plant does with commands of other nodes; stops it always obeys."""
+
+    REFUSE = "refuse"
+    OBEY = "obey"
+
+
 class MotionState(int, Enum):
     """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
 
@@ -130,6 +137,11 @@ class Robot:
     assume_homed: bool = False
     home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
     has_stop: bool = True
+
+    @property
+    def says_homed(self) -> bool:
+        """Whether it knows itself if it is homed; a board that assumes so after every boot does not."""
+        return self.evidence is Evidence.IDS and not self.assume_homed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -304,6 +316,7 @@ class PlantModel:
     timing: Timing = Timing()
     mqtt_version: int = 4  # paho's protocol number of MQTT 3.1.1; 5 for MQTT 5
     zones: tuple[str, ...] = ()
+    foreign_commands: ForeignCommands = ForeignCommands.REFUSE
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)
@@ -312,6 +325,11 @@ class PlantModel:
     def robots(self) -> dict[str, Robot]:
         """Every robot by name, in the order of the file."""
         return {robot.name: robot for cell in self.cells for robot in cell.robots}
+
+    @cached_property
+    def has_boards(self) -> bool:
+        """Whether a robot is reached over MQTT; without one, nobody needs a broker."""
+        return any(robot.link is Link.MQTT for robot in self.robots.values())
 
     @cached_property
     def cell_of(self) -> dict[str, Cell]:

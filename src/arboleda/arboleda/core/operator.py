@@ -14,6 +14,7 @@ from .errors import ArboledaError, IllegalTransition
 from .intake import Intake
 from .messages import Failure, Journal, OperatorRequest, Reason, SetEffector, TaskState, Verb
 from .model import Arm, Evidence
+from .outside import quoted
 from .zones import Zones
 
 
@@ -44,7 +45,9 @@ class Operator:
         zones: Zones,
         intake: Intake,
         clock: Callable[[], float],
+        broke: Callable[[str, Exception], None],
     ) -> None:
+        self._broke = broke
         self._cells = cells
         self._dispatcher = dispatcher
         self._zones = zones
@@ -58,10 +61,11 @@ class Operator:
         if request.verb is Verb.OVERRIDE:
             self._override(scope)
         elif request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
-            self._cancel_task(scope.lstrip("#"))
+            self._cancel_task(scope.lstrip("#"), _cancelled_by(request))
         else:
             self._on_robots(request, scope)
-        sentence = f"{request.verb.value} {scope or 'plant'}{' by hand' if request.by_hand else ''}"
+        how = " by hand" if request.by_hand else " by its client" if request.client else ""
+        sentence = f"{request.verb.value} {scope or 'plant'}{how}"
         self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=sentence))
         number = self.acts[-1].number + 1 if self.acts else 1
         self.acts.append(OperatorAct(number=number, at=self._clock(), scope=scope, sentence=sentence))
@@ -81,7 +85,16 @@ class Operator:
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
         for cell in cells:
             if cell.cell.name not in refusals:
-                act(self, cell, robots)
+                self._do(act, cell, robots)
+
+    def _do(self, act: Do, cell: CellRun, robots: set[str]) -> None:
+        """Do it in one cell; what that raises must not keep the others from a stop."""
+        try:
+            act(self, cell, robots)
+        except (Refused, IllegalTransition):
+            raise
+        except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._broke(cell.cell.name, error)
 
     def _robots(self, scope: str) -> set[str]:
         """The robots of a scope: the plant, a cell, or one robot."""
@@ -93,7 +106,7 @@ class Operator:
         if scope in names:
             return {scope}
         known = ", ".join([*self._cells, *names])
-        raise Refused(f"'{scope[:40]}' is neither a cell nor a robot of this plant; there are {known}")
+        raise Refused(f"{quoted(scope)} is neither a cell nor a robot of this plant; there are {known}")
 
     def _override(self, zone: str) -> None:
         holder = self._zones.holder(zone)
@@ -113,15 +126,15 @@ class Operator:
         moves = any(entry.is_motion for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
 
-    def _cancel_task(self, id: str) -> None:
+    def _cancel_task(self, id: str, failure: Failure) -> None:
         task = self._intake.tasks[id]
         cell = self._cells[task.order.cell]
         if task.state is TaskState.QUEUED:
-            cell.drop(task, Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator"))
+            cell.drop(task, failure)
         elif task is cell.task:
             if why := _not_cancellable(self, cell, set()):
                 raise Refused(why)
-            cell.cancel()
+            cell.cancel(failure)
         else:
             raise Refused(f"task {id} has ended already ({task.state.value})")
 
@@ -170,14 +183,13 @@ class Operator:
         belief = self._dispatcher.beliefs[name]
         if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
             return refusal
-        says_itself = belief.robot.evidence is Evidence.IDS
         if by_hand:
             return (
                 f"{name} says itself whether it is homed; home {name} runs its routine"
-                if says_itself
+                if belief.robot.says_homed
                 else None
             )
-        if not says_itself:
+        if belief.robot.evidence is not Evidence.IDS:
             return f"{name} cannot report a homing; put it at its reference and say: home {name} --by-hand"
         obstacle = self._dispatcher.obstacle(name)
         return obstacle.sentence if obstacle and obstacle.reason is not Reason.NOT_HOMED else None
@@ -270,6 +282,14 @@ def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> str
     return _in(CellState.EXECUTE, CellState.HELD)(operator, cell, robots)
 
 
+CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator")
+CANCELLED_BY_CLIENT = Failure(reason=Reason.CANCELLED, sentence="cancelled by the client")
+
+
+def _cancelled_by(request: OperatorRequest) -> Failure:
+    return CANCELLED_BY_CLIENT if request.client else CANCELLED_BY_OPERATOR
+
+
 Check = Callable[[Operator, CellRun, "set[str]"], "str | None"]
 Do = Callable[[Operator, CellRun, "set[str]"], None]
 ACTS: dict[Verb, tuple[Check, Do]] = {
@@ -278,7 +298,7 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.RESET: (_in(CellState.STOPPED), Operator._reset),
     Verb.HOLD: (_in(CellState.EXECUTE), lambda operator, cell, robots: cell.hold()),
     Verb.RESUME: (Operator._not_resumable, lambda operator, cell, robots: cell.resume()),
-    Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel()),
+    Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel(CANCELLED_BY_OPERATOR)),
     Verb.RETRY: (_not_retryable, lambda operator, cell, robots: cell.retry()),
     Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
     Verb.RELEASE: (Operator._not_releasable, Operator._release),

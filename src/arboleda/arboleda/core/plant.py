@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from . import text
 from .cell import CellRun
 from .cell_states import CellState
 from .context import Context
@@ -16,13 +16,18 @@ from .dispatcher import Dispatcher, Memory
 from .errors import ArboledaError, IllegalTransition, QueueFull, TextError
 from .intake import Intake
 from .messages import (
+    Absence,
     Command,
     Event,
     Fact,
+    Failure,
     Heartbeat,
+    Interference,
+    InternalError,
     Notice,
     OperatorAnswer,
     OperatorRequest,
+    Reason,
     Report,
     Shutdown,
     TaskChanged,
@@ -32,11 +37,16 @@ from .messages import (
 )
 from .model import Cell, PlantModel
 from .operator import Operator, OperatorAct, Refused
+from .outside import plain
 from .recipes import RECIPES, Recipes
 from .task import Order, Recipe, Task
 from .zones import Zones
 
 HEARTBEAT_S = 0.25
+DEFECT = "this failed on an internal error; the log has its details"
+# A plant steps at least as often as it beats. Boards stop by themselves after 1 s without a beat, so whoever
+# was away for longer finds robots that stand, however long the plant file lets them be silent.
+SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
 ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
 
 
@@ -44,7 +54,8 @@ class Plant:
     """All cells of a plant; `epoch` names this start and must be higher than any before.
 
     `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `recipes`
-    stand in for the shipped ones. `next_deadline` is when `step` is due again without any event, s.
+    stand in for the shipped ones. `next_deadline` is when `step` is due again without any event, s;
+    a plant that is stepped more than `away_after_s` after its last step was away.
     """
 
     def __init__(
@@ -65,7 +76,9 @@ class Plant:
         self.dispatcher = Dispatcher(model, epoch, memory)
         self.zones = Zones(model.zones, memory.get(Fact.QUARANTINE, {}))
         self.cells = {cell.name: self._run(cell) for cell in model.cells}
-        self._operator = Operator(self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now)
+        self._operator = Operator(
+            self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now, self._break_down
+        )
         self._to_home = {name for name, robot in model.robots.items() if robot.home_at_start}
         self._runs = {robot.name: run for run in self.cells.values() for robot in run.cell.robots}
         self._order = {name: number for number, name in enumerate(self.cells)}
@@ -73,12 +86,18 @@ class Plant:
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
         self._next_wake = math.inf
         self._changes = 0
+        self._told_errors: dict[str, str] = {}  # by cell, since somebody asked for something
         self._next_beat = now
+        self._steps = False
+        self.away_after_s = min(max(model.timing.stale_after_s, SHORTEST_ABSENCE_S), LONGEST_STALL_S)
         self.next_deadline = now
 
     def step(self, now: float, events: Iterable[Event]) -> list[Command | Notice]:
         """Take in `events` in order, then deadlines up to `now` (s, never decreasing); what must go out."""
-        self.now = now
+        away_s = now - self.now
+        if self._steps and away_s > self.away_after_s:
+            self._come_back(away_s)
+        self.now, self._steps = now, True
         for event in events:
             if event.at > self.next_deadline:
                 self._expire(math.nextafter(event.at, -math.inf))
@@ -86,6 +105,7 @@ class Plant:
                 self._on_report(event)
             else:
                 self._touched.update(self.cells)
+                self._told_errors.clear()
                 HANDLERS[type(event)](self, event)
         self._expire(now)
         self._watch_zones()
@@ -145,7 +165,7 @@ class Plant:
 
     def _expire(self, limit: float) -> None:
         if limit >= self.next_deadline:
-            self.dispatcher.expire(limit, self.now)
+            self.dispatcher.expire(limit, self.now, self._guard)
 
     def _earliest(self) -> float:
         return min(self._next_beat, self._next_wake, self.dispatcher.next_deadline)
@@ -163,14 +183,42 @@ class Plant:
             changed, ledger.changed = ledger.changed, set()
             touched |= changed
             in_order = sorted(touched, key=self._order.__getitem__)
-            did = {name for name in in_order if self.cells[name].advance(woken=name in changed)}
+            did = {name for name in in_order if self._advanced(name, woken=name in changed)}
             self._plan(touched)
             if did:
                 self._changes += 1
             elif not ledger.changed:
                 return
             touched = did
-        raise ArboledaError(f"the cells do not come to rest in {ROUND_BOUND} rounds of one step")
+        for name in sorted(touched, key=self._order.__getitem__):
+            restless = f"the cells do not come to rest in {ROUND_BOUND} rounds of one step"
+            self._break_down(name, ArboledaError(restless))
+
+    def _advanced(self, name: str, *, woken: bool) -> bool:
+        """Let a cell do what it can; whether it did."""
+        try:
+            return self.cells[name].advance(woken=woken)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._break_down(name, error)
+            return False
+
+    def _guard(self, cell: str, act: Callable[[], None]) -> None:
+        """Do something that belongs to one cell; what it raises holds that cell, and nothing else."""
+        try:
+            act()
+        except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._break_down(cell, error)
+
+    def _break_down(self, cell: str, error: Exception) -> None:
+        """Hold a cell in which something raised; the error is told whole, once until somebody acts."""
+        self._changes += 1
+        sentence = f"{cell}: {type(error).__name__} in a step: {plain(' '.join(str(error).split()))}"
+        failure = Failure(reason=Reason.INTERNAL, sentence=sentence)
+        if self._told_errors.get(cell) != sentence:
+            self._told_errors[cell] = sentence
+            self.dispatcher.outbox.append(InternalError(cell=cell, error=error))
+        self.dispatcher.give_up(cell, failure, self.now)
+        self.cells[cell].break_down(failure)
 
     def _plan(self, names: Iterable[str]) -> None:
         """Take over when the trees of these cells are to be woken."""
@@ -179,18 +227,38 @@ class Plant:
             self._wakes[name] = math.inf if at is None else at
         self._next_wake = min(self._wakes.values())
 
+    def _come_back(self, away_s: float) -> None:
+        """Hold what was at work when the plant fell silent.
+
+        Robots have stopped themselves meanwhile, and people may have gone near them. So nothing moves
+        before an operator says so, and the time away does not pass for the trees.
+        """
+        left, self.now = self.now, self.now + away_s
+        sentence = f"the plant was away for {away_s:.1f} s"
+        failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
+        self.dispatcher.outbox.append(Absence(seconds=away_s))
+        self._to_home.clear()
+        self._touched.update(self.cells)
+        self._changes += 1
+        for name, cell in self.cells.items():
+            if cell.state is CellState.EXECUTE:
+                cell.context.pause(at=left)
+            self._guard(name, partial(cell.hold_after_absence, failure))
+
     def _watch_zones(self) -> None:
-        """An arm that is not heard may still be where it was; one that is seen outside is not."""
         arms = self.zones.robots
-        for cell in self.cells.values() if arms else ():
-            arm = cell.cell.arm.name
-            if arm not in arms:
-                continue
-            belief = self.dispatcher.beliefs[arm]
-            if not belief.online or belief.unhomed:
-                self.zones.quarantine(arm)
-            elif cell.tree is None:
-                cell.context.leave_zones()
+        for name, cell in self.cells.items() if arms else ():
+            if cell.cell.arm.name in arms:
+                self._guard(name, partial(self._watch_zones_of, cell))
+
+    def _watch_zones_of(self, cell: CellRun) -> None:
+        """An arm that is not heard may still be where it was; one that is seen outside is not."""
+        arm = cell.cell.arm.name
+        belief = self.dispatcher.beliefs[arm]
+        if not belief.online or belief.unhomed:
+            self.zones.quarantine(arm)
+        elif cell.tree is None:
+            cell.context.leave_zones()
 
     def _beat(self) -> None:
         if self.now >= self._next_beat:
@@ -198,13 +266,19 @@ class Plant:
             self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
 
     def _on_report(self, report: Report) -> None:
-        self.dispatcher.report(report, self.now)
         run = self._runs.get(report.robot)
         if run is None:
             return
+        try:
+            self._hear(run, report)
+        except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._break_down(run.cell.name, error)
+
+    def _hear(self, run: CellRun, report: Report) -> None:
+        self.dispatcher.report(report, self.now)
         if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
             self._touched.add(run.cell.name)
-        if report.piece is not None and run.context.awaits_piece:
+        if report.piece is not None and run.context.awaits_piece and report.robot == run.cell.arm.name:
             run.context.awaits_piece = False  # who goes on waiting asks again
             self.dispatcher.ledger.changed.add(run.cell.name)
         if report.robot in self._to_home:
@@ -223,7 +297,14 @@ class Plant:
             self._operator.home(robot)
 
     def _on_undelivered(self, event: Undelivered) -> None:
-        self.dispatcher.undelivered(event.id, event.robot, event.sentence, self.now)
+        cell = self.model.cell_of.get(event.robot)
+        if cell is not None:
+            fail = partial(self.dispatcher.undelivered, event.id, event.robot, event.sentence, self.now)
+            self._guard(cell.name, fail)
+
+    def _on_interference(self, event: Interference) -> None:
+        if event.robot in self.dispatcher.beliefs:
+            self.dispatcher.interfere(event.robot, event.sentence, event.at, obeyed=True)
 
     def _on_task_request(self, request: TaskRequest) -> None:
         try:
@@ -233,7 +314,11 @@ class Plant:
                 self.cells[task.order.cell].enqueue(task)
                 self.intake.remember(task)
         except (TextError, QueueFull) as refusal:
-            self.dispatcher.outbox.append(_refused(request, str(refusal)))
+            for_now = isinstance(refusal, QueueFull)
+            self.dispatcher.outbox.append(_refused(request, str(refusal), for_now=for_now))
+            return
+        except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
+            self.dispatcher.outbox += [_refused(request, DEFECT), InternalError(cell="", error=error)]
             return
         self._task_changed(task, request.request)
 
@@ -252,6 +337,9 @@ class Plant:
             self._operator.act(request)
         except (Refused, IllegalTransition) as error:
             refusal = str(error)
+        except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
+            refusal = DEFECT
+            self.dispatcher.outbox.append(InternalError(cell="", error=error))
         answer = OperatorAnswer(
             verb=request.verb, scope=request.scope, refusal=refusal, request=request.request
         )
@@ -259,18 +347,19 @@ class Plant:
 
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
-        for cell in self.cells.values():
-            cell.close()
+        for name, cell in self.cells.items():
+            self._guard(name, cell.close)
 
 
-def _refused(request: TaskRequest, sentence: str) -> TaskChanged:
+def _refused(request: TaskRequest, sentence: str, *, for_now: bool = False) -> TaskChanged:
     return TaskChanged(
         task="",
-        text=request.text[: text.LONGEST],
+        text=plain(request.text),
         cell=None,
         state=TaskState.REFUSED,
         sentence=sentence,
         request=request.request,
+        for_now=for_now,
     )
 
 
@@ -278,5 +367,6 @@ HANDLERS: dict[type, Callable[[Plant, Any], None]] = {
     TaskRequest: Plant._on_task_request,
     OperatorRequest: Plant._on_operator_request,
     Undelivered: Plant._on_undelivered,
+    Interference: Plant._on_interference,
     Shutdown: Plant._on_shutdown,
 }

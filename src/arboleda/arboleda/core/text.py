@@ -8,9 +8,10 @@ from difflib import get_close_matches
 
 from .errors import TextError
 from .model import Cell, Link, PlantModel, Robot
+from .outside import LINE, quoted
 from .task import Order, Recipe
 
-LONGEST = 200
+LONGEST = LINE
 FORM = "write <cell> <path> <station>, e.g. {example}, or <arm or cell> palletizing"
 ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
@@ -29,7 +30,7 @@ def parse(text: str, plant: PlantModel) -> Order:
         return Order(text=f"{cell.name} palletizing", cell=cell.name, recipe=Recipe.PALLETIZING, id=task_id)
     cell = _cell(words[0], plant, arms=len(words) == 2)
     if len(words) == 2 and _known(words[1], _path_codes(cell)) is None:
-        raise TextError(f"{_show(words[1])} is neither a path of {cell.name} nor 'palletizing'; {form}")
+        raise TextError(f"{quoted(words[1])} is neither a path of {cell.name} nor 'palletizing'; {form}")
     if len(words) != 3:
         raise TextError(f"the task has {len(words)} words; {form}")
     return _storage(cell, words[1], words[2], task_id)
@@ -77,9 +78,9 @@ def _split_id(words: list[str]) -> tuple[list[str], str | None]:
     task_id = words[-1][1:]
     if not ID.fullmatch(task_id):
         allowed = "1 to 64 letters, digits, '_', '.' or '-'"
-        raise TextError(f"{_show(words[-1])} is not a task id; after # come {allowed}")
+        raise TextError(f"{quoted(words[-1])} is not a task id; after # come {allowed}")
     if task_id.startswith("t-"):
-        raise TextError(f"{_show(words[-1])} is not a task id; ids that start with t- are made by the plant")
+        raise TextError(f"{quoted(words[-1])} is not a task id; ids that start with t- are made by the plant")
     return words[:-1], task_id
 
 
@@ -111,8 +112,4 @@ def _unknown(kind: str, word: str, names: Iterable[str], where: str) -> str:
     names = list(names)
     near = get_close_matches(word.lower(), [name.lower() for name in names], n=1)
     hint = f"; did you mean {_known(near[0], names)}?" if near else ""
-    return f"{_show(word)} is not a {kind} of {where}; there are {', '.join(names)}{hint}"
-
-
-def _show(word: str) -> str:
-    return ascii(word if len(word) <= 40 else word[:37] + "...")
+    return f"{quoted(word)} is not a {kind} of {where}; there are {', '.join(names)}{hint}"

@@ -12,7 +12,7 @@ from .context import Context
 from .errors import ArboledaError
 from .leaves import Act
 from .ledger import State
-from .messages import Failure, Reason
+from .messages import Failure, InternalError, Reason
 
 TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
 
@@ -46,9 +46,12 @@ class TreeRun:
 
     def drop(self) -> None:
         """End what runs; whatever moves for it is halted."""
-        if self.tree is not None:
-            self.tree.stop(Status.INVALID)
-        self.tree = None
+        tree, self.tree = self.tree, None
+        try:
+            if tree is not None:
+                tree.stop(Status.INVALID)
+        except Exception as error:  # noqa: BLE001 - a leaf may be user code: whatever moves is halted all the same
+            self._tell(error)
         self._context.cancel_all()  # py_trees does not terminate a leaf that raised
 
     def interrupted(self) -> list[Act]:
@@ -83,4 +86,8 @@ class TreeRun:
     def _raised(self, error: Exception) -> Status:
         sentence = f"{self._context.cell.name}: {type(error).__name__} in the tree: {error}"
         self._context.fail(Failure(reason=Reason.INTERNAL, sentence=sentence))
+        self._tell(error)
         return Status.FAILURE
+
+    def _tell(self, error: Exception) -> None:
+        self._context.notify(InternalError(cell=self._context.cell.name, error=error))

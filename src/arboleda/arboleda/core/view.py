@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator, Iterator
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -25,16 +26,38 @@ RECENT = 20  # ended tasks that a snapshot shows
 
 def snapshot(plant: Plant) -> dict[str, Any]:
     """Everything a screen shows, as of the plant's last step; positions in rad and m."""
+    parts = in_parts(plant)
+    while True:
+        try:
+            next(parts)
+        except StopIteration as end:
+            return dict(end.value)
+
+
+def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
+    """The `snapshot`, one part after the other: the plant may be stepped between two of them.
+
+    A cell, its robots and its open tasks are of one moment. No row is older than `at`; zones, acts and tasks
+    that have ended are those of the end.
+    """
+    at, cells, robots, open_tasks = plant.now, [], [], {}
+    for cell in plant.cells.values():
+        cells.append(_cell(cell, plant.now))
+        robots += [_robot(plant, plant.dispatcher.beliefs[robot.name]) for robot in cell.cell.robots]
+        waiting = [cell.task, *cell.queue] if cell.task else cell.queue
+        open_tasks |= {task.id: _task(task, plant.now) for task in waiting}
+        yield
     return {
         "plant": plant.model.name,
         "epoch": plant.epoch,
-        "at": plant.now,
+        "at": at,
         "ending": plant.intake.closed,
-        "cells": [_cell(cell, plant.now) for cell in plant.cells.values()],
-        "robots": [_robot(plant, belief) for belief in plant.dispatcher.beliefs.values()],
-        "tasks": [_task(task, plant.now) for task in _recent(plant)],
+        "cells": cells,
+        "robots": robots,
+        "tasks": _tasks(plant, open_tasks),
         "zones": plant.zones.snapshot(),
         "acts": [_act(act) for act in plant.acts],
+        "interference": [vars(each) for each in plant.dispatcher.interference.noticed],
         "ignored": dict(plant.dispatcher.ledger.ignored),
     }
 
@@ -107,6 +130,17 @@ def _recent(plant: Plant) -> list[Task]:
     ended = [task for task in tasks if task.ended_at is not None]
     forgotten = {task.id for task in ended[:-RECENT]}
     return [task for task in tasks if task.id not in forgotten]
+
+
+def _tasks(plant: Plant, open_tasks: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """In the order of their acceptance, those as they were that were open when their cell was seen.
+
+    One that was accepted since then is left out, as its cell does not show it either.
+    """
+    ended = {task.id: _task(task, plant.now) for task in _recent(plant) if task.ended_at is not None}
+    rows = ended | open_tasks
+    forgotten = [row for id, row in rows.items() if id not in plant.intake.tasks]
+    return forgotten + [rows[id] for id in plant.intake.tasks if id in rows]
 
 
 def _cell(cell: CellRun, now: float) -> dict[str, Any]:
@@ -190,11 +224,10 @@ def _act(act: OperatorAct) -> dict[str, Any]:
     return {"number": act.number, "at": act.at, "scope": act.scope, "sentence": act.sentence}
 
 
-def diagnostics(snapshot: dict[str, Any]) -> list[Diagnostic]:
+def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
     """One (name, hardware id, level, message, values) per robot and cell of a snapshot."""
-    return [_robot_diagnostic(robot) for robot in snapshot["robots"]] + [
-        _cell_diagnostic(cell) for cell in snapshot["cells"]
-    ]
+    yield from map(_robot_diagnostic, snapshot["robots"])
+    yield from map(_cell_diagnostic, snapshot["cells"])
 
 
 def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:

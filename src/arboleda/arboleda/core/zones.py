@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from .errors import IllegalTransition
+from .outside import plain
 
 
 class Zones:
@@ -147,7 +148,7 @@ class Zones:
     def _require_known(self, zone: str) -> None:
         if zone not in self._names:
             known = ", ".join(self._names) or "none"
-            raise IllegalTransition(f'there is no zone "{zone}"; zones of this plant: {known}')
+            raise IllegalTransition(f'there is no zone "{plain(zone, 40)}"; zones of this plant: {known}')
 
     def _row(self, zone: str) -> dict[str, Any]:
         state = (

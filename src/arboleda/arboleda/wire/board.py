@@ -9,17 +9,21 @@ from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, Report, Stop, StopMode
 from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
 
-from . import goals
+from . import goals, rejections
+from .copies import Copies
+from .hop import shown
 from .labels import Labels
 from .link import BoardLink, Heard
 from .motion import Motion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
+from .rejections import ForeignCommand, Rejection
 from .repeats import Words
 from .topics import Channel, topic
 from .transport import Delivery, Publication
 from .units import from_wire
 
-Message = Publication | Report
+Message = Publication | Report | Rejection | ForeignCommand
+AGAIN_S = 0.1  # of a burst of commands of others no report is made between two of the board's own
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +35,15 @@ class Counters:
     last: str = ""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Foreign:
+    """How many commands of others were refused and obeyed while a plant commands; the last in a sentence."""
+
+    refused: int = 0
+    obeyed: int = 0
+    last: str = ""
+
+
 class Board:
     """Commands in, reports out; a command leaves only while the link is up and no latch forbids it."""
 
@@ -39,7 +52,10 @@ class Board:
         self.robot = robot
         self.labels = Labels(epoch)
         self.link = BoardLink(stale_after_s if supervised else None)
+        self.copies = Copies()
         self.counters = Counters()
+        self._foreign = Foreign()
+        self._foreign_told_at = 0.0
         self._plant: int | None = None
         self._last: Report | None = None
         self._words: Words | None = None  # of the last telemetry, until a command changes what it means
@@ -65,22 +81,37 @@ class Board:
     def no_link(self, at: float) -> Report:
         return self._report(at, state=MotionState.NO_LINK)
 
-    def command(self, at: float, command: Command) -> list[Message]:
+    def command(self, at: float, command: Command, sender: str = "") -> list[Message]:
         """Send it, or report the word that refuses it; an id that came before is ignored."""
         if self.labels.repeated(command.id):
             return []
         if isinstance(command, Stop) and command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
         word = self._refusal(command)
-        return self.refuse(at, command, word) if word else self._send(at, command)
+        return self.refuse(at, command, word, sender) if word else self._send(at, command, sender)
 
-    def refuse(self, at: float, command: Command, word: str) -> list[Message]:
-        self._count(f"{type(command).__name__} {command.id or '(no id)'} is refused: {word}")
+    def refuse(self, at: float, command: Command, word: str, sender: str = "") -> list[Message]:
+        """Do not send it, and say so with the word for the reason."""
+        rejection = self._rejection(at, command, word, sender, by_board=False)
+        self._count(rejection.sentence)
         self.labels.refuse(command.id, word)
         self._words = None
-        if not command.id:
-            return []
-        return [self._report(at, state=None if self.link.up else MotionState.NO_LINK)]
+        return [rejection, self._word(at)] if command.id else [rejection]
+
+    def told_of(self, at: float, sentence: str, *, refused: bool) -> list[Message]:
+        """Somebody else commands the robot of a plant, which is told at once."""
+        self._count_foreign(sentence, refused=refused)
+        told = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
+        if at < self._foreign_told_at + AGAIN_S:
+            return [*told]
+        self._foreign_told_at = at
+        return [*told, self._word(at)]
+
+    def _count_foreign(self, sentence: str, *, refused: bool) -> None:
+        known, self._words = self._foreign, None
+        self._foreign = Foreign(
+            refused=known.refused + refused, obeyed=known.obeyed + (not refused), last=sentence
+        )
 
     def halt(self, at: float) -> list[Message]:
         """End the motion that is open, unless it was told to end."""
@@ -102,7 +133,8 @@ class Board:
 
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
         """A message from the board; what breaks the contract is counted and changes nothing."""
-        if channel is Channel.TELEMETRY and (again := self._again(delivery)):
+        ending = self._motion is not None and self._motion.ending
+        if channel is Channel.TELEMETRY and not ending and (again := self._again(delivery)):
             return [again]
         try:
             said = decode(channel, delivery.payload, axes=self._axes)
@@ -166,10 +198,41 @@ class Board:
             self.labels.reboot()
             self._motion = None
         q, ended = self._joints(said), self.labels.hear(said)
-        if self._motion and self._motion.ended(said, q, ended):
+        if self._motion and self._motion.ended(at, said, q, ended):
             self._motion = None
+        out = self._objections(at)
         self._last, self._words = self._told(at, said, q), Words.of(delivery.payload, said)
-        return [self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
+        return [*out, self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
+
+    def _objections(self, at: float) -> list[Message]:
+        """What telemetry has newly told of refused commands, and of commands that are not from here."""
+        out: list[Message] = []
+        if self.labels.objection is not None:
+            issued, word = self.labels.objection
+            rejection = self._rejection(at, issued.command, word, issued.sender, by_board=True)
+            out.append(rejection)
+            if not issued.command.id:  # the plant counts those of its own
+                self._count(rejection.sentence)
+        if self.labels.foreign is not None:
+            epoch, seq = self.labels.foreign
+            sentence = rejections.taken(self.robot, epoch, seq)
+            self._count_foreign(sentence, refused=False)
+            out.append(ForeignCommand(at=at, robot=self.robot.name, sentence=sentence))
+        return out
+
+    def _rejection(self, at: float, command: Command, word: str, sender: str, *, by_board: bool) -> Rejection:
+        return Rejection(
+            at=at,
+            robot=self.robot.name,
+            command=shown(command),
+            id=command.id,
+            reason=word,
+            sentence=rejections.refused(self.robot, command, word, sender, by_board=by_board),
+        )
+
+    def _word(self, at: float) -> Report:
+        """A report of what concerns commands only."""
+        return self._report(at, state=None if self.link.up else MotionState.NO_LINK)
 
     def _refusal(self, command: Command) -> str | None:
         if not self.link.up:
@@ -178,8 +241,8 @@ class Board:
             "paro" if self._latched and goals.needs_clear(command) else None
         )
 
-    def _send(self, at: float, command: Command) -> list[Message]:
-        seq = self.labels.issue(command.id)
+    def _send(self, at: float, command: Command, sender: str = "") -> list[Message]:
+        seq = self.labels.issue(command, sender)
         self._words = None
         numbered = self.robot.evidence is Evidence.IDS
         stamp = {"seq": seq, "epoch": self.labels.epoch} if numbered else {"seq": None, "epoch": None}
@@ -187,7 +250,7 @@ class Board:
         try:
             publication = self._publication(channel, goal)
         except PayloadError:
-            return self.refuse(at, command, "formato")
+            return self.refuse(at, command, "formato", sender)
         if goals.starts_motion(command):
             self._motion = Motion(robot=self.robot, command=command, seq=seq)
             return [self.beat(), publication]
@@ -224,6 +287,7 @@ class Board:
 
     def _report(self, at: float, **said: object) -> Report:
         rejected, word = self.labels.rejected or (None, None)
+        foreign = self._foreign
         return Report(
             at=at,
             robot=self.robot.name,
@@ -232,6 +296,9 @@ class Board:
             boot_id=self._boot_id,
             rejected=rejected,
             refusal=word,
+            foreign_refused=foreign.refused or None,
+            foreign_obeyed=foreign.obeyed or None,
+            foreign=foreign.last or None,
             **said,  # type: ignore[arg-type]
         )
 

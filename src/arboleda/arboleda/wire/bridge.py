@@ -12,24 +12,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, Heartbeat, Report, Stop, StopMode
-from arboleda.core.model import Link, PlantModel
+from arboleda.core.messages import Command, Heartbeat, Report, Stop
+from arboleda.core.model import ForeignCommands, Link, PlantModel
+from arboleda.core.outside import quoted
 
-from . import topics
+from . import epochs, rejections, topics
 from .board import Board, Counters, Message
+from .hop import FromPlant, is_stop, without_id
+from .rejections import FOREIGN, Rejection
 from .topics import Channel
 from .transport import Connection, Delivery
 
 BEAT_S = 0.25
+PLANT_GONE_S = 5.0  # without a heartbeat: a plant that is only slow still commands its robots
+UNSURE_S = 0.2  # in which the original of a copy arrives that overtook it
 _ID = re.compile(r"(\d{1,10})-\d{1,10}", re.ASCII)
-
-
-@dataclass(frozen=True, kw_only=True)
-class FromPlant:
-    """What the plant's side says to the bridge."""
-
-    at: float
-    message: Command | Heartbeat
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +34,16 @@ class Leaving:
     """The bridge is about to end; nobody will hear what its boards report."""
 
     at: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unsure:
+    """A command without an id that is told of at `due`, if it has not turned out to be a copy by then."""
+
+    due: float
+    board: Board
+    event: FromPlant
+    refused: bool
 
 
 Event = FromPlant | Delivery | Connection | Leaving
@@ -63,9 +70,14 @@ class Bridge:
         heard = (Channel.TELEMETRY, Channel.PRESENCE)
         self.subscriptions = tuple(topic for topic, (*_, channel) in self._routes.items() if channel in heard)
         self._epoch = epoch
+        self._now = now
+        self._stale_after_s = stale_after_s
         self._started_at = now  # never again once that was told
         self._plant_epoch = 0
         self._plant_beats = False
+        self._plant_heard_at = -math.inf
+        self._refuses_others = model.foreign_commands is ForeignCommands.REFUSE
+        self._unsure: list[Unsure] = []
         self._beat_at = math.inf
         self._strays = Counters()
         self.connected = False  # to the broker
@@ -79,15 +91,20 @@ class Bridge:
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
         due = min(self._started_at, self._beat_at, *self._stale_at.values())
+        if self._unsure:
+            due = min(due, self._unsure[0].due)
         return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Publications for MQTT and reports for the plant, in the order they must leave."""
+        self._now = now
         out = self._start(now)
         for event in events:
             out += self._deliver(event) if isinstance(event, Delivery) else self._take(event)
         if min(self._stale_at.values(), default=math.inf) <= now:
             out += self._lose_silent(now)
+        if self._unsure:
+            out += self._no_copies(now)
         return out + self._own_beats(now)
 
     def _start(self, now: float) -> list[Message]:
@@ -105,8 +122,10 @@ class Bridge:
         if isinstance(event, Leaving):
             return [message for board in self._boards.values() for message in board.halt(event.at)]
         if isinstance(event.message, Heartbeat):
+            if (objection := epochs.objection(event.message.epoch, event.unix_s)) is not None:
+                return self._stray(objection)
             return self._relay(event.at, event.message)
-        return self._command(event.at, event.message)
+        return self._command(event, event.message)
 
     def _deliver(self, delivery: Delivery) -> list[Message]:
         route = self._routes.get(delivery.topic)
@@ -129,15 +148,67 @@ class Bridge:
         self._strays = Counters(refused=self._strays.refused + 1, last=sentence)
         return []
 
-    def _command(self, at: float, command: Command) -> list[Message]:
+    def _command(self, event: FromPlant, command: Command) -> list[Message]:
         board = self._boards.get(command.robot)
         if board is None:
-            return self._nobody(at, command)
-        word = self._fence(command)
-        return board.refuse(at, command, word) if word else board.command(at, command)
+            return self._nobody(event.at, command)
+        if not command.id:
+            return self._unlabelled(event, command, board)
+        self._expect_copy(event, command, board)
+        word = self._fence(command) or self._late(event.at, command)
+        return board.refuse(event.at, command, word) if word else board.command(event.at, command)
+
+    def _expect_copy(self, event: FromPlant, command: Command, board: Board) -> None:
+        """The plant says whether it copies; a copy that came before its original is nobody else's."""
+        board.copies.flow = event.copied
+        if not event.copied:
+            return
+        plain = without_id(command)
+        early = next((e for e in self._unsure if e.board is board and e.event.message == plain), None)
+        if early is None:
+            board.copies.expect(event.at, command)
+        else:
+            self._unsure.remove(early)
+
+    def _unlabelled(self, event: FromPlant, command: Command, board: Board) -> list[Message]:
+        """A copy of what the plant said, or a command of somebody else."""
+        at, sender = event.at, event.sender
+        if board.copies.take(at, command):
+            return []
+        if (late := self._late(at, command)) is not None:
+            return board.refuse(at, command, late, sender)
+        if not self._is_commanded(at):
+            return board.command(at, command, sender)
+        refused = self._refuses_others and not is_stop(command)
+        out = [] if refused else board.command(at, command, sender)
+        if any(isinstance(each, Rejection) for each in out):
+            return out
+        unsure = Unsure(due=at + UNSURE_S, board=board, event=event, refused=refused)
+        if not board.copies.flow:
+            return [*out, *self._told_of(unsure)]
+        self._unsure.append(unsure)
+        return out
+
+    def _is_commanded(self, at: float) -> bool:
+        """Whether a plant is heard, whose robots nobody else commands."""
+        return at < self._plant_heard_at + PLANT_GONE_S
+
+    def _no_copies(self, now: float) -> list[Message]:
+        due = [each for each in self._unsure if each.due <= now]
+        self._unsure = [each for each in self._unsure if each.due > now]
+        return [message for each in due for message in self._told_of(each)]
+
+    def _told_of(self, unsure: Unsure) -> list[Message]:
+        board, event = unsure.board, unsure.event
+        assert not isinstance(event.message, Heartbeat)
+        if unsure.refused:
+            out = board.refuse(event.at, event.message, FOREIGN, event.sender)
+            return [*out, *board.told_of(event.at, board.counters.last, refused=True)]
+        sentence = rejections.obeyed(board.robot, event.message, event.sender)
+        return board.told_of(event.at, sentence, refused=False)
 
     def _nobody(self, at: float, command: Command) -> list[Message]:
-        self._stray(f"{command.robot!a} is no robot that this bridge reaches")
+        self._stray(f"{quoted(command.robot)} is no robot that this bridge reaches")
         return [
             Report(
                 at=at,
@@ -149,21 +220,25 @@ class Bridge:
         ]
 
     def _fence(self, command: Command) -> str | None:
-        """The word that refuses any plant but the one that beats; never a stop, nor an unlabelled command."""
-        if not command.id:
-            return None
+        """The word that refuses any plant but the one that beats; never a stop."""
         match = _ID.fullmatch(command.id)
         if match is None:
             return "formato"
-        if isinstance(command, Stop) and command.mode is not StopMode.CLEAR:
+        if is_stop(command):
             return None
         return None if int(match[1]) == self._plant_epoch else "old_epoch"
+
+    def _late(self, at: float, command: Command) -> str | None:
+        """The word that refuses what lay here while this process did nothing; a stop is never too late."""
+        late = self._now - at > self._stale_after_s
+        return "no_link" if late and not isinstance(command, Stop) else None
 
     def _relay(self, at: float, heartbeat: Heartbeat) -> list[Message]:
         if heartbeat.epoch < self._plant_epoch:
             return []
         self._plant_epoch = heartbeat.epoch
         self._plant_beats = True
+        self._plant_heard_at = at
         news = [report for board in self._boards.values() for report in board.hear_plant(at, heartbeat.epoch)]
         return [*news, *self._beat_all()]
 

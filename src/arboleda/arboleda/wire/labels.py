@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from dataclasses import dataclass
 from typing import TypeVar
+
+from arboleda.core.messages import Command
 
 from .payloads import Telemetry
 from .strict import UINT32
@@ -14,10 +17,20 @@ V = TypeVar("V")
 REMEMBERED = 256  # commands per board; an open one is never that old
 
 
+@dataclass(frozen=True, kw_only=True)
+class Issued:
+    """A command that was given a number; `sender` names who gave it where it has no id."""
+
+    command: Command
+    sender: str = ""
+
+
 class Labels:
     """The one seq counter of a board, and the commands behind its numbers.
 
     `rejected` is the last rejected command and its word, whether the board or the bridge rejected it.
+    `objection` is what the board has refused in its last telemetry and not before, with the word.
+    `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before.
     """
 
     def __init__(self, epoch: int) -> None:
@@ -25,8 +38,11 @@ class Labels:
         self.accepted: str | None = None
         self.done: str | None = None
         self.rejected: tuple[str, str] | None = None
+        self.objection: tuple[Issued, str] | None = None
+        self.foreign: tuple[int, int] | None = None
+        self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
         self._seq = 0
-        self._ids: OrderedDict[int, str] = OrderedDict()
+        self._issued: OrderedDict[int, Issued] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
         self._spoken = False
         self._raised = False
@@ -40,11 +56,11 @@ class Labels:
             _remember(self._known, command_id, None)
         return False
 
-    def issue(self, command_id: str) -> int:
+    def issue(self, command: Command, sender: str = "") -> int:
         """The next seq, given to this command."""
         self._seq += 1
         self._spoken = True
-        _remember(self._ids, self._seq, command_id)
+        _remember(self._issued, self._seq, Issued(command=command, sender=sender))
         return self._seq
 
     def refuse(self, command_id: str, word: str) -> None:
@@ -61,6 +77,7 @@ class Labels:
         """Take over what telemetry says about our commands; the seqs that it reports ended."""
         if not self._spoken and said.ack_epoch is not None and said.ack_epoch >= self.epoch:
             self._raise_above(said.ack_epoch)
+        self.foreign = self._strange(said)
         refused = self._refused(said)
         ours = said.ack_epoch == self.epoch
         self.accepted = self._name(said.ack) if ours else None
@@ -68,22 +85,37 @@ class Labels:
         done = said.done if ours else None
         return frozenset([seq for seq in (done, refused) if seq is not None])
 
+    def _strange(self, said: Telemetry) -> tuple[int, int] | None:
+        """A number above ours that the board newly accepted: another MQTT client has commanded it.
+
+        Before we have given it a command, it may be one of the bridge before us, whose clock was ahead.
+        """
+        accepted = (said.ack_epoch, said.ack)
+        before, self._accepted = self._accepted, accepted
+        if not self._spoken or said.ack_epoch is None or said.ack is None or accepted == before:
+            return None
+        above = (said.ack_epoch, said.ack) > (self.epoch, self._seq)
+        return (said.ack_epoch, said.ack) if above else None
+
     def _refused(self, said: Telemetry) -> int | None:
         """The seq of ours that is newly rejected; a board repeats its last refusal in every message."""
+        self.objection = None
         heard = (said.ack_epoch, said.refused_seq, said.refusal)
         if heard == self._heard_refusal:
             return None
         self._heard_refusal = heard
         if said.refusal is None or said.refused_seq is None or not self._concerns_us(said):
             return None
-        self.refuse(self._ids[said.refused_seq], said.refusal)
+        issued = self._issued[said.refused_seq]
+        self.refuse(issued.command.id, said.refusal)
+        self.objection = (issued, said.refusal)
         if said.ack_epoch is not None and said.ack_epoch > self.epoch and not self._raised:
             self._raised = True
             self._raise_above(said.ack_epoch)
         return said.refused_seq
 
     def _concerns_us(self, said: Telemetry) -> bool:
-        if said.refused_seq not in self._ids:
+        if said.refused_seq not in self._issued:
             return False
         if said.refusal != "viejo":
             return said.ack_epoch == self.epoch
@@ -94,10 +126,11 @@ class Labels:
 
     def _raise_above(self, epoch: int) -> None:
         self.epoch = min(epoch + 1, UINT32)
-        self._ids.clear()
+        self._issued.clear()
 
     def _name(self, seq: int | None) -> str | None:
-        return self._ids.get(seq) or None if seq is not None else None
+        issued = self._issued.get(seq) if seq is not None else None
+        return issued.command.id or None if issued is not None else None
 
 
 def _remember(table: OrderedDict[K, V], key: K, value: V) -> None:

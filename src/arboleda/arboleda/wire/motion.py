@@ -12,33 +12,46 @@ from arboleda.core.model import Arm, Evidence, MotionState, Robot
 
 from .payloads import Telemetry
 
+LINGER_S = 1.0  # as long as a board drives on without beats; what it says may be of before this command
+
 
 @dataclass(kw_only=True)
 class Motion:
-    """A motion command that was sent as `seq`; `stopping` once a halt or a stop followed it."""
+    """A motion command that was sent as `seq`; `stopping` once a halt or a stop followed it.
+
+    A board that names no command may say that it stands still because an earlier move has ended, or before
+    this one has reached it. So it gets beats until it has said so for LINGER_S: `ending` meanwhile.
+    """
 
     robot: Robot
     command: Command
     seq: int
     stopping: bool = False
     moved: bool = False
+    _still_since: float | None = None
 
-    def ended(self, said: Telemetry, q: tuple[float, ...] | None, seqs: frozenset[int]) -> bool:
-        """Whether telemetry (its joints `q` in SI, the command `seqs` it ends) ends this motion."""
+    @property
+    def ending(self) -> bool:
+        """Whether the next telemetry may end it though it repeats the last."""
+        return self._still_since is not None
+
+    def ended(self, at: float, said: Telemetry, q: tuple[float, ...] | None, seqs: frozenset[int]) -> bool:
+        """Whether telemetry heard `at` (joints `q` in SI, the command `seqs` it ends) ends this motion."""
         if self.seq in seqs:
             return True
         if said.state is MotionState.MOVING:
-            self.moved = True
+            self.moved, self._still_since = True, None
             return False
-        return self.stopping or self._proven_by(said, q)
-
-    def _proven_by(self, said: Telemetry, q: tuple[float, ...] | None) -> bool:
-        """Whether a robot that stands still and names no command has ended this one."""
         if self.robot.evidence is Evidence.IDS:
+            return self.stopping
+        if not (self.stopping or self.moved or self._reached(said, q)):
             return False
-        return self.moved or (self.robot.evidence is Evidence.JOINTS and self._reached(said, q))
+        self._still_since = at if self._still_since is None else self._still_since
+        return at >= self._still_since + LINGER_S
 
     def _reached(self, said: Telemetry, q: tuple[float, ...] | None) -> bool:
+        if self.robot.evidence is not Evidence.JOINTS:
+            return False
         if isinstance(self.command, FollowPath):
             return said.node == self.command.nodes[-1]
         if isinstance(self.command, MoveJoints) and isinstance(self.robot, Arm) and q is not None:

@@ -9,6 +9,7 @@ from functools import cache, lru_cache
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import StopMode
 from arboleda.core.model import MotionState
+from arboleda.core.outside import quoted
 
 from . import strict
 from .topics import Channel
@@ -47,6 +48,8 @@ REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro
 """The words a board may give as `rechazo`."""
 
 MAX_ANGLE_DEG = 1e6  # far beyond any robot, and exact enough for a board's binary32
+FOREIGN_TO_ARMS = ("an arm", "nodo")
+FOREIGN_TO_MOBILES = ("a mobile robot", "efector", "pieza", "q1_mov")
 _DECIMALS = 4
 _LAST_STATE = MotionState.STOP_LATCHED.value
 
@@ -88,7 +91,7 @@ def read_angles(raw: bytes, axes: int) -> tuple[tuple[float, ...], int] | None:
 
 def _presence(raw: bytes) -> Presence:
     if raw not in (b"0", b"1"):
-        raise PayloadError(f"conexion is {raw[:20]!r}; allowed: 0, 1")
+        raise PayloadError(f"conexion is {quoted(raw)}; allowed: 0, 1")
     return Presence(online=raw == b"1")
 
 
@@ -143,6 +146,7 @@ def _beat(raw: bytes) -> Beat:
 
 def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
     fields.together("rechazo", "rechazo_seq")
+    fields.refuse(*FOREIGN_TO_ARMS if axes is not None else FOREIGN_TO_MOBILES)
     keys = () if axes is None else _joint_keys(axes, "_mov")
     return Telemetry(
         q=tuple([fields.number(key, MAX_ANGLE_DEG) for key in keys]) if keys else None,

@@ -11,9 +11,11 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from arboleda.core import report_check
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
-from arboleda.core.model import Arm, Mobile, MotionState, Robot
+from arboleda.core.model import MotionState, Robot
+from arboleda.core.outside import quoted
 from arboleda.core.view import ERROR, OK, STALE, WARN
 
 from .strict import UINT32
@@ -21,6 +23,7 @@ from .strict import UINT32
 _LABEL = "id="
 _NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
+_LONGEST = 300  # characters of a sentence
 _FLAGS = {"true": True, "false": False}
 _SAID = {
     MotionState.STOPPED: (OK, "stopped"),
@@ -44,7 +47,7 @@ class Status:
 
 
 def to_status(robot: Robot, report: Report) -> Status:
-    """What the bridge publishes for one report; a report without a state tells of a refused command."""
+    """What the bridge publishes for one report; one without a state tells of refused or foreign commands."""
     level, message = (WARN, "command refused") if report.state is None else _SAID[report.state]
     values = {
         key: write(getattr(report, name)) for key, (name, _, write) in _ROWS.items() if _said(report, name)
@@ -55,7 +58,7 @@ def to_status(robot: Robot, report: Report) -> Status:
 def from_status(at: float, robot: Robot, status: Status) -> Report:
     """The report behind a status that came in at `at`; PayloadError names the key that is wrong."""
     if status.name != _name(robot):
-        raise PayloadError(f"status name is {status.name!a}; allowed: {_name(robot)!a}")
+        raise PayloadError(f"status name is {quoted(status.name)}; allowed: {quoted(_name(robot), 80)}")
     said = {
         name: read(key, status.values[key]) for key, (name, read, _) in _ROWS.items() if key in status.values
     }
@@ -85,25 +88,27 @@ def _said(report: Report, name: str) -> bool:
 
 
 def _fits(robot: Robot, report: Report) -> None:
-    axes = len(robot.joints) if isinstance(robot, Arm) else 0
-    if report.q is not None and len(report.q) != axes:
-        raise PayloadError(f"q has {len(report.q)} values; {robot.name} has {axes} joints")
-    nodes = robot.grid.size if isinstance(robot, Mobile) else 0
-    if report.node is not None and report.node >= nodes:
-        raise PayloadError(f"node is {report.node}; {robot.name} knows {nodes} nodes")
+    if (objection := report_check.objection(robot, report)) is not None:
+        raise PayloadError(objection)
     if (report.rejected is None) != (report.refusal is None):
         raise PayloadError("rejected and reason go together")
 
 
 def _id(key: str, text: str) -> str:
     if not _ID.fullmatch(text):
-        raise PayloadError(f"{key} is {text[:40]!a}; 1 to 64 of A-Z a-z 0-9 _ . - are needed")
+        raise PayloadError(f"{key} is {quoted(text)}; 1 to 64 of A-Z a-z 0-9 _ . - are needed")
+    return text
+
+
+def _sentence(key: str, text: str) -> str:
+    if not 1 <= len(text) <= _LONGEST or not text.isprintable():
+        raise PayloadError(f"{key} is {text[:40]!a}; 1 to {_LONGEST} printable characters are needed")
     return text
 
 
 def _count(key: str, text: str) -> int:
     if not re.fullmatch(r"\d{1,10}", text, re.ASCII) or int(text) > UINT32:
-        raise PayloadError(f"{key} is {text[:40]!a}; an integer of 0 to {UINT32} is needed")
+        raise PayloadError(f"{key} is {quoted(text)}; an integer of 0 to {UINT32} is needed")
     return int(text)
 
 
@@ -112,19 +117,19 @@ def _state(key: str, text: str) -> MotionState:
         return MotionState(_count(key, text))
     except ValueError:
         allowed = ", ".join(str(state.value) for state in MotionState)
-        raise PayloadError(f"{key} is {text!a}; allowed: {allowed}") from None
+        raise PayloadError(f"{key} is {quoted(text)}; allowed: {allowed}") from None
 
 
 def _joints(key: str, text: str) -> tuple[float, ...]:
     parts = text.split(",")
     if not all(_NUMBER.fullmatch(part) and math.isfinite(float(part)) for part in parts):
-        raise PayloadError(f"{key} is {text[:40]!a}; finite numbers separated by commas are needed")
+        raise PayloadError(f"{key} is {quoted(text)}; finite numbers separated by commas are needed")
     return tuple(float(part) for part in parts)
 
 
 def _flag(key: str, text: str) -> bool:
     if text not in _FLAGS:
-        raise PayloadError(f"{key} is {text[:40]!a}; allowed: true, false")
+        raise PayloadError(f"{key} is {quoted(text)}; allowed: true, false")
     return _FLAGS[text]
 
 
@@ -154,5 +159,8 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "homed": ("homed", _flag, _write_flag),
     "effector": ("effector", _flag, _write_flag),
     "piece": ("piece", _flag, _write_flag),
+    "foreign_refused": ("foreign_refused", _count, str),
+    "foreign_obeyed": ("foreign_obeyed", _count, str),
+    "foreign": ("foreign", _sentence, str),
 }
 """Key of the status -> (field of the Report, how it is read, how it is written)."""

@@ -7,6 +7,7 @@ import math
 from collections.abc import Collection
 
 from arboleda.core.errors import PayloadError
+from arboleda.core.outside import quoted
 
 LIMIT_BYTES = 512
 UINT32 = 2**32 - 1
@@ -105,6 +106,12 @@ class Fields:
             here, there = (first, second) if first in self._values else (second, first)
             raise PayloadError(f"{there} is missing: it goes with {here}")
 
+    def refuse(self, whose: str, *keys: str) -> None:
+        """PayloadError for a key that `whose` messages cannot have."""
+        for key in keys:
+            if key in self._values:
+                raise PayloadError(f"{key} is {_shown(self._values[key])}; {whose} has none")
+
     def _get(self, key: str) -> object:
         try:
             return self._values[key]
@@ -126,9 +133,8 @@ def _no_constant(name: str) -> object:
 
 
 def _shown(value: object) -> str:
-    """A short pure-ASCII picture of a foreign value, safe in any log."""
-    text = ascii(value) if not isinstance(value, float) or math.isfinite(value) else "too large"
-    return text if len(text) <= 40 else text[:37] + "..."
+    """The value as a sentence names it; a number that no float holds is "too large"."""
+    return "too large" if isinstance(value, float) and not math.isfinite(value) else quoted(value)
 
 
 _from_json = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_constant).decode

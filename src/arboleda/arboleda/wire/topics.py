@@ -6,6 +6,7 @@ import re
 from enum import Enum
 
 from arboleda.core.errors import PayloadError
+from arboleda.core.outside import quoted
 
 _BOARD = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 
@@ -32,9 +33,11 @@ def parse(topic: str) -> tuple[str, Channel]:
     """The board and the channel of a topic; PayloadError for any other topic."""
     board, _, name = topic.partition("/")
     if not _BOARD.fullmatch(board):
-        raise PayloadError(f"topic {topic!a}: the board's name is 1 to 64 of A-Z a-z 0-9 _ -")
+        raise PayloadError(f"topic {quoted(topic, 80)}: the board's name is 1 to 64 of A-Z a-z 0-9 _ -")
     try:
         return board, Channel(name)
     except ValueError:
         allowed = ", ".join(channel.value for channel in Channel)
-        raise PayloadError(f"topic {topic!a}: no channel {name!a}; allowed: {allowed}") from None
+        raise PayloadError(
+            f"topic {quoted(topic, 80)}: no channel {quoted(name)}; allowed: {allowed}"
+        ) from None

@@ -1,0 +1,39 @@
+"""Text from outside, as log, terminal, page and sentences may show it.
+
+Whoever sends a task, names a ROS node or writes a plant file chooses its letters: escape sequences that a
+terminal obeys, line ends that forge a line of the log, letters that turn the writing direction around, or a
+hundred thousand of them. Such text is shown by one of these two functions, wherever it goes.
+"""
+
+from __future__ import annotations
+
+LINE = 200  # characters; a sentence with more is not read
+
+
+def plain(text: str, most: int = LINE) -> str:
+    """One line of at most `most` characters (4 or more), all of them printable; others are escaped.
+
+    Short text of printable characters stays as it is, in every language.
+    """
+    # What str.isprintable() refuses are controls, line ends, marks of writing direction, characters without
+    # width, surrogates and what Unicode does not assign.
+    near = text[: most + 1]
+    line = near if near.isprintable() else "".join(map(_escaped, near))
+    return line if len(line) <= most else line[: most - 3] + "..."
+
+
+def quoted(value: object, most: int = 40) -> str:
+    """A foreign value as a sentence names it: in ASCII, text in quotes and clipped to `most` characters.
+
+    >>> quoted("sis_z"), quoted(b"\\x1b[2J"), quoted(7)
+    ("'sis_z'", "b'\\\\x1b[2J'", '7')
+    """
+    if isinstance(value, str):
+        return ascii(value if len(value) <= most else value[: most - 3] + "...")
+    if isinstance(value, bytes):
+        return ascii(value if len(value) <= most else value[: most - 3] + b"...")
+    return plain(ascii(value), most)
+
+
+def _escaped(letter: str) -> str:
+    return letter if letter.isprintable() else letter.encode("unicode_escape").decode("ascii")

@@ -1,0 +1,17 @@
+"""Which start of a plant can be: its number is the Unix time of that start, or one above the last number."""
+
+from __future__ import annotations
+
+AHEAD_S = 366 * 86_400  # clocks of two machines differ by no more where both have ever learned the time
+HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later, whatever any clock says
+
+
+def objection(epoch: int, unix_s: int | None) -> str | None:
+    """Why no plant can have started at `epoch`, by a clock that says `unix_s`; None where one can.
+
+    Without a clock only the horizon counts: a plant on a machine that forgot the time still has its bridge.
+    """
+    if epoch <= (HORIZON if unix_s is None else min(unix_s + AHEAD_S, HORIZON)):
+        return None
+    here = "" if unix_s is None else f"; the clock here says {unix_s}, set both clocks if that is wrong"
+    return f"a heartbeat of plant {epoch} is refused: no plant has started so far in the future{here}"

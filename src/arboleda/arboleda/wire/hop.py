@@ -1,0 +1,80 @@
+"""The hop between plant and bridge: on which topics commands go, and how much of them arrives there.
+
+A robot's topic `command` carries all its commands, each with its id, so that none overtakes another.
+Beside it stand the plain topics, one per kind, for nodes that know no ids: UInt8 has no place for one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    SetEffector,
+    Stop,
+    StopMode,
+)
+
+COMMAND = "command"
+HEARTBEAT = "plant/heartbeat"
+PLAIN: dict[type[Command], str] = {
+    MoveJoints: "joint_goals_q",
+    FollowPath: "path_cmd",
+    SetEffector: "effector_cmd",
+    Stop: "stop_cmd",
+    Home: "home_cmd",
+}
+"""The plain topic of each kind of command, below the robot's name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FromPlant:
+    """What reaches the bridge over the hop; a command without an id is that of somebody else.
+
+    `copied`: the same command also comes on its plain topic, without its id. `sender` names the nodes that
+    may have published it, "" where nobody knows. `unix_s`: the time by the clock of this machine, where
+    others than our own plant could have said it.
+    """
+
+    at: float
+    message: Command | Heartbeat
+    copied: bool = False
+    sender: str = ""
+    unix_s: int | None = None
+
+
+def command_topic(command: Command) -> str:
+    """Where a command goes with its id."""
+    return f"{command.robot}/{COMMAND}"
+
+
+def plain_topic(command: Command) -> str:
+    """Where it goes for nodes that know no ids."""
+    return f"{command.robot}/{PLAIN[type(command)]}"
+
+
+def is_stop(command: Command | Heartbeat) -> bool:
+    """Whether it ends a motion: such a command is obeyed whoever gives it."""
+    return isinstance(command, Stop) and command.mode is not StopMode.CLEAR
+
+
+def loses_its_id(command: Command) -> bool:
+    """Whether the plain topic of the command has no place for an id."""
+    return isinstance(command, SetEffector | Stop | Home)
+
+
+def without_id(command: Command) -> Command:
+    """The command as a plain topic of UInt8 carries it."""
+    return replace(command, id="")
+
+
+def shown(command: Command) -> str:
+    """The command as people publish it: `stop_cmd 2`, `joint_goals_q`."""
+    name = PLAIN[type(command)]
+    if isinstance(command, Stop):
+        return f"{name} {int(command.mode)}"
+    return f"{name} {int(command.on)}" if isinstance(command, SetEffector) else name

@@ -1,0 +1,190 @@
+"""Commands of others while a plant is heard, copies of the plant's own, and what is said of refusals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.model import ForeignCommands, MotionState
+from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
+from arboleda.wire.hop import FromPlant, without_id
+from arboleda.wire.payloads import StopGoal
+from arboleda.wire.rejections import ForeignCommand, Rejection
+
+from .conftest import EPOCH, Bench, link
+
+MOVE = MoveJoints(id="", robot="ra1", q=(0.5, 0.1, 0.05))
+GRIP = SetEffector(id="", robot="ra1", on=True)
+HALT = Stop(id="", robot="ra1", mode=StopMode.HALT)
+LATCH = Stop(id="", robot="ra1", mode=StopMode.LATCH)
+CLEAR = Stop(id="", robot="ra1", mode=StopMode.CLEAR)
+HOME = Home(id="", robot="ra1")
+
+
+@pytest.fixture
+def beaten(linked: Bench) -> Bench:
+    linked.heartbeat()
+    return linked
+
+
+def obeying() -> Bench:
+    bench = Bench()
+    model = replace(bench.model, foreign_commands=ForeignCommands.OBEY)
+    bench.bridge = Bridge(model, epoch=EPOCH, now=bench.now)
+    bench.step()
+    link(bench).heartbeat()
+    return bench
+
+
+def others(bench: Bench, command: Command, sender: str = "/teleop") -> list[object]:
+    return list(bench.step(FromPlant(at=bench.now, message=command, sender=sender)))
+
+
+def copied(bench: Bench, command: Command) -> list[object]:
+    return list(bench.step(FromPlant(at=bench.now, message=command, copied=True)))
+
+
+def copy(bench: Bench, command: Command) -> list[object]:
+    return list(bench.step(FromPlant(at=bench.now, message=without_id(command))))
+
+
+def news(messages: list[object]) -> list[str]:
+    return [each.sentence for each in messages if isinstance(each, Rejection | ForeignCommand)]
+
+
+@pytest.mark.parametrize("command", [MOVE, GRIP, HOME, CLEAR], ids=lambda each: type(each).__name__)
+def test_a_plants_robot_takes_no_command_of_another_node(beaten, sent, command: Command) -> None:
+    out = others(beaten, command)
+    assert sent(out) == []
+    (rejection,) = [each for each in out if isinstance(each, Rejection)]
+    assert (rejection.robot, rejection.id, rejection.reason) == ("ra1", "", "foreign")
+    assert "/teleop was refused (foreign): a plant commands this robot" in rejection.sentence
+
+
+def test_the_plant_hears_of_it_who_and_how_often(beaten, reports) -> None:
+    (report,) = reports(others(beaten, MOVE))
+    assert (report.foreign_refused, report.foreign_obeyed, report.state) == (1, None, None)
+    others(beaten, GRIP, "/panel")
+    (telemetry,) = reports(beaten.tell())
+    assert telemetry.foreign_refused == 2
+    assert telemetry.foreign.startswith("ra1: effector_cmd 1 of /panel was refused")
+
+
+def test_a_burst_of_them_makes_no_burst_of_reports(beaten, reports) -> None:
+    out = [each for _ in range(100) for each in others(beaten, MOVE)]
+    assert len(reports(out)) == 1
+    assert len(news(out)) == 100
+
+
+@pytest.mark.parametrize("command", [HALT, LATCH], ids=lambda each: each.mode.name)
+def test_stops_are_obeyed_whoever_gives_them(beaten, sent, reports, command: Stop) -> None:
+    out = others(beaten, command)
+    assert sent(out) == [("ra_1/paro", StopGoal(mode=command.mode, seq=1, epoch=EPOCH))]
+    assert news(out) == [f"ra1: stop_cmd {command.mode.value} of /teleop was obeyed"]
+    assert reports(out)[0].foreign_obeyed == 1
+
+
+def test_a_bridge_without_a_plant_obeys_and_finds_nothing_foreign(linked, sent, reports) -> None:
+    out = others(linked, GRIP)
+    assert [address for address, _ in sent(out)] == ["ra_1/efector"]
+    assert news(out) == []
+    assert reports(linked.tell())[0].foreign is None
+
+
+def test_a_plant_that_is_gone_commands_nothing_any_more(beaten, sent) -> None:
+    beaten.wait(PLANT_GONE_S - 0.2)
+    beaten.tell()
+    assert sent(others(beaten, GRIP)) == []
+    beaten.wait(0.2)
+    assert [address for address, _ in sent(others(beaten, GRIP))] == ["ra_1/efector"]
+
+
+def test_the_plant_file_may_let_others_command(sent, reports) -> None:
+    bench = obeying()
+    out = others(bench, GRIP)
+    assert [address for address, _ in sent(out)] == ["ra_1/efector"]
+    assert news(out) == ["ra1: effector_cmd 1 of /teleop was obeyed"]
+    assert reports(out)[0].foreign_obeyed == 1
+
+
+def test_what_is_let_and_cannot_be_done_is_no_command_that_was_obeyed(reports) -> None:
+    bench = obeying()
+    out = others(bench, replace(MOVE, q=(9.0, 0.0, 0.0)))
+    assert news(out) == [
+        "ra1: joint_goals_q of /teleop was refused (limite): number 1 is 9; allowed: -2.618 to 2.618 rad"
+    ]
+    assert reports(out) == []
+
+
+def test_a_copy_of_what_the_plant_said_is_nothing_of_its_own(beaten, sent) -> None:
+    assert sent(copied(beaten, replace(GRIP, id="7-1")))
+    assert copy(beaten, GRIP) == []
+
+
+@pytest.mark.parametrize("command", [HALT, LATCH, GRIP, HOME], ids=lambda each: type(each).__name__)
+def test_each_command_has_one_copy(beaten, command: Command) -> None:
+    copied(beaten, replace(command, id="7-1"))
+    copy(beaten, command)
+    beaten.wait(UNSURE_S / 2)
+    assert news(others(beaten, command)) == []
+    assert len(news(list(beaten.wait(UNSURE_S)))) == 1
+
+
+def test_a_late_copy_of_a_halt_does_not_end_the_next_move(beaten, sent) -> None:
+    copied(beaten, replace(HALT, id="7-1"))
+    beaten.wait(0.5)
+    assert sent(beaten.order(replace(MOVE, id="7-2")))
+    assert copy(beaten, HALT) == []
+
+
+def test_a_copy_that_overtakes_is_told_of_by_nobody(beaten) -> None:
+    copied(beaten, replace(CLEAR, id="7-1"))
+    copy(beaten, CLEAR)
+    assert news(copy(beaten, GRIP)) == []
+    copied(beaten, replace(GRIP, id="7-2"))
+    assert news(list(beaten.wait(1.0))) == []
+    assert copy(beaten, GRIP) != [] or news(list(beaten.wait(1.0))) != []
+
+
+def test_a_stop_is_obeyed_at_once_though_it_may_be_a_copy(beaten, sent) -> None:
+    copied(beaten, replace(GRIP, id="7-1"))
+    copy(beaten, GRIP)
+    assert [address for address, _ in sent(others(beaten, HALT))] == ["ra_1/paro"]
+    assert news(list(beaten.wait(UNSURE_S))) == ["ra1: stop_cmd 2 of /teleop was obeyed"]
+
+
+def test_a_refusal_by_the_board_names_the_command(linked) -> None:
+    linked.order(FollowPath(id="", robot="rm_sis_a", nodes=(5, 6)))
+    out = linked.tell("rm_sis_a", ack_epoch=EPOCH, ack=0, refusal="limite", refused_seq=1)
+    (rejection,) = [each for each in out if isinstance(each, Rejection)]
+    assert (rejection.command, rejection.id, rejection.reason) == ("path_cmd", "", "limite")
+    assert "begins at the robot's node or next to it" in rejection.sentence
+    again = linked.tell("rm_sis_a")
+    assert news(list(again)) == []
+    assert linked.bridge.counters["rm_sis_a"].refused == 1
+
+
+def test_a_refused_command_of_the_plant_is_told_with_its_id(linked) -> None:
+    out = linked.order(replace(MOVE, id="7-1", q=(9.0, 0.0, 0.0)))
+    (rejection,) = [each for each in out if isinstance(each, Rejection)]
+    assert (rejection.id, rejection.reason) == ("7-1", "limite")
+
+
+def test_a_board_that_took_another_clients_command_betrays_it(linked, reports) -> None:
+    linked.order(replace(MOVE, id="7-1"))
+    linked.tell(ack_epoch=EPOCH, ack=1, state=MotionState.MOVING)
+    out = linked.tell(ack_epoch=EPOCH + 50, ack=3, state=MotionState.MOVING)
+    sentence = f"ra1: its board took a command of another MQTT client (epoca {EPOCH + 50}, seq 3)"
+    assert news(list(out)) == [sentence]
+    (report,) = reports(out)
+    assert (report.foreign_obeyed, report.foreign) == (1, sentence)
+    assert news(list(linked.tell())) == []
+
+
+def test_numbers_of_an_earlier_bridge_are_nobody_elses(bench) -> None:
+    bench.connect()
+    assert news(list(bench.tell(ack_epoch=EPOCH + 5, ack=9))) == []
+    bench.order(replace(GRIP, id="7-1"))
+    assert news(list(bench.tell())) == []
