@@ -80,7 +80,6 @@ def test_the_plants_password_is_new_at_each_start_and_not_shown():
     first, second = (EmbeddedBroker(users=USERS).credentials for _ in range(2))
     assert first.password != second.password
     assert first.password not in repr(first)
-    assert EmbeddedBroker().credentials is None
 
 
 @pytest.mark.parametrize(
@@ -222,7 +221,7 @@ def test_garbage_is_one_clients_end_only(broker, peer, capfd):
 
 
 def test_many_boards_connect_at_once_and_lose_nothing(guarded, plant, peer):
-    """amqtt's own topic plugins lose messages while somebody subscribes."""
+    """Brokers have lost messages while somebody subscribed."""
     boards = [
         peer(f"ra_1 {n}", plant.address, credentials=login("ra_1"), subscriptions=[f"ra_1/{n}"])
         for n in range(12)

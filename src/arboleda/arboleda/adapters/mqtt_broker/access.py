@@ -1,0 +1,74 @@
+"""Who may come in, and what they may write and read."""
+
+from __future__ import annotations
+
+import hmac
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from arboleda.wire.topics import Channel, topic
+
+from .limits import Allowance
+
+BOARDS_WRITE = (Channel.TELEMETRY, Channel.PRESENCE)
+
+
+class Role(Enum):
+    """What a client is to the plant."""
+
+    PLANT = "plant"
+    BOARD = "board"
+    READER = "reader"
+    GUEST = "guest"  # on this machine, where nobody needs a password
+
+
+ALLOWED = {
+    # A board's telemetry comes ten times a second.
+    Role.BOARD: Allowance(rate=200.0, connections=16, filters=64, wildcards=4),
+    Role.READER: Allowance(rate=200.0, connections=16, filters=64, wildcards=16),
+    # The bridge of a plant of 300 cells in a process of its own is a guest.
+    Role.GUEST: Allowance(rate=2000.0, connections=1024, filters=2048, wildcards=16),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Who:
+    """A client that is logged in. A client id belongs to its user: another's is another id."""
+
+    role: Role
+    user: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Access:
+    """The plant itself does everything; a board writes its own telemetry and presence and reads its own
+    topics; any other user reads everything and writes nothing. With `guests` nobody needs a password, and
+    all do everything."""
+
+    plant: tuple[str, str]  # user and password
+    passwords: Mapping[str, str]
+    boards: frozenset[str]
+    guests: bool
+
+    def login(self, user: str | None, password: bytes | None) -> Who | None:
+        """Who that is; None for a stranger."""
+        given = password or b""
+        if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), given):
+            return Who(role=Role.PLANT, user=user)
+        if self.guests:
+            return Who(role=Role.GUEST)
+        expected = self.passwords.get(user) if user is not None else None
+        if user is None or expected is None or not hmac.compare_digest(expected.encode(), given):
+            return None
+        return Who(role=Role.BOARD if user in self.boards else Role.READER, user=user)
+
+    def may_write(self, who: Who, name: str) -> bool:
+        """Whether `who` may publish to the topic `name`, be it as a last will."""
+        if who.role is Role.BOARD:
+            return name in {topic(who.user, channel) for channel in BOARDS_WRITE}
+        return who.role is not Role.READER
+
+    def may_read(self, who: Who, pattern: str) -> bool:
+        """Whether `who` may subscribe to the filter `pattern`."""
+        return who.role is not Role.BOARD or pattern.split("/")[0] == who.user

@@ -1,0 +1,307 @@
+"""One connection to the broker, from its first byte to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+from collections.abc import Callable
+
+from . import limits, packets
+from .access import ALLOWED, Who
+from .limits import Allowance, Bucket
+from .packets import Answer, Kind, Message, Packet, ProtocolError
+from .router import Router
+from .sessions import Sessions
+from .topics import is_filter, is_wild
+
+LOG = logging.getLogger(__name__)
+LAST_ID = 65535
+FLUSH_BYTES = 32 * 1024  # of its own answers, so that one who does not read them is not heard for a while
+SEND_BUFFER_BYTES = 128 * 1024  # in the kernel, where a connection could otherwise have megabytes
+
+
+class Client(asyncio.BufferedProtocol):
+    """A client of one broker. All that happens to it happens in the event loop's thread.
+
+    What it is sent is gathered, and leaves when `flush` is called. It is cut off (`cut`) for what MQTT or the
+    limits do not allow; its last will goes out then, before anything else is done.
+    """
+
+    def __init__(self, sessions: Sessions, router: Router) -> None:
+        self.who: Who | None = None  # until it has logged in
+        self.idle = True  # it has neither published nor subscribed
+        self._sessions = sessions
+        self._router = router
+        self._client_id = ""
+        self._filters: set[str] = set()
+        self._loop = asyncio.get_running_loop()
+        self._stream = packets.Stream()
+        self._read = bytearray(limits.PACKET_BYTES)
+        self._out: list[bytes] = []
+        self._out_bytes = 0
+        self._will: Message | None = None
+        self._last_id = 0
+        self._unacknowledged: set[int] = set()
+        self._half_received: set[int] = set()  # ids of QoS 2 between PUBLISH and PUBREL
+        self._silence_s = limits.HELLO_S
+        self._heard_at = self._loop.time()
+        self._clock: asyncio.TimerHandle | None = None
+        self._rest: asyncio.TimerHandle | None = None
+        self._rest_s = 0.0
+        self._reads_slowly = False
+        self._over = False
+        self._allowed: Allowance | None = None  # None: as much as it wants
+        self._bucket: Bucket | None = None
+
+    # --- called by asyncio ---
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+        sock = transport.get_extra_info("socket")
+        # asyncio sets it only on sockets that it made itself
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+        self._watch_silence()
+        self._sessions.came(self)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._end()
+
+    def get_buffer(self, sizehint: int) -> bytearray:
+        return self._read
+
+    def buffer_updated(self, nbytes: int) -> None:
+        self._heard_at = self._loop.time()
+        self._stream.feed(memoryview(self._read)[:nbytes])
+        self._work()
+
+    def pause_writing(self) -> None:
+        self._reads_slowly = True
+
+    def resume_writing(self) -> None:
+        self._reads_slowly = False
+        self._work()
+
+    # --- called by sessions and router ---
+
+    def send(self, message: Message) -> None:
+        """Have it sent; a client that leaves too much unread is cut off."""
+        number = self._next_id() if message.qos else 0
+        self._write(packets.publish(message, number))
+
+    def flush(self) -> None:
+        """Hand over to the system what was gathered."""
+        out, self._out, self._out_bytes = b"".join(self._out), [], 0
+        if out and not self._over:
+            self._transport.write(out)
+
+    def cut(self, why: str) -> None:
+        """End the connection at once; idempotent."""
+        if not self._over:
+            LOG.debug("client %.80a is cut off: %s", self._client_id, why)
+            self._end()
+            self._transport.abort()
+
+    # --- its packets ---
+
+    def _work(self) -> None:
+        """Handle what is there, for no longer than a turn."""
+        until = self._loop.time() + limits.TURN_S
+        try:
+            while not (self._over or self._rest or self._reads_slowly):
+                packet = self._stream.next()
+                if packet is None:
+                    break
+                self._handle(packet)
+                if self._out_bytes > FLUSH_BYTES:
+                    self.flush()
+                if self._rest_s or self._loop.time() > until:
+                    self._rest = self._loop.call_later(self._rest_s, self._go_on)
+                    self._rest_s = 0.0
+        except ProtocolError as error:
+            self.cut(str(error))
+        if not self._over:
+            if self._rest or self._reads_slowly:
+                self._transport.pause_reading()
+            else:
+                self._transport.resume_reading()
+        self.flush()
+        self._router.flush()
+
+    def _go_on(self) -> None:
+        self._rest = None
+        self._work()
+
+    def _handle(self, packet: Packet) -> None:
+        if (packet.kind is Kind.CONNECT) is not (self.who is None):
+            raise ProtocolError(f"{packet.kind.name} at the wrong time")
+        handle = HANDLERS.get(packet.kind)
+        if handle is None:
+            raise ProtocolError(f"{packet.kind.name} is for brokers to send")
+        handle(self, packet)
+
+    def _connect(self, packet: Packet) -> None:
+        try:
+            said = packets.read_connect(packet.body)
+            if len(said.client_id.encode()) > limits.CLIENT_ID_BYTES or not (said.client_id or said.clean):
+                raise packets.Refused(Answer.CLIENT_ID)
+            who = self._sessions.log_in(self, said)
+        except packets.Refused as refused:
+            self._refuse(refused.answer)
+            return
+        self.who, self._client_id, self._will = who, said.client_id, said.will
+        self._allowed = ALLOWED.get(who.role)
+        self._bucket = self._sessions.bucket(who)
+        self._silence_s = 1.5 * said.keep_alive_s
+        self._write(packets.connack(Answer.ACCEPTED))
+        self._watch_silence()
+
+    def _refuse(self, answer: Answer) -> None:
+        """Say no, after a moment; until then it waits with those that have not logged in."""
+        self._silence_s = limits.REFUSED_S
+        self._watch_silence(lambda: self._say_no(answer))
+        self._rest_s = limits.HELLO_S  # nothing more of it counts
+
+    def _say_no(self, answer: Answer) -> None:
+        self._transport.write(packets.connack(answer))
+        self._transport.close()
+
+    def _publish(self, packet: Packet) -> None:
+        message, number = packets.read_publish(packet)
+        self.idle = False
+        self._use(1.0)
+        again = message.qos == 2 and number in self._half_received
+        if message.qos == 2:
+            self._half_received.add(number)
+            if len(self._half_received) > limits.UNACKNOWLEDGED:
+                raise ProtocolError("too many messages of QoS 2 without PUBREL")
+        if not again:
+            self._router.publish(self._known, message)
+        if message.qos:
+            answer = Kind.PUBACK if message.qos == 1 else Kind.PUBREC
+            self._write(packets.acknowledge(answer, number))
+
+    def _publish_released(self, packet: Packet) -> None:
+        number = packets.read_id(packet.body)
+        self._half_received.discard(number)
+        self._write(packets.acknowledge(Kind.PUBCOMP, number))
+
+    def _acknowledged(self, packet: Packet) -> None:
+        self._unacknowledged.discard(packets.read_id(packet.body))
+
+    def _subscribe(self, packet: Packet) -> None:
+        number, wanted = packets.read_subscribe(packet.body)
+        self.idle = False
+        granted = []
+        for pattern, qos in wanted:
+            granted.append(min(qos, 1) if self._may_subscribe(pattern) else packets.FAILED)
+            if granted[-1] != packets.FAILED:
+                self._router.subscribe(self, pattern, granted[-1])
+                self._filters.add(pattern)
+            self._use(limits.WILDCARD_COST if is_wild(pattern) else 1.0)
+        self._write(packets.suback(number, granted))
+        for (pattern, _), qos in zip(wanted, granted, strict=True):
+            if qos != packets.FAILED and not self._over:
+                self._router.send_retained(self, pattern, qos)
+
+    def _may_subscribe(self, pattern: str) -> bool:
+        if not is_filter(pattern):
+            raise ProtocolError("a filter that is none, or too long")
+        if not self._sessions.access.may_read(self._known, pattern):
+            return False
+        if self._allowed is None or pattern in self._filters:
+            return True
+        if is_wild(pattern) and sum(map(is_wild, self._filters)) >= self._allowed.wildcards:
+            return False
+        return len(self._filters) < self._allowed.filters and self._router.has_room(pattern)
+
+    def _unsubscribe(self, packet: Packet) -> None:
+        number, filters = packets.read_unsubscribe(packet.body)
+        mine = self._filters.intersection(filters)
+        self._router.unsubscribe(self, mine)
+        self._filters -= mine
+        self._write(packets.acknowledge(Kind.UNSUBACK, number))
+
+    def _ping(self, packet: Packet) -> None:
+        self._use(1.0)
+        self._write(packets.pingresp())
+
+    def _disconnect(self, packet: Packet) -> None:
+        self._will = None
+        self.flush()
+        self._end()
+        if self._transport.get_write_buffer_size():  # closing would wait until it is read
+            self._transport.abort()
+        else:
+            self._transport.close()
+
+    # --- its limits ---
+
+    @property
+    def _known(self) -> Who:
+        assert self.who is not None
+        return self.who
+
+    def _use(self, count: float) -> None:
+        if self._bucket is not None:
+            self._rest_s = self._bucket.take(count, self._loop.time())
+
+    def _write(self, data: bytes) -> None:
+        self._out.append(data)
+        self._out_bytes += len(data)
+        if self._out_bytes + self._transport.get_write_buffer_size() > limits.UNSENT_BYTES:
+            self.cut(f"it leaves {limits.UNSENT_BYTES} bytes unread")
+
+    def _next_id(self) -> int:
+        if len(self._unacknowledged) >= limits.UNACKNOWLEDGED:
+            self.cut(f"it leaves {limits.UNACKNOWLEDGED} messages unacknowledged")
+        while True:
+            self._last_id = self._last_id % LAST_ID + 1
+            if self._last_id not in self._unacknowledged:
+                break
+        self._unacknowledged.add(self._last_id)
+        return self._last_id
+
+    def _watch_silence(self, then: Callable[[], None] | None = None) -> None:
+        """Do `then`, else cut it off, once it was silent for its time."""
+        if self._clock is not None:
+            self._clock.cancel()
+            self._clock = None
+        left = self._heard_at + self._silence_s - self._loop.time()
+        if self._silence_s == 0.0 or self._over:
+            return
+        if left > 0:
+            self._clock = self._loop.call_later(left, self._watch_silence, then)
+        elif then is not None:
+            then()
+        else:
+            self.cut("it was silent for too long")
+
+    def _end(self) -> None:
+        if self._over:
+            return
+        self._over = True
+        for timer in (self._clock, self._rest):
+            if timer is not None:
+                timer.cancel()
+        will, self._will = self._will, None
+        self._sessions.went(self)
+        self._router.forget(self, self._filters)
+        if will is not None and self.who is not None:
+            self._router.publish_will(self.who, will)
+        self._router.flush()
+
+
+HANDLERS: dict[Kind, Callable[[Client, Packet], None]] = {
+    Kind.CONNECT: Client._connect,
+    Kind.PUBLISH: Client._publish,
+    Kind.PUBREL: Client._publish_released,
+    Kind.PUBACK: Client._acknowledged,
+    Kind.SUBSCRIBE: Client._subscribe,
+    Kind.UNSUBSCRIBE: Client._unsubscribe,
+    Kind.PINGREQ: Client._ping,
+    Kind.DISCONNECT: Client._disconnect,
+}

@@ -1,0 +1,80 @@
+"""From who publishes to who has subscribed."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Protocol
+
+from arboleda.wire.topics import Channel, topic
+
+from .access import Access, Who
+from .packets import Message
+from .topics import Retained, Subscriptions
+
+LOG = logging.getLogger(__name__)
+
+
+class Receiver(Protocol):
+    """What this file knows of a client."""
+
+    def send(self, message: Message) -> None: ...
+    def flush(self) -> None: ...
+
+
+class Router:
+    """The subscriptions and retained messages of one broker. What receivers are sent leaves at `flush`."""
+
+    def __init__(self, access: Access) -> None:
+        self._access = access
+        self._subscriptions: Subscriptions[Receiver] = Subscriptions()
+        self._retained = Retained(frozenset(topic(board, Channel.PRESENCE) for board in access.boards))
+        self._unsent: dict[Receiver, None] = {}
+        self._wills: deque[tuple[Who, Message]] = deque()
+
+    def publish(self, who: Who, message: Message) -> None:
+        """Send it to whoever subscribed; dropped where `who` may not write there."""
+        if not self._access.may_write(who, message.topic):
+            LOG.debug("%r may not write to %.80a", who.user, message.topic)
+            return
+        if message.retain and not self._retained.keep(message):
+            LOG.debug("no room to retain %.80a", message.topic)
+        live = replace(message, retain=False)
+        for receiver, qos in self._subscriptions.of(message.topic).items():
+            receiver.send(live if qos == message.qos else replace(live, qos=min(qos, message.qos)))
+            self._unsent[receiver] = None
+
+    def subscribe(self, receiver: Receiver, pattern: str, qos: int) -> None:
+        self._subscriptions.add(receiver, pattern, qos)
+
+    def has_room(self, pattern: str) -> bool:
+        """Whether all users together may have one more subscription like this."""
+        return self._subscriptions.room(pattern)
+
+    def send_retained(self, receiver: Receiver, pattern: str, qos: int) -> None:
+        """What a new subscription is sent."""
+        for message in self._retained.of(pattern):
+            receiver.send(replace(message, qos=min(qos, message.qos)))
+
+    def unsubscribe(self, receiver: Receiver, patterns: Iterable[str]) -> None:
+        self._subscriptions.remove(receiver, patterns)
+
+    def forget(self, receiver: Receiver, patterns: Iterable[str]) -> None:
+        """It is gone, and what it was to be sent with it."""
+        self._subscriptions.remove(receiver, patterns)
+        self._unsent.pop(receiver, None)
+
+    def publish_will(self, who: Who, will: Message) -> None:
+        """The last will of one that is gone."""
+        self._wills.append((who, will))
+        if len(self._wills) == 1:  # else this was called from the loop below: a will can end another client
+            while self._wills:
+                self.publish(*self._wills[0])
+                self._wills.popleft()
+
+    def flush(self) -> None:
+        """Let what was sent leave."""
+        while self._unsent:
+            self._unsent.popitem()[0].flush()

@@ -1,0 +1,104 @@
+"""Who is connected to the broker, and who has to go where there are too many."""
+
+from __future__ import annotations
+
+from asyncio import get_running_loop
+from itertools import count
+from typing import Protocol
+
+from . import limits
+from .access import ALLOWED, Access, Role, Who
+from .limits import Bucket
+from .packets import Answer, Connect, Refused
+
+Key = tuple[str, str]  # user and client id
+
+
+class Connection(Protocol):
+    """What this file knows of a client."""
+
+    @property
+    def who(self) -> Who | None: ...
+    @property
+    def idle(self) -> bool: ...
+    def cut(self, why: str) -> None: ...
+
+
+class Sessions:
+    """The connections of one broker, the oldest first, `most` of them. `cut` of one must call `went`."""
+
+    def __init__(self, access: Access, most: int) -> None:
+        self.access = access
+        strangers = most - len(access.boards) - 1  # beside the plant's own
+        self._may_wait = max(2, min(limits.WAITING, strangers // 2))
+        self._may_enter = most - self._may_wait
+        self._waiting: dict[Connection, None] = {}  # not logged in yet
+        self._clients: dict[Key, Connection] = {}
+        self._keys: dict[Connection, Key] = {}
+        self._buckets: dict[str, Bucket] = {}
+        self._nameless = count()
+        self._ending = False
+
+    def came(self, client: Connection) -> None:
+        """A new connection; where too many wait to log in, the one that has waited longest goes."""
+        self._waiting[client] = None
+        if self._ending:
+            client.cut("the broker ends")
+        elif len(self._waiting) > self._may_wait:
+            next(iter(self._waiting)).cut("others want to log in")
+
+    def log_in(self, client: Connection, said: Connect) -> Who:
+        """Let it in, in the place of an earlier connection of its user with its client id; Refused."""
+        who = self.access.login(said.user, said.password)
+        if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
+            raise Refused(Answer.NOT_AUTHORIZED)
+        # No client can send an id like the one that stands for none.
+        key = who.user, said.client_id or f"\0{next(self._nameless)}"
+        if key in self._clients:
+            self._clients[key].cut("a later connection has its client id")
+        self._make_room(who)
+        del self._waiting[client]
+        self._clients[key] = client
+        self._keys[client] = key
+        return who
+
+    def went(self, client: Connection) -> None:
+        """It is gone; idempotent."""
+        self._waiting.pop(client, None)
+        if client in self._keys:
+            del self._clients[self._keys.pop(client)]
+
+    def end(self) -> None:
+        """Cut everybody off, now and from now on."""
+        self._ending = True
+        for client in (*self._waiting, *self._clients.values()):
+            client.cut("the broker ends")
+
+    def bucket(self, who: Who) -> Bucket | None:
+        """What counts the messages of this user; each guest has one of its own, the plant itself none."""
+        allowed = ALLOWED.get(who.role)
+        if allowed is None:
+            return None
+        fresh = Bucket(allowed.rate, get_running_loop().time())
+        return fresh if who.role is Role.GUEST else self._buckets.setdefault(who.user, fresh)
+
+    def _make_room(self, who: Who) -> None:
+        """Refused where this user, or all together, have as many connections as they may and none is idle.
+        For the plant itself somebody else goes, idle or not."""
+        allowed = ALLOWED.get(who.role)
+        others = [client for client in self._clients.values() if client.who and client.who.role in ALLOWED]
+        mine = [client for client in others if client.who and client.who.user == who.user]
+        if allowed is not None and len(mine) >= allowed.connections:
+            _cut_oldest(mine, or_any=False)
+        elif len(self._clients) >= self._may_enter:
+            _cut_oldest(others, or_any=allowed is None)
+
+
+def _cut_oldest(clients: list[Connection], *, or_any: bool) -> None:
+    """Cut off the oldest idle one, else the oldest where `or_any`; Refused where nobody goes."""
+    idle = [client for client in clients if client.idle]
+    leaving = idle or (clients if or_any else [])
+    if leaving:
+        leaving[0].cut("it did nothing, and others want in" if idle else "the plant itself wants in")
+    elif not or_any:
+        raise Refused(Answer.BUSY)
