@@ -80,8 +80,27 @@ def test_answers_are_not_held_back_by_the_sockets(broker, peer):
 
 def test_an_oversized_payload_is_for_the_codec_to_refuse(broker, peer):
     board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
-    board.client.publish(message(b"x" * 5000))
-    assert len(board.inbox.wait(lambda inbox: inbox.payloads)[0]) == 5000
+    board.client.publish(message(b"x" * 4000))
+    assert len(board.inbox.wait(lambda inbox: inbox.payloads)[0]) == 4000
+
+
+def test_over_mqtt_5_a_huge_message_does_not_even_come(mosquitto, peer):
+    broker = mosquitto()
+    broker.start()
+    board = peer("ra_1", broker.address, subscriptions=[GOALS], version=5).up()
+    other = peer("other", broker.address).up()
+    for payload in (b"x" * 100_000, b"small"):
+        other.client.publish(message(payload))
+    assert board.inbox.wait(lambda inbox: inbox.payloads) == [b"small"]
+    assert board.inbox.links == [True]
+
+
+def test_a_plant_of_many_robots_subscribes_in_packets_that_every_broker_takes(broker, peer):
+    robots = [f"{'r' * 60}{n:03}" for n in range(600)]
+    bridge = peer("bridge", broker.address, subscriptions=[f"{robot}/sensores" for robot in robots]).up()
+    for robot in (robots[0], robots[-1]):
+        bridge.client.publish(message(robot.encode(), f"{robot}/sensores"))
+    assert bridge.inbox.wait(lambda inbox: len(inbox.payloads) == 2)
 
 
 def test_what_is_published_without_a_broker_is_refused_and_never_sent(stopped_broker, peer):

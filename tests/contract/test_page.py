@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 
 pytestmark = pytest.mark.requires("chromium", "playwright")
@@ -52,6 +53,13 @@ def tab(browser: Any, hostile: list[str]) -> Iterator[Any]:
 
 def test_a_second_page_in_one_process_is_refused(hostile: list[str]) -> None:
     assert "This process shows the page of another plant already" in hostile[0]
+
+
+def test_an_address_without_a_page_and_another_method_are_one_sentence(hostile: list[str]) -> None:
+    with httpx.Client(base_url=hostile[-1], trust_env=False, headers={"origin": hostile[-1]}) as client:
+        absent, other = client.get("/nothing"), client.post("/")
+    assert (absent.status_code, absent.json()) == (404, {"sentence": "Not Found"})
+    assert (other.status_code, other.headers["allow"]) == (405, "GET")
 
 
 def test_nothing_that_anybody_wrote_is_rendered_as_html(tab: Any) -> None:

@@ -195,8 +195,8 @@ def test_a_reader_neither_waits_nor_makes_wait(store, path):
 
 def test_a_file_that_another_program_writes_is_said_to_be(path, monkeypatch):
     monkeypatch.setattr("arboleda.adapters.store.BUSY_S", 0)
-    writer = sqlite3.connect(path, isolation_level=None)
     with Store(path) as store:
+        writer = sqlite3.connect(path, isolation_level=None)
         writer.execute("BEGIN IMMEDIATE")
         with pytest.raises(ArboledaError, match=r"\(database is locked\): close the other program"):
             store.keep(LATCH)
@@ -242,6 +242,60 @@ def test_a_damaged_file_is_found_at_the_start(path):
         file.seek(4096 * 4)
         file.write(b"\xaa" * 4096 * 4)
     assert "malformed): move it away, together with its -wal and -shm files" in refusal(path)
+
+
+@pytest.mark.parametrize("left", [0, 1, 100, 4096, 5000])
+def test_a_memory_that_was_cut_off_is_not_taken_for_a_new_one(path, left):
+    with Store(path) as store:
+        store.keep(LATCH)
+    os.truncate(path, left)
+    assert "lost with it are stop latches" in refusal(path)
+    assert path.stat().st_size == left
+
+
+def test_a_memory_without_its_file_but_with_its_log_is_refused(path):
+    with Store(path) as store:
+        store.keep(LATCH)
+        path.unlink()
+        assert f"is gone, but {path}-wal is there: put it back" in refusal(path)
+
+
+def test_a_start_that_was_killed_while_it_made_the_memory_is_no_obstacle(path):
+    (path.parent / f".{path.name}.new").write_bytes(b"half a file")
+    with Store(path) as store:
+        store.keep(LATCH)
+    assert os.listdir(path.parent) == [path.name]
+
+
+@pytest.mark.parametrize("stuff", ["directory", "pipe"])
+def test_something_else_of_that_name_is_refused(path, stuff):
+    path.mkdir() if stuff == "directory" else os.mkfifo(path)
+    refusal(path)
+
+
+def changed(path: Path, statement: str, *values: object) -> Store:
+    with Store(path) as store:
+        store.keep(LATCH)
+        store.journal(ACT, 5.0)
+    db = sqlite3.connect(path)
+    db.execute(statement, values)
+    db.commit()
+    db.close()
+    return Store(path)
+
+
+@pytest.mark.parametrize("value", ["CAST(x'ff' AS TEXT)", "x'6f6e'"])
+def test_a_fact_that_is_no_text_is_one_sentence(path, value):
+    why = r"\((not UTF-8 text|a row is not as it was written)\): move it away"
+    with changed(path, f"UPDATE fact SET value = {value}") as store, pytest.raises(ArboledaError, match=why):
+        store.facts(Fact.LATCH)
+
+
+@pytest.mark.parametrize("change", ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'"])
+def test_an_entry_that_is_no_entry_is_one_sentence(path, change):
+    gone = "move it away"
+    with changed(path, f"UPDATE journal SET {change}") as store, pytest.raises(ArboledaError, match=gone):
+        store.entries()
 
 
 def test_a_directory_that_is_missing_is_named(tmp_path):

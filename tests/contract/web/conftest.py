@@ -11,6 +11,7 @@ import httpx
 import pytest
 from fastapi import FastAPI, WebSocket, WebSocketDisconnect
 
+from arboleda.adapters.web import limits
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
@@ -131,14 +132,17 @@ def running(
     tokens: dict[Role, str] | None = None,
     public_url: str | None = None,
     mount: Callable[[FastAPI], None] = echo,
+    sockets: int = limits.SOCKETS,
+    streams: int = limits.STREAMS,
     **options: Any,
 ) -> Iterator[Web]:
     """As on one's own machine; with tokens as on a network. Both listen to 127.0.0.1. `mount` adds pages."""
     door = Door((lambda: tokens) if tokens else None)
-    app = make_app(plant)
+    app = make_app(plant, streams=streams)
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
-    server = Server(Guard(app, names_for(bound, public_url), door), **{"port": 0, **options})
+    guarded = Guard(app, names_for(bound, public_url), door, sockets=sockets)
+    server = Server(guarded, **{"port": 0, **options})
     web = Web(server, door)
     try:
         yield web

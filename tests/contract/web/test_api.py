@@ -36,6 +36,7 @@ def test_a_refusal_says_why(web, plant, said, status):
     answer = web.post("/api/tasks", json={"text": "sis_x"})
     assert answer.status_code == status
     assert answer.json()["sentence"] == (said["sentence"] if isinstance(said, dict) else str(said))
+    assert ("retry-after" in answer.headers) == isinstance(said, QueueFull)
 
 
 def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
@@ -129,12 +130,40 @@ def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
 
 @pytest.mark.parametrize(
     ("method", "path", "status"),
-    [("GET", "/", 404), ("GET", "/docs", 404), ("PUT", "/api/plant", 405), ("GET", "/api/plant/stop", 405)],
+    [("GET", "/", 404), ("GET", "/docs", 404), ("GET", "/api/nothing", 404), ("PUT", "/api/nothing", 404)],
 )
 def test_there_is_nothing_else(web, method, path, status):
     answer = web.request(method, path)
     assert answer.status_code == status
     assert answer.json()["sentence"]
+
+
+def page_for_everything(app):
+    @app.api_route("/{path:path}", methods=["GET", "POST", "PUT", "DELETE"])
+    async def page(path: str) -> str:
+        return "a page"
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "allowed"),
+    [
+        ("PUT", "/api/plant", "GET"),
+        ("HEAD", "/api/plant", "GET"),
+        ("POST", "/api/events", "GET"),
+        ("GET", "/api/tasks", "POST"),
+        ("DELETE", "/api/tasks/t-1", "GET"),
+        ("GET", "/api/plant/stop", "POST"),
+        ("OPTIONS", "/api/cells/sis_a/stop", "POST"),
+        ("PUT", "/login", "GET, POST"),
+        ("GET", "/logout", "POST"),
+    ],
+)
+@pytest.mark.parametrize("mount", [lambda app: None, page_for_everything], ids=["alone", "beside a page"])
+def test_another_method_is_405_and_says_which_there_are(serve, plant, mount, method, path, allowed):
+    web = serve(mount=mount)
+    answer = web.client(origin=web.origin).request(method, path)
+    assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
+    assert (plant.acts, plant.texts) == ([], [])
 
 
 def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd):

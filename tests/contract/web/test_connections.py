@@ -53,20 +53,14 @@ def test_a_second_request_that_does_not_come_is_not_waited_for_either(local, mon
             pass
 
 
-def test_idle_connections_make_room_for_one_that_asks(local, monkeypatch):
-    monkeypatch.setattr(connections, "PER_PEER", 8)
+def test_idle_connections_of_one_client_make_room_for_one_that_asks(serve):
+    local = serve(connections=13)  # five eighths of them are for one client
     with idle(local, 20) as talks:
         assert local.client().post("/api/plant/stop").status_code == 200
         assert all(ended(talk) for talk in talks[:12])
         talks[-1].settimeout(0.05)
         with pytest.raises(TimeoutError):
             talks[-1].recv(1)
-
-
-def test_connections_of_many_clients_are_limited_too(local, monkeypatch):
-    monkeypatch.setattr(connections, "CONNECTIONS", 8)
-    with idle(local, 20):
-        assert local.client().get("/api/plant").json() == VIEW
 
 
 def test_a_taken_port_is_refused_in_one_sentence_where_it_was_named(local, serve):

@@ -380,6 +380,13 @@ def test_too_many_requests_are_told_so_and_a_stop_never_is(web):
     assert {stop.status_code for stop in stops} == {200}
 
 
+def test_pages_have_a_rate_of_their_own_that_leaves_the_api_alone(web):
+    answers = [web.get("/").status_code for _ in range(limits.OPEN[1] + 20)]
+    assert answers[: limits.OPEN[1]] == [404] * limits.OPEN[1]  # there is no page here
+    assert 429 in answers
+    assert (web.get("/api/plant").status_code, web.get("/some/file").status_code) == (200, 404)
+
+
 def test_one_client_does_not_use_up_the_requests_of_another(open_to_all):
     greedy, other = open_to_all.client(login=Role.OPERATOR), open_to_all.client(login=Role.OPERATOR)
     while greedy.post("/api/plant/hold").status_code != 429:

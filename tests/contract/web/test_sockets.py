@@ -88,8 +88,8 @@ def test_a_socket_ends_with_its_session(open_to_all):
     assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (1008, "logged out")
 
 
-def test_sockets_are_limited_in_number_and_the_api_still_answers(local, monkeypatch):
-    monkeypatch.setattr(limits, "SOCKETS", 3)
+def test_sockets_are_limited_in_number_and_the_api_still_answers(serve):
+    local = serve(sockets=3)
     with ExitStack() as open_pages:
         pages = [open_pages.enter_context(join(local, local.origin)) for _ in range(3)]
         assert [page.recv() for page in pages] == ["operator"] * 3

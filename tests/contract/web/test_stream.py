@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from arboleda.adapters.web import connections, limits, stream
+from arboleda.adapters.web import connections, stream
 from arboleda.adapters.web.auth import Role
 
 from .conftest import TASK, VIEW, Plant, Web
@@ -105,8 +105,8 @@ def test_a_stream_ends_with_its_session(open_to_all: Web, plant: Plant) -> None:
         assert listener.block() == []
 
 
-def test_streams_are_limited_in_number(web: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(limits, "STREAMS", 1)
+def test_streams_are_limited_in_number(serve) -> None:
+    web = serve(streams=1).client()
     with listening(web) as listener:
         listener.event()
         answer = web.get("/api/events")

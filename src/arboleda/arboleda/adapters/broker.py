@@ -1,4 +1,4 @@
-"""The broker that comes with the plant: amqtt in a thread of its own."""
+"""The broker that comes with the plant, in a thread of its own."""
 
 from __future__ import annotations
 
@@ -11,25 +11,39 @@ import socket
 import threading
 from collections.abc import Mapping
 from concurrent.futures import Future
+from contextlib import ExitStack
 from typing import Any
 
 from arboleda.core.errors import StartError
 
-from .guarded_broker import Access, GuardedBroker
+from . import descriptors
 from .mqtt import Address, Credentials
+from .mqtt_broker.access import Access
+from .mqtt_broker.client import Client
+from .mqtt_broker.packets import Answer, connack
+from .mqtt_broker.router import Router
+from .mqtt_broker.sessions import Sessions
 
 log = logging.getLogger(__name__)
 
-TRUSTED = "arboleda"
-STOP_S = 3.0
+PLANT = "arboleda"
+CHECK_S = 5.0
+RECEIVE_BUFFER_BYTES = 64 * 1024  # in the kernel, of each connection
+STRANGERS = {  # what they say to come in: CONNECT of MQTT 3.1.1, a clean session, keep-alive 5 s
+    "nobody in particular": b"\x10\x0d\x00\x04MQTT\x04\x02\x00\x05\x00\x01x",
+    "a user without password": b"\x10\x17\x00\x04MQTT\x04\x82\x00\x05\x00\x01x\x00\x08arboleda",
+    "a wrong password": b"\x10\x1a\x00\x04MQTT\x04\xc2\x00\x05\x00\x01x\x00\x08arboleda\x00\x01x",
+}
 
 
 class EmbeddedBroker:
     """An MQTT 3.1.1 broker on `host:port` (0: any free port).
 
-    Without `users` anybody on this machine may use it. With users (name -> password) everybody logs in: the
-    plant's own clients with `credentials`, made for this start; `boards` may write only their own telemetry
-    and presence and read only their own topics; other users only read. Other machines are let in only then.
+    Without `users` anybody on this machine may use it. With users (name -> password) everybody logs in;
+    `boards` may write only their own telemetry and presence and read only their own topics; other users only
+    read. Other machines are let in only then. The plant's own clients log in with `credentials`, made for
+    this start: the limits for others are not for them. `connections` is how many may be open at once, for
+    None its share of the files that this process may open.
     """
 
     def __init__(
@@ -40,20 +54,20 @@ class EmbeddedBroker:
         users: Mapping[str, str] | None = None,
         boards: frozenset[str] = frozenset(),
         credentials: Credentials | None = None,
+        connections: int | None = None,
     ) -> None:
-        self.credentials: Credentials | None = None
-        if users:
-            self.credentials = credentials or Credentials(user=TRUSTED, password=secrets.token_urlsafe())
+        self.credentials = credentials or Credentials(user=PLANT, password=secrets.token_urlsafe())
         self._host = host
         self._port = port
         self._users = dict(users or {})
         self._boards = boards
+        self._connections = connections or descriptors.shares(len(boards)).mqtt
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stopping: asyncio.Event | None = None
 
     def start(self) -> Address:
-        """Listen; the address, or StartError with one sentence."""
+        """Listen, and with users see that strangers are turned away; the address, or StartError."""
         access = self._access()
         listener = self._bind()
         host, port = listener.getsockname()[:2]
@@ -62,6 +76,12 @@ class EmbeddedBroker:
         self._thread = threading.Thread(target=asyncio.run, args=(serving,), name="mqtt broker", daemon=True)
         self._thread.start()
         ready.result()
+        try:
+            if not access.guests:
+                refuse_strangers(listener)
+        except BaseException:  # whatever it is, an open door is not left open
+            self.stop()
+            raise
         return Address(host=host, port=port)
 
     def stop(self) -> None:
@@ -73,14 +93,11 @@ class EmbeddedBroker:
         self._thread.join()
         self._thread = None
 
-    def _access(self) -> Access | None:
-        if not self._users:
-            if not is_loopback(self._host):
-                raise StartError(
-                    f"A broker on {self._host} is open to other machines: give it a user and a password."
-                )
-            return None
-        assert self.credentials is not None
+    def _access(self) -> Access:
+        if not self._users and not is_loopback(self._host):
+            raise StartError(
+                f"A broker on {self._host} is open to other machines: give it a user and a password."
+            )
         if self.credentials.user in self._users:
             raise StartError(
                 f"The broker's user {self.credentials.user!r} is the plant's own: choose another name."
@@ -90,32 +107,59 @@ class EmbeddedBroker:
             raise StartError(
                 f"The broker's users need a name and a password: see {', '.join(map(repr, empty))}."
             )
-        passwords = {**self._users, self.credentials.user: self.credentials.password}
-        return Access(passwords=passwords, boards=self._boards, trusted=self.credentials.user)
+        return Access(
+            plant=(self.credentials.user, self.credentials.password),
+            passwords=self._users,
+            boards=self._boards,
+            guests=not self._users,
+        )
 
     def _bind(self) -> socket.socket:
-        family = socket.AF_INET6 if ":" in self._host else socket.AF_INET
         try:
-            return socket.create_server((self._host, self._port), family=family)
+            listener = descriptors.listener(self._host, self._port)
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+            return listener
         except OSError as error:
             where = Address(host=self._host, port=self._port)
             if error.errno == errno.EADDRINUSE:
                 raise StartError(f"The broker cannot listen on {where}: the port is taken.") from error
             raise StartError(f"The broker cannot listen on {where}: {error.strerror or error}.") from error
 
-    async def _serve(self, listener: socket.socket, access: Access | None, ready: Future[None]) -> None:
+    async def _serve(self, listener: socket.socket, access: Access, ready: Future[None]) -> None:
         self._loop, self._stopping = asyncio.get_running_loop(), asyncio.Event()
-        self._loop.set_exception_handler(note_failed_task)
-        silence_libraries()
-        broker = GuardedBroker(listener, access)
-        await broker.start()
+        self._loop.set_exception_handler(note_failure)
+        sessions, router = Sessions(access, self._connections), Router(access)
+        server = await self._loop.create_server(
+            lambda: Client(sessions, router), sock=listener, backlog=descriptors.AT_ONCE
+        )
         ready.set_result(None)
         await self._stopping.wait()
-        broker.abort_all()
-        try:
-            await asyncio.wait_for(broker.shutdown(), STOP_S)
-        except asyncio.TimeoutError:
-            log.debug("the broker's clients did not end in time; their tasks are cancelled")
+        server.close()
+        sessions.end()
+        await asyncio.sleep(0)  # the connections are told that they are closed
+
+
+def refuse_strangers(listener: socket.socket) -> None:
+    """Knock as a client would, without a user, without a password and with a wrong one; StartError where that
+    opens, or nobody answers."""
+    host, port = listener.getsockname()[:2]
+    with ExitStack() as opened:
+        talks = {}
+        for who, hello in STRANGERS.items():
+            talks[who] = opened.enter_context(socket.create_connection((host, port), CHECK_S))
+            talks[who].sendall(hello)
+        for who, talk in talks.items():
+            try:
+                answer = talk.recv(4, socket.MSG_WAITALL)
+            except OSError as error:
+                raise StartError(f"The broker does not answer its own check: {error}.") from error
+            if answer != connack(Answer.NOT_AUTHORIZED):
+                raise StartError(f"The broker lets in {who}: it is not opened, and this is a bug to report.")
+
+
+def note_failure(_loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """A bug that one client found ends that client, not the broker."""
+    log.error("the broker: %s", context.get("message"), exc_info=context.get("exception"))
 
 
 def is_loopback(host: str) -> bool:
@@ -124,14 +168,3 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
         return host == "localhost"
-
-
-def silence_libraries() -> None:
-    """amqtt logs each client's coming and going, and tracebacks for clients that break off."""
-    for name in ("amqtt", "transitions"):
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
-
-
-def note_failed_task(_loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """One client's failed task is that client's end, not the broker's."""
-    log.debug("broker: %s", context.get("message"), exc_info=context.get("exception"))

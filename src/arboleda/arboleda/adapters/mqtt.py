@@ -20,6 +20,8 @@ from paho.mqtt.reasoncodes import ReasonCode
 from arboleda.core.errors import ArboledaError
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+from .clock import seconds
+
 log = logging.getLogger(__name__)
 
 KEEPALIVE_S = 5
@@ -28,6 +30,8 @@ FLUSH_S = 1.0
 WAKE_S = 1.0  # paho looks at its keep-alive when its loop wakes
 FIRST_RETRY_S, LAST_RETRY_S = 0.2, 5.0
 QUEUE_LIMIT = 100
+LARGEST_PACKET = 4096  # bytes; all that plant and boards say is shorter
+AT_ONCE = 40  # topics of one SUBSCRIBE: the plant's own broker takes packets of 4 kB
 EXPIRY_S = 1
 
 
@@ -70,7 +74,7 @@ class MqttClient:
         on_event: Callable[[Delivery | Connection], None],
         subscriptions: Sequence[str] = (),
         will: Publication | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = seconds,
         credentials: Credentials | None = None,
         version: int = MQTTProtocolVersion.MQTTv311,
         announce: bool = True,
@@ -87,6 +91,7 @@ class MqttClient:
         self._told: str | None = None  # the trouble that the log already names
         self._refused: str | None = None  # what the broker of this connection said no to
         self._early: list[Delivery] = []
+        self._asked: dict[int | None, tuple[str, ...]] = {}  # by packet id, until the broker has answered
         self._lock = threading.Lock()
         self._paho: Client | None = None  # only while up
         self._last: MQTTMessageInfo | None = None
@@ -153,13 +158,23 @@ class MqttClient:
         paho = self._new_paho()
         trouble = "connection lost"
         try:
-            paho.connect(self._address.host, self._address.port, KEEPALIVE_S)
+            paho.connect(
+                self._address.host, self._address.port, KEEPALIVE_S, properties=self._largest_packet()
+            )
             while paho.loop(WAKE_S) == MQTTErrorCode.MQTT_ERR_SUCCESS:
                 if self._closing.is_set():
                     paho.disconnect()
         except (OSError, ValueError, struct.error) as error:
             trouble = str(error)
         self._down(paho, trouble)
+
+    def _largest_packet(self) -> Properties | None:
+        """MQTT 5 only: a broker keeps larger packets to itself, which paho would take whole into memory."""
+        if self._version != MQTTProtocolVersion.MQTTv5:
+            return None
+        properties = Properties(PacketTypes.CONNECT)
+        properties.MaximumPacketSize = LARGEST_PACKET
+        return properties
 
     def _new_paho(self) -> Client:
         paho = Client(
@@ -199,18 +214,24 @@ class MqttClient:
             spoken = "5" if self._version == MQTTProtocolVersion.MQTTv5 else "3.1.1"
             self._refused = f"refused{user} over MQTT {spoken}: {reason}"
         elif self._subscriptions:
-            paho.subscribe([(topic, 1) for topic in self._subscriptions])
+            self._subscribe(paho)
         else:
             self._up(paho)
 
-    def _subscribed(self, paho: Client, _userdata: Any, _mid: int, reasons: list[ReasonCode], _: Any) -> None:
-        failed = [
-            topic for topic, reason in zip(self._subscriptions, reasons, strict=False) if reason.is_failure
-        ]
+    def _subscribe(self, paho: Client) -> None:
+        self._asked = {}
+        for first in range(0, len(self._subscriptions), AT_ONCE):
+            topics = self._subscriptions[first : first + AT_ONCE]
+            _, number = paho.subscribe([(topic, 1) for topic in topics])
+            self._asked[number] = topics
+
+    def _subscribed(self, paho: Client, _userdata: Any, mid: int, reasons: list[ReasonCode], _: Any) -> None:
+        topics = self._asked.pop(mid, ())
+        failed = [topic for topic, reason in zip(topics, reasons, strict=False) if reason.is_failure]
         if failed:
             self._refused = f"refused to subscribe {self.client_id} to {', '.join(failed)}"
             paho.disconnect()
-        else:
+        elif not self._asked and self._refused is None:
             self._up(paho)
 
     def _received(self, paho: Client, _userdata: Any, message: MQTTMessage) -> None:

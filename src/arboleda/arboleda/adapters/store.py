@@ -18,6 +18,7 @@ SCHEMA = (
     " scope TEXT NOT NULL, sentence TEXT NOT NULL)",
     f"PRAGMA user_version = {VERSION}",
 )
+IN_MEMORY = Path(":memory:")
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 
 MOVE_AWAY = (
@@ -31,7 +32,7 @@ ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
     "readonly": "let this user write the file and its directory",
     "unable to open": "make its directory, and let this user read and write both",
     "locked": "close the other program that uses it, and start again",
-    "I/O error": "look at the disk",
+    "I/O error": "look at the disk, which may be full",
 }
 
 
@@ -63,6 +64,8 @@ class Store:
         if self._opened is not None:
             return
         with self._explained(StartError):
+            if not self._is_there():
+                self._make()
             db = sqlite3.connect(self.path, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
             try:
                 self._prepare(db)
@@ -92,7 +95,10 @@ class Store:
             rows = self._db.execute(
                 "SELECT name, value FROM fact WHERE fact = ? ORDER BY name", (fact.value,)
             )
-            return dict(rows.fetchall())
+            facts = rows.fetchall()
+        if not all(isinstance(each, str) for row in facts for each in row):
+            raise self._damaged()
+        return dict(facts)
 
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
@@ -106,6 +112,9 @@ class Store:
         query = f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?"
         with self._explained(ArboledaError):
             rows = self._db.execute(query, (limit,)).fetchall()
+        for _, unix_s, *texts in rows:
+            if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in texts):
+                raise self._damaged()
         return [JournalEntry(**dict(zip(columns, row, strict=True))) for row in rows]
 
     def __enter__(self) -> Store:
@@ -135,14 +144,47 @@ class Store:
                 f"The plant's memory {self.path} is of a newer Arboleda (format {version}, known: {VERSION}):"
                 f" use that one, or {MOVE_AWAY}."
             )
+        if version == 0:
+            if self.path != IN_MEMORY:
+                raise StartError(
+                    f"The plant's memory {self.path} has lost its content, or is another program's: "
+                    f"put a copy of it in its place, or {MOVE_AWAY}."
+                )
+            _lay_out(db)
         db.execute("PRAGMA journal_mode = WAL")
         with db:
-            db.execute("BEGIN IMMEDIATE")
-            if _version(db) == 0:
-                for statement in SCHEMA:
-                    db.execute(statement)
+            db.execute("BEGIN IMMEDIATE")  # refused where another program writes, or nobody may
         if db.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
             raise sqlite3.DatabaseError("database disk image is malformed")
+
+    def _damaged(self) -> ArboledaError:
+        return ArboledaError(
+            f"The plant's memory {self.path} cannot be used (a row is not as it was written): {MOVE_AWAY}."
+        )
+
+    def _is_there(self) -> bool:
+        """Whether there is a memory to open; StartError where only a part of one is."""
+        log = Path(f"{self.path}-wal")
+        if self.path == IN_MEMORY or self.path.exists():
+            return True
+        if log.exists():
+            raise StartError(
+                f"The plant's memory {self.path} is gone, but {log} is there: put it back, or {MOVE_AWAY}."
+            )
+        return False
+
+    def _make(self) -> None:
+        """Make an empty memory. It appears with all its tables: one that has none was not made here."""
+        fresh = self.path.with_name(f".{self.path.name}.new")
+        fresh.unlink(missing_ok=True)
+        db = sqlite3.connect(fresh, isolation_level=None)
+        try:
+            _lay_out(db)
+            db.close()
+            fresh.replace(self.path)
+        finally:
+            db.close()
+            fresh.unlink(missing_ok=True)
 
     @contextmanager
     def _explained(self, kind: type[ArboledaError]) -> Iterator[None]:
@@ -150,8 +192,20 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            advice = next((ADVICE[words] for words in ADVICE if words in str(error)), MOVE_AWAY)
-            raise kind(f"The plant's memory {self.path} cannot be used ({error}): {advice}.") from error
+            # It quotes what it could not decode.
+            what = "not UTF-8 text" if "decode to UTF-8" in str(error) else str(error)
+            advice = next((ADVICE[words] for words in ADVICE if words in what), MOVE_AWAY)
+            raise kind(f"The plant's memory {self.path} cannot be used ({what}): {advice}.") from error
+        except OSError as error:
+            what = error.strerror or str(error)
+            raise kind(f"The plant's memory {self.path} cannot be used ({what}).") from error
+
+
+def _lay_out(db: sqlite3.Connection) -> None:
+    with db:
+        db.execute("BEGIN IMMEDIATE")
+        for statement in SCHEMA:
+            db.execute(statement)
 
 
 def _version(db: sqlite3.Connection) -> int:

@@ -16,33 +16,41 @@ Row = dict[str, Any]
 class Chronicle:
     """Events {number, at (unix s), cell, kind, subject, what, sentence}, the newest last.
 
-    `kind` is task, cell, robot, zone or operator; `what` the word of the new state.
+    `kind` is task, cell, robot, zone, operator or foreign; `what` the word of the new state.
     """
 
     def __init__(self, past_acts: Iterable[Row] = ()) -> None:
         self.events: deque[Event] = deque(maxlen=EVENTS)
         self._count = 0
         self._known: dict[tuple[str, str], str] = {}
-        self._last_act = 0
+        self._last_act = self._last_interference = 0
         for act in past_acts:
             self._add(act["at"], None, "operator", act["scope"] or "plant", "did", act["sentence"])
 
     def see(self, snapshot: Row, unix_s: float) -> None:
         """Take in what is new in a snapshot."""
-        for cell, kind, subject, what, sentence in [*self._acts(snapshot), *_states(snapshot)]:
-            if kind == "operator" or self._known.get((kind, subject)) != what:
+        told = [*self._acts(snapshot), *self._interference(snapshot), *_states(snapshot)]
+        for cell, kind, subject, what, sentence in told:
+            if kind in ("operator", "foreign") or self._known.get((kind, subject)) != what:
                 first = (kind, subject) not in self._known
                 self._known[(kind, subject)] = what
                 if not (first and what in EXPECTED):
                     self._add(unix_s, cell, kind, subject, what, sentence)
 
     def _acts(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
-        cell_of = {name: cell["name"] for cell in snapshot["cells"] for name in (cell["arm"], cell["mobile"])}
+        cell_of = _cells(snapshot)
         for act in snapshot["acts"]:
             if act["number"] > self._last_act:
                 self._last_act = act["number"]
                 scope = act["scope"] or "plant"
                 yield cell_of.get(scope, scope), "operator", scope, "did", act["sentence"]
+
+    def _interference(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
+        cell_of = _cells(snapshot)
+        for each in snapshot["interference"]:
+            if each["number"] > self._last_interference:
+                self._last_interference = each["number"]
+                yield cell_of.get(each["robot"]), "foreign", each["robot"], "commanded", each["sentence"]
 
     def _add(self, at: float, cell: str | None, kind: str, subject: str, what: str, sentence: str) -> None:
         self._count += 1
@@ -60,6 +68,11 @@ class Chronicle:
 
 
 EXPECTED = frozenset({"idle", "free", "offline"})  # nothing has happened where a thing begins so
+
+
+def _cells(snapshot: Row) -> dict[str, str]:
+    """The cell of each robot."""
+    return {name: cell["name"] for cell in snapshot["cells"] for name in (cell["arm"], cell["mobile"])}
 
 
 def _states(snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:

@@ -25,6 +25,7 @@ def _stop(words: Words) -> None:
     with tag("div", classes="stop"):
         tag("button", words("stop.button"), id="stop", type="button", title=words("does.stop"))
         live("p", "stop", classes="stop-state", role="status", aria_live="assertive")
+        tag("p", words("stop.held_key"), classes="stop-key")
 
 
 def _tabs(words: Words, parts: list[str]) -> None:

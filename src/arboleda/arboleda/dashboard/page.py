@@ -13,6 +13,7 @@ from importlib import resources
 from fastapi import FastAPI, Request
 from nicegui import Client, app, ui
 
+from arboleda.adapters.web.api import refuse
 from arboleda.core.errors import StartError
 
 from . import header, links, panel, tasks, timeline, trees
@@ -22,6 +23,7 @@ from .plant_side import Layout, PlantSide
 from .tags import tag
 from .twin import pane, window
 from .twin.show import Show
+from .unopened import Unopened
 from .wording import LANGUAGES, Words, words
 
 RECONNECT_S = 30.0
@@ -44,7 +46,7 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
             "This process shows the page of another plant already; NiceGUI has one page a process."
         )
     _here.append(server)
-    feed, show = Feed(plant), Show(plant)
+    feed, show, unopened = Feed(plant), Show(plant), Unopened()
     _keep_running(feed, show)
     window.serve(server, plant, show)
     layout = plant.layout()
@@ -52,11 +54,14 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
 
     @ui.page("/", title=f"{layout['plant']} · Arboleda")
     def page(request: Request, client: Client) -> None:
+        unopened.add(client)
         window.open_window(client, show)
         said = words(language_of(request))
         desk = Desk(client, plant, feed, said)
         open_page(client, desk, feed, layout, said, role_shown(request))
 
+    app.add_exception_handler(404, refuse)  # NiceGUI makes a page for each address that is not there
+    app.add_exception_handler(405, refuse)
     ui.run_with(
         server,
         title="Arboleda",

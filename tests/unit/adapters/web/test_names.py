@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.adapters.web.names import is_address, is_loopback, names_for, public_origin
+from arboleda.adapters.web.names import (
+    is_address,
+    is_loopback,
+    listen_address,
+    names_for,
+    public_origin,
+    url_host,
+)
 from arboleda.core.errors import StartError
 
 
@@ -18,10 +25,33 @@ def test_networks(host: str) -> None:
     assert not is_loopback(host)
 
 
-@pytest.mark.parametrize("host", ["", "plant.example", "127.1", "0.0.0.0:80", "1.2.3.4/24"])
-def test_what_is_no_address_is_refused(host: str) -> None:
+@pytest.mark.parametrize("host", ["", "plant.example", "127.1", "0.0.0.0:80", "1.2.3.4/24", "fe80::1%eth0"])
+def test_what_is_no_address_to_listen_on_is_refused(host: str) -> None:
     with pytest.raises(StartError, match="is not an address to listen on"):
-        is_loopback(host)
+        listen_address(host)
+
+
+@pytest.mark.parametrize(
+    ("host", "address"),
+    [
+        ("localhost", "127.0.0.1"),
+        ("[::1]", "::1"),
+        ("0::1", "::1"),
+        ("0:0::0", "::"),
+        ("10.0.0.1", "10.0.0.1"),
+    ],
+)
+def test_an_address_is_written_in_its_usual_spelling(host: str, address: str) -> None:
+    assert listen_address(host) == address
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "127.0.0.2", "::1", "0.0.0.0", "::", "192.168.1.5", "fd00::2"])
+def test_a_server_is_called_as_this_machine_reaches_it(host: str) -> None:
+    assert names_for(host, None).knows_host(f"{url_host(host)}:8080")
+
+
+def test_another_address_of_this_machine_is_not_the_one_it_listens_on() -> None:
+    assert not names_for("127.0.0.1", None).knows_host("127.0.0.2:8080")
 
 
 @pytest.mark.parametrize(

@@ -105,6 +105,8 @@ def test_a_robot_that_only_says_whether_it_moves_is_estimated(drawings: dict[str
     plant, twin = Plant(model, epoch=1, now=0.0), Twin(places(model), drawings)
 
     def told(at: float, robot: str, state: MotionState) -> None:
+        while plant.now + 1.0 < at:  # a plant that does nothing for longer was away
+            plant.step(plant.now + 1.0, [])
         plant.step(at, [Report(at=at, robot=robot, state=state)])
 
     def drawn(robot: str, at: float) -> dict[str, Any]:

@@ -14,11 +14,14 @@ from pydantic import ValidationError
 from starlette.exceptions import HTTPException
 
 from arboleda import __version__
-from arboleda.core.errors import ArboledaError, PayloadError, TextError
+from arboleda.core.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.core.messages import Verb
+from arboleda.core.outside import plain, quoted
 
-from . import listing, login, stream
+from . import limits, listing, login, stream
 from .auth import SUBMIT, Forbidden, require
+from .limits import LATER_S
+from .nothing_else import NothingElse
 from .plant_side import PlantSide
 from .schema import ByHand, Done, Sentence, Snapshot, Task, TaskText
 
@@ -37,14 +40,17 @@ OTHERS: Answers = {
 REFUSED: Answers = {
     403: {"model": Sentence, "description": "The role is not enough, or a page of another site asks."},
     422: {"model": Sentence, "description": "The request is wrong."},
-    503: {"model": Sentence, "description": "Not now."},
+    503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
 
-def make_app(side: PlantSide) -> FastAPI:
-    """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it."""
+def make_app(side: PlantSide, *, streams: int = limits.STREAMS) -> FastAPI:
+    """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
+
+    At most so many `streams` of changes are open at a time.
+    """
     app = FastAPI(
         title="Arboleda",
         version=__version__,
@@ -57,8 +63,10 @@ def make_app(side: PlantSide) -> FastAPI:
     app.add_exception_handler(ArboledaError, refuse)
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(Exception, own_up)
-    for router in (routes(side), stream.routes(side), login.routes(), listing.routes(app)):
+    routers = (routes(side), stream.routes(side, streams), login.routes(), listing.routes(app))
+    for router in routers:
         app.include_router(router, responses=OTHERS)
+    app.router.routes.append(NothingElse([route for router in routers for route in router.routes]))
     return app
 
 
@@ -85,7 +93,7 @@ def routes(side: PlantSide) -> APIRouter:
         """One task."""
         known = side.find(task_id)
         if known is None:
-            raise HTTPException(404, f"The plant knows no task {task_id[:80]!a}.")
+            raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
         return JSONResponse(known)
 
     verb_route: dict[str, Any] = {
@@ -132,7 +140,7 @@ def verb_of(word: str) -> Verb:
         return Verb(word)
     except ValueError:
         names = ", ".join(verb.value for verb in Verb)
-        raise PayloadError(f"{word[:80]!a} is not an operator's verb; there are {names}.") from None
+        raise PayloadError(f"{quoted(word, 80)} is not an operator's verb; there are {names}.") from None
 
 
 def said_by_hand(body: bytes) -> bool:
@@ -154,15 +162,16 @@ def task_text(body: bytes) -> str:
 
 
 async def refuse(_request: Request, error: Exception) -> JSONResponse:
-    """A refusal as status and sentence."""
+    """A refusal as status and sentence; with the headers that belong to it, such as Allow."""
     if isinstance(error, HTTPException):
-        return JSONResponse({"sentence": error.detail}, status_code=error.status_code)
-    return JSONResponse({"sentence": str(error)}, status_code=STATUS.get(type(error), 503))
+        return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
+    headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
+    return JSONResponse({"sentence": str(error)}, status_code=STATUS.get(type(error), 503), headers=headers)
 
 
 async def own_up(request: Request, error: Exception) -> JSONResponse:
     """An error of ours: the log names it, the caller gets a sentence."""
-    log.error("%s %s failed: %r", request.method, quote(request.url.path), error)
+    log.error("%s %s failed: %s", plain(request.method), plain(quote(request.url.path)), plain(repr(error)))
     return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
 
 

@@ -69,6 +69,11 @@ class Asked:
         return not self.path.startswith(API) and self.path not in (LOGIN, LOGOUT)
 
     @property
+    def opens_page(self) -> bool:
+        """Whether a page is to be built: the files of pages have addresses of their own."""
+        return not self.socket and self.path == "/"
+
+    @property
     def logs_in(self) -> bool:
         return not self.socket and self.path == LOGIN
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import asyncio
 import socket
 import struct
-from itertools import count
 from typing import Any
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-CONNECTIONS = 512  # of one server; file descriptors are few, and the plant needs some itself
-PER_PEER = 320  # twenty browsers of one network
+from .admission import Admission
+from .asked import READS
+from .auth import LOCAL
+
 REQUEST_S = 10.0  # to send the head of a request
 UNREAD_S = 20.0  # a client that reads nothing of what it asked for
 HEAD_BYTES = 32768
@@ -63,14 +64,15 @@ class Socket(_MustRead, WebSocketsSansIOProtocol):
 
 
 class Connection(_MustRead, H11Protocol):
-    """An http connection. Where there are too many, one that idles makes room: a flood of them must not
-    keep a stop out."""
+    """An http connection; `admission` says which one goes where there are too many."""
 
-    _numbers = count()  # in the order they came; the clocks of event loops are too coarse for it
+    def __init__(self, *args: Any, admission: Admission, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._admission = admission
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        self.number = next(self._numbers)
+        self.number = self._admission.next_number()
         self._request = Timer(REQUEST_S, lambda: cut(transport))
         self._request.on()
         self._make_room()
@@ -100,22 +102,32 @@ class Connection(_MustRead, H11Protocol):
     def idles(self) -> bool:
         return self.cycle is None or self.cycle.response_complete
 
+    @property
+    def peer(self) -> str | None:
+        return self.client[0] if self.client else None
+
+    @property
+    def waits(self) -> bool:
+        return self.idles or self.cycle.more_body or self.flow.write_paused
+
+    @property
+    def looks(self) -> bool:
+        return not self.idles and not self.cycle.response_started and self.scope["method"] in READS
+
+    @property
+    def known(self) -> bool:
+        login = self.scope.get("arboleda.login") if self.scope is not None else None
+        return login not in (None, LOCAL)  # on its own machine a plant knows nobody, and lets everybody in
+
     def _make_room(self) -> None:
-        mine = [other for other in self.connections if _peer(other) == _peer(self)]
-        crowd = mine if len(mine) > PER_PEER else self.connections
-        if crowd is not mine and len(self.connections) <= CONNECTIONS:
-            return
-        idle = [other for other in crowd if isinstance(other, Connection) and other.idles]
-        oldest = min(idle, key=lambda other: other.number, default=self)
-        self.connections.discard(oldest)  # at once: the next one that comes must not count it
-        cut(oldest.transport)
+        guests = [other for other in self.connections if isinstance(other, Connection)]
+        surplus = self._admission.surplus(guests, len(self.connections) - len(guests), self)
+        if surplus is not None:
+            self.connections.discard(surplus)  # at once: the next one that comes must not count it
+            cut(surplus.transport)
 
 
 def cut(transport: Any) -> None:
     """End a connection at once; what the client has not read yet is not kept for it."""
     transport.get_extra_info("socket").setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NOTHING_LINGERS)
     transport.abort()
-
-
-def _peer(connection: Any) -> str | None:
-    return connection.client[0] if connection.client else None

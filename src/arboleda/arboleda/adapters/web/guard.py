@@ -7,6 +7,8 @@ from urllib.parse import parse_qsl
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from arboleda.core.outside import quoted
+
 from . import limits
 from .asked import LOGIN, Asked
 from .auth import LOCAL, Door, Login
@@ -14,6 +16,7 @@ from .body import whole_body
 from .headers import with_headers
 from .limits import Buckets
 from .names import Names
+from .one_by_one import OneByOne
 from .sockets import Sockets
 from .turned import Gone, Turned
 
@@ -26,16 +29,17 @@ class Guard:
     """Lets in whom `door` and `names` know, within the limits; all else gets a sentence.
 
     What is let in carries `scope["arboleda.login"]`, `["arboleda.role"]` and `["arboleda.door"]`. A stop of
-    somebody who is logged in has no rate.
+    somebody who is logged in has no rate. At most so many `sockets` are open at a time.
     """
 
-    def __init__(self, app: ASGIApp, names: Names, door: Door) -> None:
+    def __init__(self, app: ASGIApp, names: Names, door: Door, *, sockets: int = limits.SOCKETS) -> None:
         self._app = app
         self._names = names
         self._door = door
-        self._sockets = Sockets(app)
+        self._pages = OneByOne(app)
+        self._sockets = Sockets(app, most=sockets)
         self._reads, self._changes = Buckets(limits.READ), Buckets(limits.CHANGE)
-        self._pages = Buckets(limits.PAGE)
+        self._files, self._opens = Buckets(limits.PAGE), Buckets(limits.OPEN)
         self._guesses = Buckets(limits.GUESS)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -64,7 +68,10 @@ class Guard:
             return await self._sockets.run(scope, receive, send, login)
         if asked.logs_in:
             send = self._counting_guesses(peer, send)
-        return await self._app(scope, await whole_body(asked, receive), send)
+        body = await whole_body(asked, receive)
+        if asked.opens_page:
+            return await self._pages.run(scope, body, send, receive)
+        return await self._app(scope, body, send)
 
     def _check_shape(self, asked: Asked) -> None:
         if asked.header_bytes > limits.HEADER_BYTES:
@@ -78,7 +85,7 @@ class Guard:
     def _check_names(self, asked: Asked) -> None:
         host = asked.header("host")
         if not self._names.knows_host(host):
-            raise Turned(403, f"This plant is not called {host[:80]!a}; --public-url gives it a name.")
+            raise Turned(403, f"This plant is not called {quoted(host, 80)}; --public-url gives it a name.")
         if self._door.open and asked.forwarded:
             raise Turned(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
 
@@ -120,12 +127,20 @@ class Guard:
         return counting
 
     def _check_rate(self, asked: Asked, key: str) -> None:
-        rate = self._changes if not asked.reads else self._pages if asked.for_page else self._reads
-        if not rate.take(key):
+        if not self._rate(asked).take(key):
             raise Turned(429, "Too many requests; wait a second.", retry_after="1")
 
+    def _rate(self, asked: Asked) -> Buckets:
+        if not asked.reads:
+            return self._changes
+        if asked.opens_page:
+            return self._opens
+        return self._files if asked.for_page else self._reads
+
     def _introduced(self, scope: Scope, login: Login | None) -> Scope:
-        """The scope with who it is; what a proxy says of its paths is not passed on."""
+        """The scope with who it is; what a proxy says of its paths is not passed on. The server's own scope
+        has the login as well: its connection is then that of somebody known."""
+        scope["arboleda.login"] = login
         kept = [pair for pair in scope["headers"] if not pair[0].startswith(b"x-forwarded-")]
         role = login.role if login else None
         known = {"arboleda.login": login, "arboleda.role": role, "arboleda.door": self._door}

@@ -11,15 +11,23 @@ PAGE_BODY_BYTES = 65536
 HEADER_BYTES = 16384
 MESSAGE_BYTES = 65536  # of a websocket
 BODY_S = 10.0
+LATER_S = "10"  # Retry-After of what is full
 
 READ = (50.0, 400)  # per second, at once
 PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
+OPEN = (2.0, 40)  # a page itself, which takes a tenth of a second and a megabyte to build
 CHANGE = (10.0, 50)
 GUESS = (0.1, 5)
 MESSAGE = (50.0, 200)
 
+CONNECTIONS = 300  # of one server; a plant says how many its limit of open files allows
 SOCKETS = 64
 STREAMS = 64
+
+
+def lasting(most: int, connections: int) -> int:
+    """How many of a kind that stays open there may be: `most`, and at most a quarter of all connections."""
+    return max(1, min(most, connections // 4))
 
 
 class Buckets:

@@ -9,7 +9,12 @@ from dataclasses import dataclass
 
 from arboleda.core.errors import StartError
 
-LOOPBACK = {"127.0.0.1", "localhost", "[::1]"}
+LOCAL = "127.0.0.1"
+LOOPBACK = {LOCAL, "localhost", "[::1]"}
+EVERY_NETWORK = {
+    "0.0.0.0": LOCAL,
+    "::": "::1",
+}  # what stands for all addresses, and where this machine finds it
 DEFAULT_PORTS = {"http": ":80", "https": ":443"}
 
 
@@ -42,23 +47,45 @@ class Names:
 def names_for(host: str, public_url: str | None) -> Names:
     """The names of a server bound to `host`; StartError for an address or URL that cannot be used."""
     public = public_origin(public_url) if public_url else None
-    hosts = LOOPBACK | ({host_name(public.partition("//")[2])} if public else set())
+    hosts = LOOPBACK | {url_host(host)} | ({host_name(public.partition("//")[2])} if public else set())
     if not is_loopback(host):
         own = socket.gethostname().lower()
         hosts |= {own, own.partition(".")[0], f"{own.partition('.')[0]}.local"}
     return Names(hosts=frozenset(hosts), any_address=not is_loopback(host), public=public)
 
 
+def listen_address(host: str) -> str:
+    """The IP address that `host` stands for, in its one usual spelling: `::1` for `[0::1]`, 127.0.0.1 for
+    `localhost`. StartError for another name, and for an address that no URL can have (`fe80::1%eth0`)."""
+    address = str(_address(host))
+    if "%" in address:
+        raise _no_address(host)
+    return address
+
+
+def url_host(host: str) -> str:
+    """The host part of a URL that reaches a server on `host` from this machine."""
+    address = EVERY_NETWORK.get(host, host)
+    return f"[{address}]" if ":" in address else address
+
+
 def is_loopback(host: str) -> bool:
     """Whether only this machine reaches `host`; StartError where it is no address."""
-    if host == "localhost":
-        return True
+    return _address(host).is_loopback
+
+
+def _address(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:
+    bare = host[1:-1] if host.startswith("[") and host.endswith("]") else host
     try:
-        return ipaddress.ip_address(host).is_loopback
+        return ipaddress.ip_address(LOCAL if bare == "localhost" else bare)
     except ValueError:
-        raise StartError(
-            f"'{host}' is not an address to listen on; write e.g. 0.0.0.0 for every network of this machine"
-        ) from None
+        raise _no_address(host) from None
+
+
+def _no_address(host: str) -> StartError:
+    return StartError(
+        f"'{host}' is not an address to listen on; write e.g. 0.0.0.0 for every network of this machine"
+    )
 
 
 def public_origin(url: str) -> str:

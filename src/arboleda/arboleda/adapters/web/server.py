@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import socket
 import threading
+from functools import partial
 from typing import Any
 
 import uvicorn
@@ -12,29 +13,42 @@ from starlette.types import ASGIApp
 
 from arboleda.core.errors import StartError
 
+from .. import descriptors
 from . import limits
+from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket
 
 DEFAULT_PORT = 8080
 START_S = 20.0
-BACKLOG = 128  # connections that may come at once before there is a look at their number
 
 
 class Server:
-    """Serves `app` on `host`, on DEFAULT_PORT or where that is taken on another, unless a `port` is named."""
+    """Serves `app` on `host`, on DEFAULT_PORT or where that is taken on another, unless a `port` is named.
 
-    def __init__(self, app: ASGIApp, *, host: str = "127.0.0.1", port: int | None = None) -> None:
+    At most `connections` are open at a time, websockets and streams among them.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        host: str = "127.0.0.1",
+        port: int | None = None,
+        connections: int = limits.CONNECTIONS,
+    ) -> None:
         self._host = host
         self._port = port
         self._server = _Uvicorn(
             uvicorn.Config(
                 app,
-                http=Connection,
+                http=partial(Connection, admission=Admission(connections)),  # type: ignore[arg-type]
                 ws=Socket,
                 ws_max_size=limits.MESSAGE_BYTES,
                 ws_per_message_deflate=False,
                 h11_max_incomplete_event_size=HEAD_BYTES,
-                backlog=BACKLOG,
+                # uvloop accepts all that wait before it tells of the first: too many files at once
+                loop="asyncio",
+                backlog=descriptors.AT_ONCE,
                 log_config=None,
                 log_level=logging.CRITICAL,
                 access_log=False,
@@ -96,13 +110,14 @@ def listen(host: str, port: int | None) -> socket.socket:
     except OSError as error:
         if port is None:
             return listen(host, 0)
-        where = f"{host}:{port}"
+        where = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
         raise StartError(f"The HTTP server cannot listen on {where}: {error.strerror or error}.") from error
 
 
 def _bound(host: str, port: int) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    options: dict[str, Any] = {"dualstack_ipv6": True} if host == "::" else {}
-    listener = socket.create_server((host, port), family=family, **options)
+    # asked for where there is no IPv6, it raises ValueError
+    both = host == "::" and socket.has_dualstack_ipv6()
+    options: dict[str, Any] = {"dualstack_ipv6": True} if both else {}
+    listener = descriptors.listener(host, port, **options)
     listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     return listener

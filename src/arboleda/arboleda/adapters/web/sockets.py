@@ -19,8 +19,15 @@ LOGGED_OUT: Message = {"type": "websocket.close", "code": 1008, "reason": "logge
 class Sockets:
     """Runs websockets of `app`."""
 
-    def __init__(self, app: ASGIApp, sleep: Callable[[float], Awaitable[None]] = asyncio.sleep) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        sleep: Callable[[float], Awaitable[None]] = asyncio.sleep,
+        *,
+        most: int = limits.SOCKETS,
+    ) -> None:
         self._app = app
+        self._most = most
         self._sleep = sleep
         self._rates = Buckets(limits.MESSAGE)
         self._names = count()
@@ -28,8 +35,8 @@ class Sockets:
 
     async def run(self, scope: Scope, receive: Receive, send: Send, login: Login) -> None:
         """One websocket until its end; Turned where too many are open."""
-        if self._open >= limits.SOCKETS:
-            raise Turned(503, f"{limits.SOCKETS} pages are open already; close one.")
+        if self._open >= self._most:
+            raise Turned(503, f"{self._most} pages are open already; close one.", retry_after=limits.LATER_S)
         one = _Socket(receive, send, login, self._pace())
         self._open += 1
         try:

@@ -25,16 +25,17 @@ ABOUT: dict[int | str, dict[str, Any]] = {
 }
 
 
-def routes(side: PlantSide) -> APIRouter:
-    """`GET /api/events`."""
+def routes(side: PlantSide, most: int) -> APIRouter:
+    """`GET /api/events`, for at most so many readers at a time."""
     api = APIRouter(prefix="/api")
     changes = Changes(side)
 
     @api.get("/events", response_class=StreamingResponse, responses=ABOUT)
     async def events(request: Request, last_event_id: Annotated[str, Header()] = "") -> StreamingResponse:
         """Changes as they happen (server-sent events)."""
-        if len(changes) >= limits.STREAMS:
-            raise HTTPException(503, f"{limits.STREAMS} readers listen already; close one.")
+        if len(changes) >= most:
+            sentence = f"{most} readers listen already; close one."
+            raise HTTPException(503, sentence, {"retry-after": limits.LATER_S})
         told = tell(changes, last_event_id, request.scope["arboleda.login"].alive)
         return StreamingResponse(told, media_type="text/event-stream", headers={"x-accel-buffering": "no"})
 

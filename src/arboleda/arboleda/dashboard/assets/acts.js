@@ -1,9 +1,11 @@
 // From a click to the plant: what a button asks for goes through the socket; a stop goes over HTTP as well.
 
 import { value } from "./live.js";
+import * as question from "./question.js";
 
 const PATIENCE_MS = 3000;
 const SECOND_WAY_MS = 300;
+const HELD_MS = 800; // longer than a key that closes a question is pressed
 const words = window.arboledaPage.words;
 let scope = "";
 
@@ -11,11 +13,31 @@ export const setScope = (chosen) => (scope = chosen);
 export const connected = () => Boolean(window.socket?.connected && window.did_handshake);
 
 export function start() {
+  question.start();
   document.getElementById("stop").addEventListener("click", () => stop(""));
+  stopByHeldKey();
   document.addEventListener("click", (event) => {
     const button = event.target.closest("[data-act]");
     if (button) press(button);
   });
+}
+
+// A second way to stop, for whom no pointer is at hand: Escape, held. It works from every field and every question.
+function stopByHeldKey() {
+  const button = document.getElementById("stop");
+  let timer = null;
+  const letGo = () => {
+    clearTimeout(timer);
+    timer = null;
+    button.classList.remove("held");
+  };
+  document.addEventListener("keydown", ({ key, repeat }) => {
+    if (key !== "Escape" || repeat || timer) return;
+    button.classList.add("held");
+    timer = setTimeout(() => (letGo(), stop("")), HELD_MS);
+  });
+  document.addEventListener("keyup", ({ key }) => key === "Escape" && letGo());
+  window.addEventListener("blur", letGo);
 }
 
 async function press(button) {
@@ -23,7 +45,7 @@ async function press(button) {
   const of = button.dataset.of === "$scope" ? scope : button.dataset.of;
   if (act === "stop") return stop(of);
   const asks = act === "override" ? [words.override_seen, words.override_sure] : JSON.parse(button.dataset.asks ?? "[]");
-  for (const question of asks) if (!(await confirmed(question.replaceAll("{of}", of)))) return;
+  for (const asked of asks) if (!(await question.confirmed(asked.replaceAll("{of}", of)))) return;
   send(act, of, byHand === "true");
 }
 
@@ -37,6 +59,7 @@ export function send(act, of, byHand = false) {
 // Over HTTP, which no stuck socket holds up; through the socket as well where that has no answer at once.
 export async function stop(of) {
   const button = document.getElementById("stop");
+  question.dismiss();
   button.dataset.s = "asked";
   answer(words.stopping, false);
   const second = new SecondWay(of);
@@ -78,28 +101,4 @@ export function answer(sentence, good) {
   line.textContent = sentence;
   line.dataset.s = good ? "good" : "bad";
   return false;
-}
-
-// A dialog of the browser's own: keyboard and screen readers know it.
-function confirmed(question) {
-  const dialog = document.createElement("dialog");
-  const [text, yes, no] = [document.createElement("p"), document.createElement("button"), document.createElement("button")];
-  text.textContent = question;
-  yes.textContent = words.yes;
-  no.textContent = words.no;
-  yes.className = "primary";
-  const buttons = document.createElement("div");
-  buttons.append(no, yes);
-  dialog.append(text, buttons);
-  document.body.append(dialog);
-  dialog.showModal();
-  no.focus();
-  return new Promise((resolve) => {
-    yes.addEventListener("click", () => dialog.close("yes"));
-    no.addEventListener("click", () => dialog.close());
-    dialog.addEventListener("close", () => {
-      dialog.remove();
-      resolve(dialog.returnValue === "yes");
-    });
-  });
 }

@@ -1,0 +1,171 @@
+"""Whatever else is open: everybody who may stop the plant can, each of twenty times."""
+
+from __future__ import annotations
+
+import asyncio
+import http.client
+import json
+import socket
+import time
+from concurrent.futures import Future
+from contextlib import ExitStack, closing, suppress
+from threading import Semaphore
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+
+from arboleda.adapters.web.auth import Role
+from arboleda.core.messages import OperatorAnswer, Verb
+
+from .conftest import TOKENS, VIEW, Plant, Web
+
+STOPS = 20
+MOST = 64  # connections that the server takes
+ADDRESSES = [f"127.0.0.{number}" for number in range(2, 22)]
+HEAD = "GET /api/plant HTTP/1.1\r\nX-A: "
+# With Expect the server says when it waits for the body, of which no more comes.
+SLOW = (
+    "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n{login}Content-Length: 40\r\n"
+    "Expect: 100-continue\r\n\r\n"
+)
+STREAM = "GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n{login}\r\n"
+VIEWER = {"Authorization": f"Bearer {TOKENS[Role.VIEWER]}"}
+LOGIN = f"Authorization: {VIEWER['Authorization']}\r\n"
+
+
+class Attack:
+    """Twenty addresses open connections, say this and nothing after it, and open more for those cut off."""
+
+    def __init__(self, web: Web, said: str, path: str = "", login: str = "", *, count: int = 100) -> None:
+        self._port = web.port
+        self._said = said.format(path=path, port=web.port, login=login).encode()
+        self._answered = said in (SLOW, STREAM)
+        self._count = count
+        self._open = ExitStack()
+
+    def __enter__(self) -> Attack:
+        self.goes_on(self._count)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._open.close()
+
+    def goes_on(self, count: int = 4) -> None:
+        for number in range(count):
+            self._one(ADDRESSES[number % len(ADDRESSES)])
+
+    def _one(self, address: str) -> None:
+        talk = socket.create_connection(("127.0.0.1", self._port), timeout=5, source_address=(address, 0))
+        self._open.enter_context(talk)
+        with suppress(ConnectionError):  # cut off at once
+            talk.sendall(self._said)
+            if self._answered:
+                talk.recv(1)
+
+
+def stops(web: Web, attack: Attack, login: dict[str, str]) -> list[int]:
+    """The answers to that many stops, each over a connection of its own while the attack goes on."""
+    answers = []
+    for _ in range(STOPS):
+        attack.goes_on()
+        answers.append(stop(web, login))
+    return answers
+
+
+def stop(web: Web, login: dict[str, str]) -> int:
+    """The status of the answer."""
+    with closing(http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)) as client:
+        client.request("POST", "/api/plant/stop", headers=login)
+        return client.getresponse().status
+
+
+@pytest.mark.parametrize(
+    ("said", "path"),
+    [("", ""), (HEAD, ""), (SLOW, "/api/tasks"), (SLOW, "/api/plant/stop"), (STREAM, "")],
+    ids=["silent", "half a head", "half a task", "half a stop", "stream"],
+)
+def test_on_its_own_machine(serve, plant: Plant, said: str, path: str) -> None:
+    web = serve(connections=MOST, streams=16)
+    with Attack(web, said, path) as attack:
+        assert stops(web, attack, {}) == [200] * STOPS
+    assert plant.acts == [(Verb.STOP, "", False)] * STOPS
+
+
+@pytest.mark.parametrize(
+    ("said", "path", "login"),
+    [
+        ("", "", ""),
+        (HEAD, "", ""),
+        (SLOW, "/login", ""),
+        (SLOW, "/api/tasks", LOGIN),
+        (SLOW, "/api/plant/stop", LOGIN),
+        (STREAM, "", LOGIN),
+    ],
+    ids=["silent", "half a head", "half a login", "half a task", "half a stop", "stream"],
+)
+def test_on_a_network(serve, plant: Plant, said: str, path: str, login: str) -> None:
+    web = serve(dict(TOKENS), connections=MOST, streams=16)
+    with Attack(web, said, path, login) as attack:
+        assert stops(web, attack, VIEWER) == [200] * STOPS
+    assert plant.acts == [(Verb.STOP, "", False)] * STOPS
+
+
+def test_a_browser_that_is_logged_in_keeps_its_connection_while_strangers_crowd(serve) -> None:
+    web = serve(dict(TOKENS), connections=MOST)
+    browser = http.client.HTTPConnection("127.0.0.1", web.port, timeout=5)
+    with closing(browser):
+        assert looks(browser)
+        with Attack(web, SLOW, "/login"):
+            assert looks(browser)
+
+
+def looks(browser: http.client.HTTPConnection) -> bool:
+    """Whether it gets the plant over the connection that it has."""
+    browser.request("GET", "/api/plant", headers=VIEWER)
+    answer = browser.getresponse()
+    return json.load(answer) == VIEW and browser.sock is not None
+
+
+def test_while_many_pages_wait_to_be_built(serve, plant: Plant) -> None:
+    built: list[int] = []
+    stopped_after: list[int] = []
+    operate = plant.operate
+
+    def noted(*args: Any, **options: Any) -> Future[OperatorAnswer]:
+        stopped_after.append(len(built))
+        return operate(*args, **options)
+
+    plant.operate = noted  # type: ignore[method-assign]
+    web = serve(mount=lambda app: slow_page(app, built), connections=MOST)
+    with Attack(web, "GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n") as attack:
+        assert stops(web, attack, {}) == [200] * STOPS
+    assert stopped_after[0] < 50
+
+
+def test_while_more_is_asked_than_the_server_can_answer(serve, plant: Plant) -> None:
+    asked = Semaphore(0)
+    web = serve(mount=lambda app: page_that_is_never_made(app, asked), connections=MOST)
+    never = "GET /never HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n"
+    with Attack(web, never, count=MOST - 1) as attack:
+        for _ in range(MOST - 1):
+            assert asked.acquire(timeout=5)
+        for _ in range(STOPS):
+            attack.goes_on(1)
+            assert asked.acquire(timeout=5)  # the server is full again, and waits for nobody
+            assert stop(web, {}) == 200
+
+
+def page_that_is_never_made(app: FastAPI, asked: Semaphore) -> None:
+    @app.get("/never")
+    async def page() -> None:
+        asked.release()
+        await asyncio.Event().wait()
+
+
+def slow_page(app: FastAPI, built: list[int]) -> None:
+    @app.get("/")
+    async def page() -> str:
+        time.sleep(0.02)  # as NiceGUI does: nothing else runs in the loop meanwhile
+        built.append(len(built))
+        return "a page"
