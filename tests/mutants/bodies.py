@@ -48,7 +48,7 @@ MOTION = (
     mutant(
         "no_move_after_a_boot_that_was_told",
         "That a board without ids came back does not count as a boot of it.",
-        edit(evidence.displaced, "return rebooted(before, belief, report) or ", "return "),
+        edit(evidence.displaced, "return jumped or rebooted(before, belief, report)", "return jumped"),
         seeds=SHARED,
         weather={"reboot": 20.0, "brown_out": 10.0},
     ),
@@ -139,6 +139,15 @@ GRIP = (
     ),
 )
 
+ROBBED = (
+    mutant(
+        "robbed_task_is_not_done",
+        "An effector that opened by itself is looked after only where pieces are checked.",
+        edit(Context.part_gone, "if sentence is None or", "if True or"),
+        weather={"opened_effector": 20.0},
+    ),
+)
+
 STOP = (
     mutant(
         "latched_board_stays_still",
@@ -163,4 +172,4 @@ STOP = (
     ),
 )
 
-BODIES = (*ZONES, *MOTION, *GRIP, *STOP)
+BODIES = (*ZONES, *MOTION, *GRIP, *ROBBED, *STOP)

@@ -56,6 +56,8 @@ WEATHERS: dict[str, tuple[range, str | dict[str, Any]]] = {
         range(1, 11),
         {"rates": {"reboot": 15.0, "brown_out": 8.0, "operator_home": 10.0, **STRANGERS}},
     ),
+    "garbage": (range(1, 3), {"rates": {"foreign_garbage": 60.0}}),
+    "flood": (range(1, 2), {"faults": [{"kind": "flood_of_tasks", "at": 5.0}]}),
     "restarts": (range(1, 3), {"rates": {"plant_crash": 3.0, "operator_stop": 3.0}}),
 }
 

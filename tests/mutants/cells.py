@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core import recipes
+from arboleda.core import evidence, recipes
 from arboleda.core.cell import CellRun
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.leaves import Dwell, TakeZones
@@ -15,6 +15,11 @@ from .mutant import SHARED, edit, mutant
 
 BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
 COLLECT = "out, self.dispatcher.outbox = self.dispatcher.outbox, []"
+STAYS_SHORT = (
+    " or belief.position == entry.origin:\n"
+    "        return False  # who never left may have said only the end of an earlier move\n"
+    "    return at"
+)
 PATIENCE_S = 60.0  # enough for what comes to rest at all
 
 TASKS = (
@@ -33,6 +38,13 @@ TASKS = (
             "return",
         ),
         weather={"operator_cancel": 30.0},
+    ),
+    mutant(
+        "no_task_fails_without_a_fault",
+        'The late "moving, stopped" of an earlier move counts as a stop short of the goal.',
+        edit(evidence._stays_short, STAYS_SHORT, ":\n        return False\n    return True or at"),
+        weather="none",
+        seeds=SHARED,
     ),
     mutant(
         "only_legal_task_states",
@@ -87,6 +99,12 @@ TASKS = (
             "if request.text: self.dispatcher.outbox.append(_refused(",
         ),
         weather={"bad_task": 30.0},
+    ),
+    mutant(
+        "nothing_moves_after_an_absence",
+        "A plant that was away goes on as if it had not been.",
+        edit(Plant.step, "if self._steps and away_s > self.away_after_s:", "if False:"),
+        weather={"plant_freeze": 6.0},
     ),
     mutant(
         "no_internal_failure",

@@ -5,5 +5,6 @@ from __future__ import annotations
 from .bodies import BODIES
 from .cells import CELLS
 from .protocol import PROTOCOL
+from .told import TOLD
 
-MUTANTS = (*BODIES, *PROTOCOL, *CELLS)
+MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *TOLD)

@@ -9,12 +9,20 @@ from arboleda.core.leaves import Act
 from arboleda.core.ledger import Ledger
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.receipts import Receipts
-from arboleda.wire import goals, strict
+from arboleda.wire import goals, hop, strict
 from arboleda.wire.board import Board
+from arboleda.wire.bridge import Bridge
 
 from .mutant import edit, mutant
 
 COMMANDS = (
+    mutant(
+        "no_move_after_its_halt",
+        "Each kind of command has a topic of its own over the hop, and a halt overtakes its move.",
+        edit(hop.command_topic, 'f"{command.robot}/{COMMAND}"', "plain_topic(command)"),
+        weather={"hop_reorder": 20.0, "operator_hold": 40.0, "operator_resume": 40.0},
+        cycles=10,
+    ),
     mutant(
         "no_command_to_unfit",
         "A robot that is not homed takes any command, not only to home.",
@@ -58,6 +66,12 @@ COMMANDS = (
 )
 
 WIRE = (
+    mutant(
+        "bridge_obeys_only_its_plant",
+        "The bridge obeys whoever commands, while it hears its plant.",
+        edit(Bridge._is_commanded, "return at <", "return at < 0 <"),
+        weather={"foreign_command": 20.0},
+    ),
     mutant(
         "executed_numbers_rise",
         "A board compares the epoch of a command, and not its number.",

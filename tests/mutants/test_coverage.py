@@ -20,6 +20,8 @@ REASONS_THAT_CANNOT_BE = {
     Reason.INTERRUPTED: "only a plant that is asked to end interrupts a task, and nobody here asks it",
 }
 CELL_ROWS_THAT_CANNOT_BE = {
+    (CellState.HOLDING, Cause.STUCK): "it is a defect; an invariant forbids it",
+    (CellState.HELD, Cause.STUCK): "it is a defect; an invariant forbids it",
     (CellState.RESETTING, Cause.STOP): "a reset passes through that state within one event",
 }
 COMMAND_ROWS_THAT_CANNOT_BE = {

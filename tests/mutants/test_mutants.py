@@ -11,10 +11,11 @@ from arboleda.simulator.run import NO_EXCEPTION
 
 from .mutant import Mutant
 from .mutants import MUTANTS
+from .planted import PLANTED
 from .search import breaks_unplanted, found_at
 
 
-@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: mutant.invariant)
+@pytest.mark.parametrize("mutant", [*MUTANTS, *PLANTED], ids=lambda mutant: mutant.bug[:60])
 def test_a_bug_is_found_by_the_invariant_that_it_breaks(mutant: Mutant) -> None:
     seed = found_at(mutant)
     assert seed is not None, f"{mutant.invariant} does not find within 200 seeds: {mutant.bug}"

@@ -431,8 +431,10 @@ TABLE = [
         carrying(lambda spot: faults.says(spot.board, estado=0)),
         {
             IDS: held(SHORT, at_once),
-            JOINTS: recovered(SHORT, at_once),
+            # the bridge takes the motion for ended and beats no more, so that the arm's board stops it
+            JOINTS: recovered(SHORT, after(2.0)),
             STATE: undetectable(),
+            (STATE, DRIVING): done(),
         },
     ),
     Row(

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Command, Fact, Journal, Reason, TaskState, Verb
+from arboleda.core.messages import Command, Fact, Journal, OperatorRequest, Reason, TaskState, Verb
 from arboleda.core.model import Evidence
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication
@@ -340,7 +340,10 @@ def test_a_fault_while_held_makes_resume_impossible(stage: Stage, evidence: Evid
     rig.wait(2.0)
     mark = len(rig.to_boards)
     assert cell(rig).trouble is not None
-    assert "retry" in str(rig.operate(Verb.RESUME, "sis_a"))
+    robbed = (
+        evidence is Evidence.IDS and fault == "the arm's board reboots"
+    )  # its effector went off, and says so
+    assert ("no part to go on with" if robbed else "retry") in str(rig.operate(Verb.RESUME, "sis_a"))
     rig.wait(10.0)
     assert witness.motions_since(mark, rig.model.robots) == []
     assert rig.operate(Verb.ABANDON, "sis_a") is None
@@ -479,7 +482,7 @@ def test_an_arm_that_is_not_homed_at_start_is_homed_where_the_plant_file_says_so
     assert not rig.devices.boards["ra_1"].homed, "only at the start"
 
 
-@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
+@levels
 def test_a_robot_that_cannot_say_so_is_homed_by_hand(evidence: Evidence) -> None:
     rig = Rig(slowed(shipped("sis_a", evidence=evidence, assume_homed=True), 8))
     rig.wait(0.5)
@@ -490,7 +493,8 @@ def test_a_robot_that_cannot_say_so_is_homed_by_hand(evidence: Evidence) -> None
     if evidence is Evidence.STATE:
         return  # a reboot is not detectable there
     assert "not homed" in str(cell(rig).held_by)
-    assert "--by-hand" in str(rig.operate(Verb.HOME, "ra1"))
+    if evidence is Evidence.JOINTS:
+        assert "--by-hand" in str(rig.operate(Verb.HOME, "ra1"))
     assert rig.operate(Verb.HOME, "ra1", by_hand=True) is None
     act(rig, Verb.RETRY)
     assert rig.wait(30.0, until=lambda: cell(rig).state is CellState.IDLE)
@@ -526,6 +530,23 @@ def test_cancel_of_the_running_task_by_its_id_lets_the_next_one_start(
     rig.wait(90.0, until=lambda: rig.plant.at_rest and not cell(rig).queue)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.CANCELLED, TaskState.DONE]
     assert (witness.false_successes, witness.illegal) == ([], [])
+
+
+def test_a_cancel_says_whether_an_operator_or_the_client_asked_for_it(stage: Stage) -> None:
+    rig, _ = stage()
+    for number in range(4):
+        rig.submit(f"sis_a 0B 7 #t{number}")
+    for number, client in ((2, False), (3, True), (0, False), (1, True)):  # two that wait, then two that run
+        rig.wait_for("sis_a", "move to pick-up")
+        rig.tell(OperatorRequest(at=rig.now, verb=Verb.CANCEL, scope=f"t{number}", client=client))
+        assert rig.answers[-1].refusal is None
+        task = rig.plant.intake.tasks[f"t{number}"]
+        assert rig.wait(60.0, until=lambda task=task: task.state is TaskState.CANCELLED)
+    said = {task: change.sentence for task, change in rig.outcomes().items()}
+    by = ("operator", "client", "operator", "client")
+    assert said == {f"t{number}": f"cancelled by the {who}" for number, who in enumerate(by)}
+    acts = [act.sentence for act in rig.plant.acts]
+    assert acts == ["cancel t2", "cancel t3 by its client", "cancel t0", "cancel t1 by its client"]
 
 
 @levels

@@ -152,6 +152,4 @@ def test_a_level_that_there_is_not_is_refused():
         Climate.draw(MODEL, 1, "lots")
 
 
-GOLDEN = Fault(
-    kind="lost_queue", at=7.489, seconds=0.56, target="rm_sis_b", amount=0.0, word="", seed=3372213626
-)
+GOLDEN = Fault(kind="operator_reset", at=20.448, target="rm_sis_b", seed=301925940)

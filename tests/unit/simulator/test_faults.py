@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import pytest
 
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Verb
+from arboleda.core.messages import Heartbeat, Verb
 from arboleda.core.model import Evidence
+from arboleda.core.plant import HEARTBEAT_S
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
@@ -112,6 +114,12 @@ def happened(world: World, what: str) -> list[Any]:
     return found
 
 
+def hears_retained(world: World) -> bool:
+    """Whether the bridge takes anything in that its broker kept."""
+    events = [event for passed in happened(world, "bridged") for event in passed.events]
+    return any(getattr(event, "retain", False) for event in events)
+
+
 def lateness(world: World) -> float:
     """How late the bridge hears the arm's telemetry, s."""
     said: dict[bytes, float] = {}
@@ -130,6 +138,19 @@ def lateness(world: World) -> float:
     world.advance(LOOK_S)
     world.watchers.remove(look)
     return round(max(late, default=-1.0), 3)
+
+
+def in_time(world: World) -> bool:
+    """Whether the plant's heartbeats reach the bridge as regularly as they leave."""
+    times: list[float] = []
+
+    def look() -> None:
+        times.extend(world.now for each in world.moment.taken if isinstance(each.message, Heartbeat))
+
+    world.watchers.append(look)
+    world.advance(LOOK_S)
+    world.watchers.remove(look)
+    return {round(later - sooner, 6) for sooner, later in pairwise(times)} == {HEARTBEAT_S}
 
 
 def attribute(name: str) -> Callable[[World], Any]:
@@ -155,12 +176,15 @@ LASTING: dict[str, tuple[dict[str, Any], Callable[[World], Any], Any]] = {
     "delay": ({"target": "ra_1", "word": "up", "amount": 0.25}, lateness, 0.25),
     "partition": ({"target": "ra_1", "word": "up, lost"}, speaks("ra_1"), False),
     "hop_delay": ({"target": PLANT, "word": "to plant", "amount": 5.0}, reports, False),
+    "hop_reorder": ({"target": PLANT, "word": "to bridge", "amount": 0.5}, in_time, False),
     "hop_partition": ({"target": PLANT, "word": "to plant, lost"}, reports, False),
     "broker_restart": ({"target": "broker"}, lambda world: world.broker.is_up, False),
     "lost_queue": ({"target": BRIDGE}, speaks("ra_1"), False),
     "bridge_restart": ({"target": BRIDGE}, lambda world: world.bridge is not None, False),
     "bridge_stall": ({"target": BRIDGE}, reports, False),
     "plant_stall": ({"target": PLANT}, beats, False),
+    "plant_freeze": ({"target": PLANT, "word": "machine", "amount": 3600.0}, beats, False),
+    "foreign_repeat": ({"target": "ra_1"}, hears_retained, True),
     "foreign_retained": (
         {"target": "ra_1", "word": "move"},
         lambda world: "ra_1/juntas" in world.broker.retained,
@@ -225,11 +249,16 @@ def test_every_kind_is_in_one_of_the_tables():
         "reboot",
         "lost_steps",
         "lost_part",
+        "opened_effector",
         "plant_crash",
         "second_orchestrator",
+        "foreign_beat",
+        "foreign_command",
         "double_submit",
         "bad_task",
+        "flood_of_tasks",
         "foreign_garbage",
+        "foreign_report",
         "foreign_stray",
         "foreign_old",
         "foreign_halt",
@@ -445,6 +474,45 @@ def test_a_superseded_orchestrator_has_no_say(world, robot, word):
     assert world.bridge.counters[robot].refused == (word != "beat")
 
 
+def test_a_frozen_plant_finds_that_a_day_has_passed_and_everything_else_comes_so_much_later(world):
+    came = []
+    world.at(world.now + 30.0, lambda _: came.append(world.now))
+    began = world.now
+    end = begin(world, fault("plant_freeze", PLANT, word="machine", seconds=5.0, amount=86_000.0))
+    world.advance(4.9)
+    end()
+    assert happened(world, "sent")[0].seconds == pytest.approx(86_004.9, abs=0.3)
+    world.advance(30.0)
+    assert came == [pytest.approx(began + 86_030.0)]
+
+
+@pytest.mark.parametrize(
+    ("robot", "word"),
+    [(robot, word) for robot in ("ra1", "rm_sis_a") for word in ("home", "clear")]
+    + [("ra1", "move"), ("ra1", "effector on"), ("ra1", "effector off"), ("rm_sis_a", "path")],
+)
+def test_a_node_of_somebody_else_has_no_say_while_the_plant_is_heard(world, robot, word):
+    world.advance(1.0)
+    assert orders(world, fault("foreign_command", robot, word=word)) == []
+    assert world.bridge.counters[robot].refused == 1
+    (noticed,) = world.plant.dispatcher.interference.noticed
+    assert "/stranger was refused (foreign)" in noticed.sentence
+
+
+def test_a_stop_of_somebody_else_counts_and_is_told_of(world):
+    world.advance(1.0)
+    assert len(orders(world, fault("foreign_command", "ra1", word="stop"))) == 1
+    (noticed,) = world.plant.dispatcher.interference.noticed
+    assert noticed.sentence == "ra1: stop_cmd 1 of /stranger was obeyed"
+
+
+def test_nobody_foreign_commands_a_bridge_that_hears_no_plant(world):
+    world.stop_bridge()
+    world.start_bridge()
+    assert orders(world, fault("foreign_command", "ra1", word="home"), 0.1) == []
+    assert world.bridge.counters["ra1"].refused == 0
+
+
 @pytest.mark.parametrize(("word", "state"), [("stop", "STOP_LATCHED"), ("halt", "STOPPED")])
 def test_a_stop_counts_whoever_says_it(world, word, state):
     assert len(orders(world, fault("second_orchestrator", "ra1", word=word))) == 1
@@ -452,11 +520,26 @@ def test_a_stop_counts_whoever_says_it(world, word, state):
 
 
 @pytest.mark.parametrize("board", ["ra_1", "rm_sis_a"])
-@pytest.mark.parametrize("kind", ["foreign_garbage", "foreign_stray", "foreign_retained", "foreign_old"])
+@pytest.mark.parametrize(
+    "kind", ["foreign_garbage", "foreign_report", "foreign_stray", "foreign_retained", "foreign_old"]
+)
 def test_nothing_that_strangers_publish_is_carried_out(world, kind, board):
     for word in dict.fromkeys(KINDS[kind].words(world.model, board)):
         for seed in range(10):
             assert orders(world, fault(kind, board, word=word, seed=seed), 0.01) == []
+
+
+@pytest.mark.parametrize("board", ["ra_1", "rm_sis_a"])
+def test_what_a_kind_of_robot_cannot_say_is_refused_and_believed_by_nobody(world, board):
+    robot = {"ra_1": "ra1", "rm_sis_a": "rm_sis_a"}[board]
+    foreign = dict.fromkeys(KINDS["foreign_report"].words(world.model, board))
+    reports = world.plant.dispatcher.beliefs[robot].reports
+    for count, word in enumerate(foreign, start=1):
+        begin(world, fault("foreign_report", board, word=word))
+        world.settle()
+        assert world.bridge.counters[robot].refused == count
+        assert word in world.bridge.counters[robot].last
+    assert world.plant.dispatcher.beliefs[robot].reports == reports
 
 
 def test_strangers_leave_a_board_alone_that_has_heard_nothing():

@@ -313,6 +313,16 @@ def mobile_runs_on(patch: Patch) -> Watch:
     return watch
 
 
+def robbed_unnoticed(patch: Patch) -> Watch:
+    patch.setattr(Context, "part_gone", lambda self: None)
+    watch = Watch()
+    watch.world.request_task("sis_a 0B 7")
+    watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
+    watch.world.open_effector(ARM)
+    watch.wait(30.0)
+    return watch
+
+
 BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("one_robot_per_zone", everybody_gets_it),
     ("zone_released_only_outside", freed_at_a_stop),
@@ -335,6 +345,7 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("station_gets_one_part", two_parts),
     ("one_pick_one_place", two_parts),
     ("done_task_is_true", nothing_was_done),
+    ("robbed_task_is_not_done", robbed_unnoticed),
     ("latched_board_stays_still", moved_while_latched),
     ("stop_holds", moved_while_latched),
     ("speed_never_rises_after_stop", arm_runs_on),

@@ -10,11 +10,35 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import belief, cell, context, dispatcher, leaves, ledger, operator, plant, recipes
+from arboleda.core import (
+    belief,
+    cell,
+    context,
+    dispatcher,
+    evidence,
+    leaves,
+    ledger,
+    operator,
+    plant,
+    recipes,
+)
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import TABLE, Feed, State
-from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, StopMode, TaskState, Verb
-from arboleda.core.model import Arm, Evidence, PlantModel, Retry
+from arboleda.core.messages import (
+    Command,
+    Fact,
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    OperatorRequest,
+    SetEffector,
+    Stop,
+    StopMode,
+    TaskState,
+    Verb,
+)
+from arboleda.core.model import Arm, Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.core.task import Recipe
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
@@ -29,6 +53,7 @@ from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped, slowed
 from arboleda.wire import board as wire_board
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 INVARIANTS = (*COMMANDS, *TASKS, *WIRE, *LIVENESS, *BOOKS)
@@ -133,6 +158,46 @@ def test_nothing_is_found_with_operators(verbs, at_s):
     watch.wait(30)
     watch.end()
     assert watch.found == {}
+
+
+def other(watch: Watch, command: Command) -> None:
+    """A node of somebody else commands the bridge, which takes it for another's than the plant's."""
+    said = FromPlant(at=watch.world.now, message=command)
+    watch.world.broker.clients[BRIDGE].inbox.append(said)
+    watch.wait(0.01)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        MoveJoints(id="", robot="ra1", q=(0.1, 0.0, 0.0)),
+        SetEffector(id="", robot="ra1", on=True),
+        Home(id="", robot="ra1"),
+        Stop(id="", robot="ra1", mode=StopMode.CLEAR),
+        FollowPath(id="", robot="rm_sis_a", nodes=(0, 3)),
+    ],
+    ids=lambda command: type(command).__name__,
+)
+def test_bridge_obeys_only_its_plant(bites, command):
+    watch = Watch(replace(shipped("sis_a"), foreign_commands=ForeignCommands.OBEY))
+    other(watch, command)
+    bites(watch)
+
+
+def test_bridge_obeys_only_its_plant__in_stops():
+    watch = Watch()
+    other(watch, Stop(id="", robot="ra1", mode=StopMode.HALT))
+    assert watch.found == {}
+
+
+def test_no_move_after_its_halt(bites):
+    watch = Watch()
+    for command in (
+        Stop(id=f"{watch.world.plant.epoch}-902", robot="ra1", mode=StopMode.HALT),
+        MoveJoints(id=f"{watch.world.plant.epoch}-901", robot="ra1", q=(0.1, 0.0, 0.0)),
+    ):
+        other(watch, command)
+    bites(watch)
 
 
 @pytest.mark.parametrize("process", [PLANT, BRIDGE, "ra_1", "rm_sis_a"])
@@ -332,11 +397,31 @@ def test_each_task_ends_once(monkeypatch, bites):
 
 
 def test_ended_tasks_stay_ended(monkeypatch, bites):
-    monkeypatch.setattr(operator.Operator, "_cancel_task", lambda self, id: None)
+    monkeypatch.setattr(operator.Operator, "_cancel_task", lambda self, id, failure: None)
     watch = Watch()
     watch.task(f"{TASK} #one", wait_s=20)
     watch.verb(Verb.CANCEL, "#one")
     bites(watch)
+
+
+def test_no_task_fails_without_a_fault(monkeypatch, bites):
+    monkeypatch.setattr(evidence, "reached", lambda entry, belief: False)
+    watch = Watch()
+    watch.task(wait_s=20)
+    bites(watch)
+
+
+@pytest.mark.parametrize("disturb", ["an operator", "a fault"])
+def test_a_task_may_fail_after_somebody_or_something_disturbed_it(monkeypatch, disturb):
+    monkeypatch.setattr(evidence, "reached", lambda entry, belief: False)
+    watch = Watch()
+    if disturb == "a fault":
+        watch.world.crash(BRIDGE)
+    else:
+        watch.verb(Verb.RESUME, "sis_a")
+    watch.task(wait_s=30)
+    assert watch.world.plant.intake.tasks.popitem()[1].failure is not None
+    assert "no_task_fails_without_a_fault" not in watch.found
 
 
 def test_only_legal_task_states(monkeypatch, bites):
@@ -419,6 +504,26 @@ def test_every_request_is_answered(monkeypatch, bites):
 
 def broken(order: Any, context: Any) -> Any:
     raise KeyError("a defect")
+
+
+def test_nothing_moves_after_an_absence(bites, monkeypatch):
+    monkeypatch.setattr(plant.Plant, "_come_back", lambda self, away_s: None)
+    watch = Watch()
+    watch.task("sis_a palletizing", wait_s=1.0)
+    watch.world.stall("plant", 3.0)
+    watch.wait(10.0)
+    bites(watch)
+
+
+@pytest.mark.parametrize("verb", [Verb.RETRY, Verb.ABANDON, Verb.CANCEL])
+def test_nothing_moves_after_an_absence__unless_an_operator_says_so(verb):
+    watch = Watch()
+    watch.task("sis_a palletizing", wait_s=1.0)
+    watch.world.stall("plant", 3.0)
+    watch.wait(10.0)
+    assert watch.world.plant.cells["sis_a"].state.value == "held"
+    watch.verb(verb, "sis_a", wait_s=10.0)
+    assert watch.found == {}
 
 
 def test_no_internal_failure(bites, monkeypatch):

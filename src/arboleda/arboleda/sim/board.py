@@ -101,6 +101,14 @@ class Board:
         self._boot(boot_id, homed=self._assume_homed)
         self._announce()
 
+    def put_at_reference(self) -> None:
+        """Somebody moves the still robot to where its counters begin.
+
+        A board without command numbers is not told to home; who stands beside it says so at the board.
+        """
+        self.body.put_at_reference()
+        self.homed = self.homed or not self._numbered
+
     def fail(self, now_us: int) -> None:
         """A driver reports an alarm: the board ramps to a stop and moves nothing until `repair`."""
         self.advance(now_us)

@@ -30,12 +30,32 @@ class Line:
         """When each copy of a message arrives; empty where it is lost."""
         if self.is_clear(now):
             return [now]
+        earliest = now if self.reorders and not keeps_its_place(message) else self.busy_until
+        return self._arrivals(now, message, earliest)
+
+    def _arrivals(self, now: float, message: Any, earliest: float) -> list[float]:
         delays = [0.0]
         for trouble in self.troubles:
             delays = [delay + more for delay in delays for more in trouble(message)]
-        earliest = now if self.reorders and not keeps_its_place(message) else self.busy_until
         arrivals = [max(earliest, now + delay) for delay in delays]
         self.busy_until = max(self.busy_until, *arrivals) if arrivals else self.busy_until
+        return arrivals
+
+
+class Hop(Line):
+    """One direction between plant and bridge: ROS 2 keeps the order of each topic, not that of several."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._busy_until: dict[str, float] = {}  # by topic
+
+    def carry_on(self, topic: str, now: float, message: Any) -> list[float]:
+        """When each copy of a message of a topic arrives; empty where it is lost."""
+        if self.is_clear(now):
+            return [now]
+        arrivals = self._arrivals(now, message, self._busy_until.get(topic, now))
+        if arrivals:
+            self._busy_until[topic] = max(arrivals)
         return arrivals
 
 

@@ -7,7 +7,7 @@ from itertools import count
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import TaskChanged, TaskState, Verb
-from arboleda.core.model import Cell, Evidence, MotionState
+from arboleda.core.model import Cell, MotionState
 
 from .chance import Dice
 from .world import World
@@ -145,5 +145,5 @@ class Attendant:
         for belief in beliefs:
             astray = belief.robot is cell.cell.arm and cell.context.astray() is not None
             if belief.online and (belief.unhomed or astray):
-                return Verb.HOME, belief.robot.name, belief.robot.evidence is not Evidence.IDS
+                return Verb.HOME, belief.robot.name, not belief.robot.says_homed
         return None

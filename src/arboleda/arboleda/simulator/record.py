@@ -7,33 +7,44 @@ from copy import copy
 from typing import Any
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import State
 from arboleda.core.messages import (
     Command,
+    Fact,
     FollowPath,
     Home,
+    InternalError,
     MoveJoints,
     OperatorAnswer,
     OperatorRequest,
+    Remember,
     Report,
     SetEffector,
     Stop,
     StopMode,
     TaskChanged,
     TaskRequest,
+    TaskState,
     Verb,
 )
 from arboleda.core.plant import Plant
 
 from .recorded.boards import Boards, KnownBoard
+from .recorded.bridge import Bridges
 from .recorded.cells import LOOK_S, KnownCell
 from .recorded.commands import Commands, SentCommand
+from .recorded.proofs import Proofs
 from .recorded.refusals import differences
 from .recorded.robots import KnownRobot, Obstacle, Stopped
 from .recorded.scopes import Scopes
+from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
+from .recorded.verbs import Before
+from .recorded.work import Works
 from .world import BRIDGE, World
 
 NO_VERBS: frozenset[Verb] = frozenset()
+GETS_GOING = frozenset({Verb.RESUME, Verb.RETRY, Verb.ABANDON, Verb.CANCEL, Verb.HOME})
 SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line may still have old reports
 
 
@@ -43,9 +54,13 @@ class Record:
     `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `news`: whether
     something changed in it besides what robots report, or it is time to look at everything again.
     `anew`: the last reports that said something else than before, or the same for some time.
+    `away`: whether the plant finds in this step that it did nothing for long; `unattended`: the cells for
+    which nobody has asked for anything since, and whether they had something to do then; `unasked`: the
+    motions that it sends to such a cell by itself in this step.
+    `undisturbed`: no operator has asked for anything yet.
     `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
     `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
-    until then. `answers` and `transitions` (cell, state before, state after) are of this step;
+    until then. `answers`, `errors` and `transitions` (cell, state before, state after) are of this step;
     `differences` are what a step changed in which everything asked was refused and nothing was heard.
     """
 
@@ -57,25 +72,40 @@ class Record:
         self.robots = {name: KnownRobot(robot, stale_after_s) for name, robot in model.robots.items()}
         self.cells = {cell.name: KnownCell(cell) for cell in model.cells}
         self.commands = Commands()
+        self.proofs = Proofs()
+        self.bridges = Bridges(model)
+        self.works = Works(self.cells, model.timing.dwell_s)
+        self.asked = Before()
+        world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world.plant))
+        self.kept: dict[Fact, dict[str, str]] = {}  # before this step
+        self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)
         self.boards = Boards(
             {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
         )
+        self.stops = EarlyStops()
         self.anew: list[Report] = []
         self.answers: list[OperatorAnswer] = []
+        self.errors: list[InternalError] = []
         self.transitions: list[tuple[KnownCell, CellState, CellState]] = []
         self.differences: list[str] = []
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
         self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
         self.stepped = self.news = self.born = self.told = False
+        self.undisturbed = True
         self._cells = tuple(self.cells.values())
         self._look_again_at = 0.0
         self._has_news = False
         self.stepped_at = world.plant.now
         self.slow_until = world.now
+        self._skipped_s = world.skipped_s
         self._next: dict[str, float] = {}
+        self.away = False
+        self.unattended: dict[str, bool] = {}
+        self.unasked: list[Command] = []
         self._verbs: dict[str, set[Verb]] = {}
+        self._cancels_a_task = False
         self._earlier: dict[str, list[KnownRobot]] = {}
         self._plant = world.plant
         self._begin(world.plant)
@@ -88,13 +118,22 @@ class Record:
             self._clear_news()
         if moment.delivered or moment.executed:
             self._look_at_boards()
+        if moment.bridged:
+            self.bridges.look(moment.bridged)
+        if moment.taken:
+            self.stops.look(moment.taken)
         inbox, now = self.world.broker.clients[BRIDGE].inbox, self.world.now
-        if self.world.to_plant.troubles or (inbox and inbox[0].at < now):  # also while nothing is delivered
-            self.slow_until = now + SLOW_S
+        skipped = self.world.skipped_s != self._skipped_s
+        if skipped or self.world.to_plant.troubles or (inbox and inbox[0].at < now):
+            self.slow_until, self._skipped_s = now + SLOW_S, self.world.skipped_s
         if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
             self._look_at_plant(plant)
         elif self.stepped:
             self.stepped = self.news = self.born = False
+
+    def effector_of(self, arm: str) -> str:
+        """What is kept of an effector."""
+        return self._kept.get(Fact.EFFECTOR, {}).get(arm, "off")
 
     def told_since(self, at: float) -> float:
         """Since when a position that reached the plant at `at` may have been told."""
@@ -114,8 +153,11 @@ class Record:
         """A plant that starts knows nothing but what it had to keep."""
         self._plant = plant
         self.stepped_at = plant.now
+        self.unattended.clear()
         self.tasks.forget()
         self.commands.forget()
+        self.proofs.forget()
+        self.works.forget()
         for robot in self.robots.values():
             robot.forget()
         for name, cell in self.cells.items():
@@ -125,11 +167,13 @@ class Record:
 
     def _take_over(self, plant: Plant) -> None:
         """What robots said before this record began; the only time that the plant is asked."""
+        self.bridges.take_over(self.world.bridge, self.world.now, plant.dispatcher.beliefs)
         for name, known in self.robots.items():
             belief = plant.dispatcher.beliefs[name]
             known.heard_at, known.state, known.homed = belief.heard_at, belief.state, belief.homed
             known.boot, known.epoch, known.plant = belief.boot_id, belief.epoch, belief.plant
             known.q, known.node = belief.q, belief.node
+            known.effector, known.piece = belief.effector, belief.piece
             if (board := self.boards.of_robot.get(name)) is not None:
                 board.take_over(self.world.now, belief.q, belief.node)
 
@@ -148,10 +192,16 @@ class Record:
         if self.born:
             self._begin(plant)
         self._earlier.clear()
+        self.away = not self.born and plant.now - self.stepped_at > plant.away_after_s
+        if self.away:
+            self.unattended = {cell.name: self._has_work(cell) for cell in self._cells}
+        self.proofs.clear_news()
+        self.works.clear_news()
         if moment.heard:
             self._hear(bool(moment.asked))
         if moment.asked:
             self._ask(moment.asked)
+        self.kept = self._kept
         for message in moment.sent:
             take = TAKES.get(type(message))
             if take is not None:
@@ -159,10 +209,30 @@ class Record:
         self._compare(plant)
         self.stepped_at = plant.now
 
+    def _has_work(self, cell: KnownCell) -> bool:
+        return cell.tree is not None or cell.queued > 0
+
+    def _is_unasked(self, command: Command) -> bool:
+        """Whether it moves a robot of a cell for which nobody has asked for anything since the absence.
+
+        What is asked of one robot of a cell may move the other: `abandon` of the mobile brings the arm home.
+        """
+        moves = isinstance(command, MoveJoints | FollowPath | Home)
+        cell = self.world.model.cell_of[command.robot]
+        if not moves or cell.name not in self.unattended or self._cancels_a_task:
+            return False
+        return all(GETS_GOING.isdisjoint(self._verbs.get(robot.name, NO_VERBS)) for robot in cell.robots)
+
+    def _attend(self, scope: str) -> None:
+        for name in self.scopes.cells(scope):
+            self.unattended.pop(name, None)
+
     def _clear_news(self) -> None:
         self.commands.clear_news()
+        self.unasked.clear()
         self.tasks.clear_news()
         self.answers.clear()
+        self.errors.clear()
         self.transitions.clear()
         self.differences.clear()
         self._has_news = self.told = False
@@ -170,10 +240,16 @@ class Record:
     def _compare(self, plant: Plant) -> None:
         """Take over what the plant's books say after this step."""
         moved = self.commands.follow(plant.dispatcher.ledger, plant.now)
+        if moved:
+            self.proofs.follow(list(self.commands.open.values()))
+            self._follow_homing()
+        if self.commands.new or self.tasks.changes:
+            self.works.follow(self.tasks, self.commands.new, plant.now)
         asked = bool(self.world.moment.asked)
         if asked:
             self.differences += differences(self)
             self._verbs.clear()
+            self._cancels_a_task = False
         if self.world.model.zones:
             self._look_at_zones(plant)
         changed = self._look_at_cells()
@@ -181,7 +257,8 @@ class Record:
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
-        self.told = bool(self.tasks.changes or self.tasks.refused or self.answers or self.transitions)
+        said = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
+        self.told = bool(said or self.errors)
         if self.news or plant.now >= self._look_again_at:
             self._look_into_trees(plant.now)
 
@@ -196,6 +273,7 @@ class Record:
                 continue
             if report.robot in commanded and (asked or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
+            self.proofs.hear(report, known)
             if known.hear(report):
                 self.anew.append(report)
                 self.commands.hear(report)
@@ -203,6 +281,8 @@ class Record:
     def _ask(self, asked: list[Any]) -> None:
         for event in asked:
             if isinstance(event, OperatorRequest):
+                self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
+                self.undisturbed = False
                 for robot in self.scopes.robots(event.scope):
                     self._verbs.setdefault(robot, set()).add(event.verb)
 
@@ -212,8 +292,18 @@ class Record:
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
             self.waiting = [cell for cell in self._cells if cell.cell.arm.name in robots]
-        for cell in self.waiting:
+        for cell in self.waiting if not self.away else ():
             cell.wait(plant.now - self.stepped_at)
+        goals: dict[str, list[Any]] = {}
+        for each in self.commands.new:
+            if each.entry is not None:
+                of_cell = goals.setdefault(each.entry.cell, [])
+                of_cell += [each.command.q] if isinstance(each.command, MoveJoints) else []
+        holders = plant.zones.robots
+        for cell in self._cells:
+            if cell.name in goals:
+                cell.watch_recovery(goals[cell.name])
+            cell.holds_zones = cell.cell.arm.name in holders
 
     def _look_at_cells(self) -> bool:
         """Whether any of them is not as it was."""
@@ -237,13 +327,15 @@ class Record:
         sent = {each.command.id for each in new}
         senders = {each.entry.cell for each in new if each.entry}
         for cell in self._cells:
-            cell.watch_time(now)
+            cell.watch_time(now, away=self.away)
             if (due or cell.name in senders) and cell.state is CellState.EXECUTE:
                 cell.look(sent)
 
     def _on_command(self, command: Command) -> None:
         known = self.robots[command.robot]
         verbs = frozenset(self._verbs[command.robot]) if command.robot in self._verbs else NO_VERBS
+        if self.unattended and self._is_unasked(command):
+            self.unasked.append(command)
         obstacles = frozenset() if isinstance(command, Stop) else self._obstacles(known)
         if isinstance(command, Stop):
             verbs |= self._missed(command, known, verbs)
@@ -269,16 +361,32 @@ class Record:
         cell = self.cells[self.world.model.cell_of[known.robot.name].name]
         return found | {Obstacle.STOPPED} if cell.stopped else found
 
+    def _on_fact(self, said: Remember) -> None:
+        kept = {fact: dict(rows) for fact, rows in self._kept.items()}
+        rows = kept.setdefault(said.fact, {})
+        rows.pop(said.name, None)
+        if said.value is not None:
+            rows[said.name] = said.value
+        self._kept = kept
+
     def _on_task(self, said: TaskChanged) -> None:
         requests = (each for each in self.world.moment.asked if isinstance(each, TaskRequest))
         again = said.request is not None or any(each.request is None for each in requests)
         self.tasks.take(said, self._plant.now, asked_again=again)
+        if said.state is TaskState.QUEUED and not self.unattended.get(said.cell or "", True):
+            del self.unattended[said.cell or ""]  # it had nothing to do, and now somebody asks for something
 
     def _on_answer(self, answer: OperatorAnswer) -> None:
         self.answers.append(answer)
+        if answer.refusal is None and answer.verb in GETS_GOING:
+            self._attend(answer.scope)
         done = DONE.get(answer.verb)
         if answer.refusal is None and done is not None:
             done(self, answer.scope)
+
+    def _on_error(self, error: InternalError) -> None:
+        self.errors.append(error)
+        self._has_news = True
 
     def _stopped(self, scope: str) -> None:
         for name in self.scopes.robots(scope):
@@ -298,6 +406,12 @@ class Record:
         for name in self.scopes.cells(scope):
             self.cells[name].again += 1
 
+    def _follow_homing(self) -> None:
+        """Whose routine has ended knows again where it is."""
+        for sent, _ in self.commands.moved:
+            if isinstance(sent.command, Home) and sent.state is State.DONE:
+                self.robots[sent.robot].displaced = False
+
     def _homed(self, scope: str) -> None:
         asked = self.world.moment.asked
         if any(isinstance(each, OperatorRequest) and each.by_hand for each in asked):
@@ -312,6 +426,7 @@ class Record:
             task = self.tasks.open.get(self.tasks.running.get(cells[0], ""))
         if task is not None:
             task.cancelled = True
+            self.unattended.pop(task.cell, None)
 
 
 TAKES: dict[type, Callable[[Record, Any], None]] = {
@@ -322,6 +437,8 @@ TAKES: dict[type, Callable[[Record, Any], None]] = {
     Home: Record._on_command,
     TaskChanged: Record._on_task,
     OperatorAnswer: Record._on_answer,
+    Remember: Record._on_fact,
+    InternalError: Record._on_error,
 }
 DONE: dict[Verb, Callable[[Record, str], None]] = {
     Verb.STOP: Record._stopped,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -9,6 +10,7 @@ from dataclasses import dataclass, field
 from arboleda.core.model import PlantModel
 from arboleda.core.recipes import Recipes
 
+from .apart import come_apart
 from .faults import Fault
 from .invariants import INVARIANTS, Invariant
 from .people import Attendant, Customers
@@ -58,14 +60,16 @@ class Simulation:
         self.world, self.trace = self.watched.world, self.watched.trace
         self.result = Result(seed=seed, faults=self.watched.faults)
         self._plan = plan
+        come_apart(self.world, seed)
         self._customers = Customers(self.world, seed)
         Attendant(self.world, seed)
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
         """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
+        end = math.inf if seconds is None else self.watched.start + seconds
         try:
             while not self._enough(cycles, seconds):
-                self._minute(self.result.minutes)
+                self._minute(self.result.minutes, end)
             self._customers.go()
             self.watched.come_to_rest()
         except Broken as broken:
@@ -80,11 +84,11 @@ class Simulation:
         wanted = cycles or 0
         return self._customers.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
 
-    def _minute(self, minute: int) -> None:
+    def _minute(self, minute: int, end: float) -> None:
         self.result.minutes += 1
         for fault in self._plan(minute):
             self.watched.expect(fault)
-        self.world.advance(self.watched.start + (minute + 1) * MINUTE_S - self.world.now)
+        self.world.advance(min(self.watched.start + (minute + 1) * MINUTE_S, end) - self.world.now)
 
     def _finished(self) -> Result:
         result = self.result

@@ -10,6 +10,7 @@ from hashlib import blake2b
 from typing import Any
 
 from arboleda.core.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
+from arboleda.wire.hop import shown
 
 from .world import World
 
@@ -71,8 +72,13 @@ class Trace:
             for client, each in moment.published
             if not each.topic.endswith(QUIET)
         ]
+        others = [
+            f"{each.sender:<10} {shown(each.message)} to {each.message.robot}, without an id"
+            for each in moment.taken
+            if each.sender and not isinstance(each.message, Heartbeat)
+        ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
-        return [*asked, *sent, *said, *done]
+        return [*asked, *sent, *others, *said, *done]
 
 
 @cache

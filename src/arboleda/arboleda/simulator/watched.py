@@ -46,7 +46,7 @@ class Watched:
         recipes: Recipes | None = None,
     ) -> None:
         self.world = World(model, recipes=recipes)
-        self.start = self.world.now
+        self._start = self.world.now
         self.faults: list[Fault] = []
         self.invariants = tuple(invariants)
         self.trace = Trace(self.world, keep=keep, tell=tell)
@@ -55,6 +55,11 @@ class Watched:
         self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
+
+    @property
+    def start(self) -> float:
+        """When it began, were it not for the time in which nobody did anything."""
+        return self._start + self.world.skipped_s
 
     @property
     def seconds(self) -> float:
@@ -87,8 +92,8 @@ class Watched:
         self._rests += 1
         for number in list(self._ends):
             self._end(number)
-        end = self.world.now + REST_S
-        while self.world.now < end and not self._judges.is_at_rest(self._look):
+        end = self.seconds + REST_S
+        while self.seconds < end and not self._judges.is_at_rest(self._look):
             self.world.advance(1.0)
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S)

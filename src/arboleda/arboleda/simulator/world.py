@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from heapq import heappop, heappush
 from itertools import count
 from typing import Any
@@ -24,18 +24,31 @@ from arboleda.core.messages import (
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.recipes import Recipes
+from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices
-from arboleda.wire.bridge import Bridge, FromPlant
+from arboleda.wire.bridge import Bridge
+from arboleda.wire.hop import HEARTBEAT, FromPlant, command_topic, loses_its_id, plain_topic, without_id
 from arboleda.wire.payloads import Goal
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .network import Broker, Client, Line
+from .network import Broker, Client, Hop
 
 PLANT, BRIDGE = "plant", "bridge"
 BY_HAND_S = 1.0  # from a robot put right to the word that it is
 AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
 Carry = Callable[[Publication], Iterable[Publication]]
+Part = Callable[[Report], Iterable[Report]]
+
+
+@dataclass(slots=True)
+class Passed:
+    """One step of the bridge: what it took in, in order, and what it gave out."""
+
+    bridge: Bridge
+    now: float
+    events: list[Any]
+    out: list[Any]
 
 
 @dataclass(slots=True)
@@ -45,18 +58,24 @@ class Moment:
     asked: list[Event] = field(default_factory=list)  # tasks and operators' requests that reached the plant
     heard: list[Report] = field(default_factory=list)  # reports that reached the plant
     sent: list[Any] = field(default_factory=list)  # commands and notices of the plant
+    taken: list[FromPlant] = field(default_factory=list)  # what the bridge took in from the plant and others
     published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
     delivered: list[tuple[str, Delivery]] = field(default_factory=list)  # (client, what reached it)
     executed: list[tuple[str, Goal]] = field(default_factory=list)  # (board, command it carries out)
+    opened: list[str] = field(default_factory=list)  # boards whose effectors somebody else opened
+    bridged: list[Passed] = field(default_factory=list)  # what the bridge took in, and gave out
     put_right: list[str] = field(default_factory=list)  # boards whose robots somebody moved by hand
 
     def clear(self) -> None:
         self.asked.clear()
         self.heard.clear()
         self.sent.clear()
+        self.taken.clear()
         self.published.clear()
         self.delivered.clear()
         self.executed.clear()
+        self.opened.clear()
+        self.bridged.clear()
         self.put_right.clear()
 
 
@@ -64,8 +83,9 @@ class World:
     """A plant at `now` seconds; `advance` moves it from deadline to deadline, `watchers` are called after
     every pass with what happened in `moment`.
 
-    `carriers` turn what somebody publishes into what the network gets; `memory` is what the plant had to
-    keep. Processes and their lines are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
+    `carriers` turn what somebody publishes into what the network gets, `partings` a robot's report into
+    several, stamped with when they come; `memory` is what the plant had to keep. Processes and their lines
+    are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
     """
 
     def __init__(
@@ -83,9 +103,11 @@ class World:
         self.moment = Moment()
         self.watchers = list(watchers)
         self.carriers = list(carriers)
+        self.partings: dict[str, Part] = {}
+        self.before_asking: list[Callable[[], None]] = []  # called before a step in which somebody asks
         self.memory: dict[Fact, dict[str, str]] = {}
         self.faults_active = 0  # lasting faults that have begun and not ended
-        self.last_fault_at = -math.inf
+        self.last_fault_at = -math.inf  # when anything last broke, or was mended again
         self.deceptions: Counter[tuple[str, str]] = Counter()  # (board, what it now may lie about)
         self.holds: Counter[tuple[str, str]] = Counter()  # (what faults keep up, whom): by how many of them
         self.obeyed: dict[str, Goal] = {}  # the last command that each board carried out since it booted
@@ -94,10 +116,12 @@ class World:
         self._agenda: list[tuple[float, int, Callable[[Any], None], Any]] = []
         self._agenda_no = count()
         self._stalled: dict[str, float] = {}
+        self.skipped_s = 0.0  # of `now`, in which nobody did anything
         self._off: set[str] = set()
         self.broker = Broker(lambda: self.now, self.at, self._hear)
-        self.to_bridge, self.to_plant = Line(), Line()  # the hop between plant and bridge
-        self._recipes = recipes
+        self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
+        self.beat_reached_bridge_at = -math.inf  # the last heartbeat, since the bridge started
+        self.recipes = recipes
         self.plant = Plant(model, epoch=next(self._epochs), now=now, recipes=recipes)
         self.devices = Devices(model, now=now, boot_ids=lambda: next(self._boot_ids))
         self.boards: dict[str, Board] = self.devices.boards
@@ -127,8 +151,15 @@ class World:
         """Somebody moves the still robots of a scope by hand to where their counters begin."""
         for name in self._boards_of(scope):
             if not self.boards[name].body.moving:
-                self.boards[name].body.put_at_reference()
+                self.boards[name].put_at_reference()
                 self.moment.put_right.append(name)
+
+    def open_effector(self, board: str) -> None:
+        """Somebody else than this plant opens an effector; its board says that it is off."""
+        body = self.boards[board].body
+        if isinstance(body, ArmBody) and self.is_on(board) and not body.stuck:
+            body.switch_effector(False)
+            self.moment.opened.append(board)
 
     def tell(self, event: Event) -> None:
         """Put an event into the plant's inbox."""
@@ -136,10 +167,11 @@ class World:
 
     def crash(self, process: str = PLANT) -> None:
         """A process dies and starts anew at once, the plant with what it had to keep, a board as it boots."""
+        self.last_fault_at = self.now
         if process == PLANT:
             self._plant_inbox = []
             self.plant = Plant(
-                self.model, epoch=next(self._epochs), now=self.now, memory=self.memory, recipes=self._recipes
+                self.model, epoch=next(self._epochs), now=self.now, memory=self.memory, recipes=self.recipes
             )
             self._due[PLANT] = self.now
         elif process == BRIDGE:
@@ -151,9 +183,17 @@ class World:
 
     def stall(self, process: str, seconds: float) -> None:
         """A process does nothing for a while; what reaches it waits."""
+        self.last_fault_at = self.now
         until = max(self.now + seconds, self._stalled.get(process, 0.0))
         self._stalled[process] = until
         self.at(until, self._go_on, process)
+
+    def skip(self, seconds: float) -> None:
+        """Time passes in which nobody does anything: whatever was to come happens so much later."""
+        self.now += seconds
+        self.skipped_s += seconds
+        self._agenda = [(at + seconds, *rest) for at, *rest in self._agenda]  # in the same order
+        self._stalled = {process: until + seconds for process, until in self._stalled.items()}
 
     def go_on(self, process: str) -> None:
         """A process that is stalled does something again."""
@@ -171,6 +211,7 @@ class World:
 
     def power_off(self, board: str, *, will_after_s: float = 0.0) -> None:
         """A board loses power; the broker tells its last will when it notices."""
+        self.last_fault_at = self.now
         if board in self._off:
             return
         client = self.broker.clients[board]
@@ -203,6 +244,7 @@ class World:
 
     def stop_broker(self) -> None:
         """The broker dies: every connection breaks, and what it retained is gone."""
+        self.last_fault_at = self.now
         self.broker.die()
         for client in self.broker.clients.values():
             self._tell_connection(client)
@@ -215,8 +257,10 @@ class World:
 
     def stop_bridge(self) -> None:
         """The bridge's process dies."""
+        self.last_fault_at = self.now
         self.bridge = None
         self._off.add(BRIDGE)
+        self.beat_reached_bridge_at = -math.inf
         client = self.broker.clients[BRIDGE]
         client.inbox.clear()
         client.connect(False)
@@ -249,13 +293,13 @@ class World:
 
     def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
         """Let time pass, at most `seconds`; whether `until` came true."""
-        end = self.now + seconds
+        end = self.now - self.skipped_s + seconds
         if self._has_work():
             self.settle()
         while not until():
             due = self.next_deadline
-            if due > end:
-                self.now = end
+            if due - self.skipped_s > end:
+                self.now = end + self.skipped_s
                 return until()
             self.now = max(self.now, due)
             self.settle()
@@ -328,40 +372,70 @@ class World:
         if bridge is None or not self._awake(BRIDGE):
             return
         inbox, client.inbox = client.inbox, []
+        self.moment.taken += [event for event in inbox if isinstance(event, FromPlant)]
         now = self.now
         clear = self.to_plant.is_clear(now)
-        for message in bridge.step(now, inbox):
-            if not isinstance(message, Report):
+        out = bridge.step(now, inbox)
+        self.moment.bridged.append(Passed(bridge, now, inbox, out))
+        for message in out:
+            if isinstance(message, Report):
+                if message.robot in self.partings:
+                    for part in self.partings[message.robot](message):
+                        self.at(part.at, self._report, part)
+                elif clear and message.at == now:
+                    self._plant_inbox.append(message)
+                else:
+                    self._carry(self.to_plant.carry_on(message.robot, now, message), self._to_plant, message)
+            elif isinstance(message, Publication):
                 self.publish(message, client)
-            elif clear and message.at == now:
-                self._plant_inbox.append(message)
-            else:
-                self._carry(self.to_plant, self._to_plant, message)
         due = bridge.next_deadline
         self._due[BRIDGE] = math.inf if due is None else due
+
+    def _report(self, report: Report) -> None:
+        self._carry(self.to_plant.carry_on(report.robot, self.now, report), self._to_plant, report)
 
     def _step_plant(self) -> None:
         events, self._plant_inbox = self._plant_inbox, []
         for event in events:
             (self.moment.heard if isinstance(event, Report) else self.moment.asked).append(event)  # type: ignore[arg-type]
+        if self.moment.asked:
+            for look in self.before_asking:
+                look()
         for message in self.plant.step(self.now, events):
             self.moment.sent.append(message)
             if isinstance(message, Command | Heartbeat):
-                self._carry(self.to_bridge, self._to_bridge, message)
+                self._say(message)
             elif isinstance(message, Remember):
                 self._remember(message)
         self._due[PLANT] = self.plant.next_deadline
 
-    def _carry(self, line: Line, call: Callable[[Any], None], message: Any) -> None:
-        for at in line.carry(self.now, message):
+    def _say(self, message: Command | Heartbeat) -> None:
+        """The plant speaks to the bridge on topics of ROS 2, to all of which another node listens, too."""
+        if isinstance(message, Heartbeat):
+            self._to_hop(HEARTBEAT, FromPlant(at=self.now, message=message))
+            return
+        copied = loses_its_id(message)
+        self._to_hop(command_topic(message), FromPlant(at=self.now, message=message, copied=copied))
+        if copied:
+            self._to_hop(plain_topic(message), FromPlant(at=self.now, message=without_id(message)))
+
+    def _to_hop(self, topic: str, said: FromPlant) -> None:
+        self._carry(self.to_bridge.carry_on(topic, self.now, said.message), self._to_bridge, said)
+
+    def _carry(self, arrivals: Iterable[float], call: Callable[[Any], None], message: Any) -> None:
+        for at in arrivals:
             if at <= self.now:
                 call(message)
             else:
                 self.at(at, call, message)
 
-    def _to_bridge(self, message: Command | Heartbeat) -> None:
-        if self.bridge is not None:
-            self.broker.clients[BRIDGE].inbox.append(FromPlant(at=self.now, message=message))
+    def _to_bridge(self, said: FromPlant) -> None:
+        if self.bridge is None:
+            return
+        if isinstance(said.message, Heartbeat) and said.message.epoch == self.plant.epoch:
+            self.beat_reached_bridge_at = self.now
+        heard = said if said.at == self.now else replace(said, at=self.now)
+        self.broker.clients[BRIDGE].inbox.append(heard)
 
     def _to_plant(self, report: Report) -> None:
         self._plant_inbox.append(report if report.at == self.now else report.again(self.now))

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from arboleda.app import config
-from arboleda.app.simulate.request import on_boards
+from arboleda.app.simulate.plants import Plant
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import PlantModel
 from arboleda.simulator.chance import Dice
@@ -24,9 +24,10 @@ PLAIN = {
 def plant(named: PlantModel | Path | str | None, folder: Path | None) -> PlantModel:
     """The plant, each of its robots with a virtual board; Misuse with every mistake of its file."""
     if isinstance(named, PlantModel):
-        return on_boards(named)
+        return Plant(declared=named).model
     try:
-        return on_boards(config.load(_file(Path(named), folder) if named is not None else None))
+        declared = config.load(_file(Path(named), folder) if named is not None else None)
+        return Plant(declared=declared).model
     except ConfigError as error:
         raise Misuse(str(error)) from None
 

@@ -32,10 +32,16 @@ def lost_part(world: World, fault: Fault) -> None:
     whom.arm_body(world, fault.target).lose_piece()
 
 
+@kind(targets=whom.arms)
+def opened_effector(world: World, fault: Fault) -> None:
+    """Somebody else opens an effector, and its board says that it is off."""
+    world.open_effector(fault.target)
+
+
 def _keep(world: World, fault: Fault, attribute: str, value: bool) -> End:
     body = whom.arm_body(world, fault.target)
     setattr(body, attribute, value)
     return hold(world, attribute, fault.target, lambda: setattr(body, attribute, not value))
 
 
-KINDS = (no_grip, stuck_effector, no_part, lost_part)
+KINDS = (no_grip, stuck_effector, no_part, lost_part, opened_effector)

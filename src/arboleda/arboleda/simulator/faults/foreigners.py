@@ -8,7 +8,8 @@ heard nothing yet, everything is fresh, and they leave it alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from arboleda.core.messages import StopMode
@@ -16,10 +17,10 @@ from arboleda.core.model import Arm, PlantModel, Robot
 from arboleda.wire.goals import goal as goal_of
 from arboleda.wire.payloads import Goal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
-from arboleda.wire.transport import Publication
+from arboleda.wire.transport import Delivery, Publication
 
 from ..chance import Dice
-from ..world import World
+from ..world import BRIDGE, World
 from . import whom
 from .hold import hold
 from .kind import End, Fault, kind, words
@@ -59,6 +60,48 @@ def foreign_garbage(world: World, fault: Fault) -> None:
     """A stranger publishes what makes no sense on a topic of a board."""
     payload = Dice(fault.seed, "garbage").pick(GARBAGE)
     world.publish(Publication(topic=f"{fault.target}/{fault.word}", payload=payload))
+
+
+FOREIGN_TO_ARMS: dict[str, object] = {"nodo": 0}
+FOREIGN_TO_MOBILES: dict[str, object] = {"efector": 0, "pieza": 1, "q1_mov": 0.0}
+LATER_S = 0.02  # before the board speaks again
+NEWEST = 4_000_000_000  # a telemetry number above that of any board
+
+
+def _foreign(model: PlantModel, target: str) -> tuple[str, ...]:
+    is_arm = isinstance(whom.robot_of(model, target), Arm)
+    return tuple(FOREIGN_TO_ARMS if is_arm else FOREIGN_TO_MOBILES)
+
+
+@kind(targets=whom.boards, words=_foreign, weight=0.5)
+def foreign_report(world: World, fault: Fault) -> None:
+    """A stranger publishes telemetry in which a board says what its kind of robot cannot."""
+    robot = whom.robot_of(world.model, fault.target)
+    own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))} if isinstance(robot, Arm) else {}
+    foreign = {**FOREIGN_TO_ARMS, **FOREIGN_TO_MOBILES}[fault.word]
+    said = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
+    payload = json.dumps(said, separators=(",", ":")).encode()
+    world.publish(Publication(topic=topic(fault.target, Channel.TELEMETRY), payload=payload))
+
+
+@kind(targets=whom.boards, seconds=(0.5, 10.0), weight=0.7)
+def foreign_repeat(world: World, fault: Fault) -> End:
+    """The broker was told to keep what a board says, and says it to the bridge once more, as retained."""
+    address = topic(fault.target, Channel.TELEMETRY)
+
+    def again(publication: Publication) -> None:
+        bridge = world.broker.clients[BRIDGE]
+        if bridge.connected:
+            kept = Delivery(at=world.now, topic=address, payload=publication.payload, retain=True)
+            bridge.inbox.append(kept)
+
+    def carry(publication: Publication) -> Iterable[Publication]:
+        if publication.topic == address:
+            world.at(world.now + LATER_S, again, publication)
+        return (publication,)
+
+    world.carriers.append(carry)
+    return lambda: world.carriers.remove(carry)
 
 
 @kind(targets=whom.boards, words=words("no board", "no channel", "too long", "too deep"), weight=0.5)
@@ -151,4 +194,12 @@ CHANNELS = {
     "HomeGoal": Channel.HOME,
 }
 
-KINDS = (foreign_garbage, foreign_stray, foreign_retained, foreign_old, foreign_halt)
+KINDS = (
+    foreign_garbage,
+    foreign_report,
+    foreign_repeat,
+    foreign_stray,
+    foreign_retained,
+    foreign_old,
+    foreign_halt,
+)

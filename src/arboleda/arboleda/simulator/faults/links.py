@@ -76,6 +76,13 @@ def hop_delay(world: World, fault: Fault) -> End:
     return trouble(_line(world, fault), lambda _: (fault.amount,))
 
 
+@kind(targets=whom.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.02, 1.0))
+def hop_reorder(world: World, fault: Fault) -> End:
+    """Topics between plant and bridge overtake each other one way: each message is up to `amount` s late."""
+    dice = Dice(fault.seed, "hop_reorder")
+    return trouble(_line(world, fault), lambda _: (dice.between(0.0, fault.amount),))
+
+
 @kind(targets=whom.plant, words=words(*_cut(HOPS)), seconds=(0.2, 10.0))
 def hop_partition(world: World, fault: Fault) -> End:
     """Nothing gets through one way between plant and bridge; what is sent meanwhile is held, or lost."""
@@ -107,4 +114,4 @@ def _sparing(makes: Callable[[Any], tuple[float, ...]]) -> Trouble:
     return lambda message: AT_ONCE if keeps_its_place(message) else makes(message)
 
 
-KINDS = (loss, duplicate, reorder, delay, partition, hop_delay, hop_partition)
+KINDS = (loss, duplicate, reorder, delay, partition, hop_delay, hop_reorder, hop_partition)

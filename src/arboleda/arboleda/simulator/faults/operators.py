@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from arboleda.core.intake import HISTORY
 from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import Cell, Evidence, PlantModel
+from arboleda.core.model import Cell, PlantModel
 from arboleda.core.task import Task
 
 from ..chance import Dice
@@ -20,6 +21,7 @@ OF_THE_CELL = {
     "a queued task": (TaskState.QUEUED,),
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
+SPARE = 50  # tasks beyond those that are remembered
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
@@ -34,7 +36,7 @@ def _zones(model: PlantModel) -> tuple[str, ...]:
 def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
     """By hand only where a robot cannot report a homing: nobody is asked to put another at its reference."""
     robot = model.robots.get(target)
-    return ("",) if robot is None or robot.evidence is Evidence.IDS else ("", BY_HAND)
+    return ("",) if robot is None or robot.says_homed else ("", BY_HAND)
 
 
 def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:
@@ -134,4 +136,13 @@ def bad_task(world: World, fault: Fault) -> None:
     world.request_task(BAD_TEXTS[fault.word](world.model.cell(fault.target)))
 
 
-KINDS = (*map(_verb, Verb), double_submit, bad_task)
+@kind(targets=whom.cells, weight=0.0)
+def flood_of_tasks(world: World, fault: Fault) -> None:
+    """Somebody asks for more tasks than a plant remembers, and takes each back; never drawn: it is slow."""
+    for number in range(HISTORY + SPARE):
+        id = f"flood-{fault.seed}-{number}"
+        world.request_task(f"{fault.target} palletizing #{id}")
+        world.request_verb(Verb.CANCEL, id)
+
+
+KINDS = (*map(_verb, Verb), double_submit, bad_task, flood_of_tasks)

@@ -1,4 +1,4 @@
-"""A second orchestrator, of an older epoch than the plant's."""
+"""Other nodes that command: an orchestrator that was superseded, and one that knows no ids."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ from arboleda.core.messages import (
     StopMode,
 )
 from arboleda.core.model import Arm, PlantModel
-from arboleda.wire.bridge import FromPlant
+from arboleda.wire.bridge import PLANT_GONE_S
+from arboleda.wire.epochs import AHEAD_S
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.strict import UINT32
 
 from ..chance import Dice
 from ..world import BRIDGE, World
 from . import whom
-from .kind import Fault, kind
+from .kind import Fault, kind, words
 
 LATEST = 5  # how many epochs it may be behind
 OF_ALL = ("home", "home", "clear", "clear", "beat", "beat")
@@ -43,6 +46,33 @@ def second_orchestrator(world: World, fault: Fault) -> None:
         message = ORDERS[fault.word](world.model, fault.target, f"{epoch}-{1 + dice.below(10**9)}", dice)
     if world.is_on(BRIDGE):
         world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=message))
+
+
+@kind(targets=whom.bridge, words=words("just too far", "the last number"), weight=0.5)
+def foreign_beat(world: World, fault: Fault) -> None:
+    """A stranger beats as a plant that can only start in the far future; the bridge goes on with ours."""
+    unix_s = world.plant.epoch
+    epoch = UINT32 if fault.word == "the last number" else unix_s + AHEAD_S + 1
+    if world.is_on(BRIDGE):
+        beat = FromPlant(at=world.now, message=Heartbeat(epoch=epoch), unix_s=unix_s)
+        world.broker.clients[BRIDGE].inbox.append(beat)
+
+
+def _strange(model: PlantModel, target: str) -> tuple[str, ...]:
+    if isinstance(model.robots[target], Arm):
+        return (*("move", "effector on", "effector off") * 4, "home", "clear", "clear", *RARE)
+    return (*("path",) * 8, "home", "clear", "clear", *RARE)
+
+
+@kind(targets=whom.robots, words=_strange)
+def foreign_command(world: World, fault: Fault) -> None:
+    """A node of somebody else commands a robot on its plain topic; only its stops count."""
+    # where the bridge hears no plant it would obey, as it does those who have no other orchestrator
+    if not world.is_on(BRIDGE) or world.now >= world.beat_reached_bridge_at + PLANT_GONE_S:
+        return
+    order = ORDERS[fault.word](world.model, fault.target, "", Dice(fault.seed, "foreign"))
+    said = FromPlant(at=world.now, message=order, sender="/stranger")
+    world.broker.clients[BRIDGE].inbox.append(said)
 
 
 def _move(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
@@ -73,4 +103,4 @@ ORDERS: dict[str, Order] = {
     "stop": _stop(StopMode.LATCH),
 }
 
-KINDS = (second_orchestrator,)
+KINDS = (second_orchestrator, foreign_command, foreign_beat)

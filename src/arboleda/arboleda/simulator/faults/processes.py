@@ -6,7 +6,7 @@ from ..network import keeps_its_place
 from ..world import BRIDGE, PLANT, World
 from . import whom
 from .hold import hold, stall, trouble
-from .kind import End, Fault, kind
+from .kind import End, Fault, kind, words
 
 
 @kind(targets=whom.broker, seconds=(0.0, 5.0), weight=0.5)
@@ -50,10 +50,25 @@ def plant_stall(world: World, fault: Fault) -> End:
     return stall(world, PLANT, fault.seconds)
 
 
+@kind(targets=whom.plant, words=words("plant", "machine"), seconds=(1.0, 6.0), amount=(0.001, 86_400.0))
+def plant_freeze(world: World, fault: Fault) -> End:
+    """The plant is frozen, alone or with the bridge; once all robots stand, up to a day passes at once."""
+    frozen = (PLANT, BRIDGE) if fault.word == "machine" else (PLANT,)
+    ends = [stall(world, process, fault.seconds) for process in frozen]
+
+    def thaw() -> None:
+        if not any(board.body.moving for board in world.boards.values()):
+            world.skip(fault.amount)
+        for end in ends:
+            end()
+
+    return thaw
+
+
 @kind(targets=whom.plant, weight=0.0)
 def plant_crash(world: World, fault: Fault) -> None:
     """The plant's process dies and starts anew; never drawn as long as tasks are not durable."""
     world.crash(PLANT)
 
 
-KINDS = (broker_restart, lost_queue, bridge_restart, bridge_stall, plant_stall, plant_crash)
+KINDS = (broker_restart, lost_queue, bridge_restart, bridge_stall, plant_stall, plant_freeze, plant_crash)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from .beliefs import BELIEFS
 from .books import BOOKS
+from .bridge import BRIDGE
 from .commands import COMMANDS
 from .grip import GRIP
 from .invariant import Invariant
 from .liveness import LIVENESS
+from .memory import MEMORY
 from .motion import MOTION
+from .proofs import PROOFS
+from .screens import SCREENS
 from .stop import STOP
 from .tasks import TASKS
+from .texts import TEXTS
+from .verbs import VERBS
 from .wire import WIRE
+from .work import WORK
 from .zones import ZONES
 
 __all__ = ["INVARIANTS", "Invariant"]
@@ -21,8 +29,16 @@ INVARIANTS: tuple[Invariant, ...] = (
     *GRIP,
     *STOP,
     *COMMANDS,
+    *PROOFS,
     *WIRE,
+    *BRIDGE,
+    *BELIEFS,
     *TASKS,
+    *TEXTS,
+    *WORK,
+    *VERBS,
+    *MEMORY,
     *LIVENESS,
     *BOOKS,
+    *SCREENS,
 )

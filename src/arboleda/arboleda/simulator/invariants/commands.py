@@ -207,7 +207,14 @@ def _known_still(look: Look, sent: SentCommand) -> bool:
     return any(code is not MotionState.MOVING for code in (*codes, look.record.robots[sent.robot].state))
 
 
+@invariant(When.TAKEN)
+def no_move_after_its_halt(look: Look) -> Iterable[str]:
+    """No move reaches the bridge after a stop or a halt that the plant gave after it: it would begin anew."""
+    return look.record.stops.overtaken
+
+
 COMMANDS = (
+    no_move_after_its_halt,
     no_command_to_unfit,
     stops_are_cleared_by_operators,
     one_motion_per_robot,

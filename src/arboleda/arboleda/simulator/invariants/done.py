@@ -79,10 +79,12 @@ def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
         return evidence is not Evidence.IDS or lies("effector")
     if isinstance(booked.command, Home):
         return lies("homed")
+    if robot.blind:
+        return True
     if evidence is Evidence.IDS:
         return lies("done") and lies(place)
     taken_away = robot.put_right_at >= booked.sent_at and robot.at_reference
-    unseen = evidence is Evidence.STATE or not robot.homed or booked.late or taken_away
+    unseen = booked.late or taken_away
     return unseen or lies(place) or lies("state")
 
 

@@ -70,6 +70,14 @@ def done_task_is_true(look: Look) -> Iterable[str]:
     return _not_done(look)
 
 
+@invariant(When.ENDED)
+def robbed_task_is_not_done(look: Look) -> Iterator[str]:
+    """A task is not called done whose effector somebody else opened on the way, if its board says so."""
+    for ended in look.truth.ended:
+        if ended.done and ended.robbed and not _untold(look, ended.cell.arm, ended.began_at):
+            yield f"{ended.task} ({ended.text}) is called done, but its part was taken from the effector"
+
+
 def _grips(look: Look) -> Iterator[str]:
     truth = look.truth
     for name in truth.stray_grips:
@@ -89,20 +97,27 @@ def _grips(look: Look) -> Iterator[str]:
 
 def _opened(look: Look) -> Iterator[str]:
     for switch in _switches(look):
-        excused = switch.lost_power or switch.released or look.truth.unseen(look.truth.arms[switch.arm])
+        excused = (
+            switch.lost_power
+            or switch.by_others
+            or switch.released
+            or look.truth.unseen(look.truth.arms[switch.arm])
+        )
         if not switch.on and not switch.legal and not excused:
             yield f"the effector of {switch.arm} is opened at {named(switch.poses)}"
 
 
 def _repeated(look: Look) -> Iterator[str]:
     for each in (*look.truth.cells.values(), *look.truth.ended):
-        if each.picks > 1 or each.places > 1:
+        if not each.blind and (each.picks > 1 or each.places > 1):
             yield f"task {each.task} has {each.picks} picks and {each.places} places"
 
 
 def _not_done(look: Look) -> Iterator[str]:
     for ended in look.truth.ended:
-        if ended.missing is not None and not _untold(look, ended.cell.arm, ended.began_at):
+        if ended.missing is None or ended.unprovable:
+            continue
+        if not _untold(look, ended.cell.arm, ended.began_at):
             yield f"{ended.task} ({ended.text}) is called done, but {ended.missing}"
 
 
@@ -117,7 +132,7 @@ def _grips_wrongly(cell: CellTruth, switch: Switch) -> str | None:
         return "no task asked for that"
     if not switch.legal:
         return "no part is gripped there"
-    return "its task has put its part down" if cell.let_go else None
+    return "its task has put its part down" if cell.let_go and not cell.blind else None
 
 
 def _untold(look: Look, arm: ArmTruth | None, since: float) -> bool:
@@ -136,4 +151,5 @@ GRIP = (
     station_gets_one_part,
     one_pick_one_place,
     done_task_is_true,
+    robbed_task_is_not_done,
 )

@@ -67,7 +67,7 @@ def _ready(look: Look, cell: KnownCell) -> bool:
         if known.state is MotionState.MOVING or known.is_unfit(plant.now, plant.epoch):
             return False
         # whether a jump of its joints was a reboot is for the plant's evidence to judge
-        if robot.evidence is Evidence.JOINTS and plant.dispatcher.beliefs[robot.name].displaced:
+        if not robot.says_homed and plant.dispatcher.beliefs[robot.name].displaced:
             return False
     return not _is_busy(look, cell) and _outside(look, cell)
 

@@ -39,7 +39,7 @@ def nothing_moves_unasked(look: Look) -> Iterator[str]:
         yield from _moves_unasked(robot)
     for cell in look.truth.cells.values():
         switch = cell.switch
-        if switch is not None and not (switch.asked or switch.lost_power):
+        if switch is not None and not (switch.asked or switch.lost_power or switch.by_others):
             yield f"the effector of {switch.arm} goes {'on' if switch.on else 'off'} unasked"
 
 

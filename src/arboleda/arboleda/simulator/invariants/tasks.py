@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import TABLE, Cause, CellState
@@ -14,9 +15,11 @@ from arboleda.core.messages import (
     TaskState,
     Verb,
 )
+from arboleda.core.model import Evidence
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped
+from ..truth.mobile import MobileTruth
 from .invariant import Look, When, invariant
 
 ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
@@ -39,6 +42,7 @@ BY_VERB: dict[Verb, frozenset[Cause]] = {
     Verb.CANCEL: frozenset({Cause.ABANDON}),
 }
 ROWS = tuple(TABLE.items())
+PIECES = frozenset({Reason.NO_PIECE, Reason.NOT_GRIPPED, Reason.PART_LOST})
 TECHNICAL = ("Traceback", "object at 0x", "\n", "Error(")
 
 
@@ -103,7 +107,10 @@ def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
 
 
 def _unkept(look: Look) -> Iterator[str]:
-    tasks = look.record.tasks
+    tasks, remembered = look.record.tasks, look.world.plant.intake.tasks
+    for id in tasks.open:
+        if id not in remembered:
+            yield f"task {id} has not ended, and is forgotten"
     for name, cell in look.record.cells.items():
         run, queue = cell.run, tasks.queues[name]
         runs = run.task.id if run.task is not None else None
@@ -126,7 +133,8 @@ def only_legal_cell_states(look: Look) -> Iterable[str]:
 
 def _illegal(look: Look) -> Iterator[str]:
     for cell, before, after in look.record.transitions:
-        causes = BY_ITSELF.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
+        by_itself = BY_ITSELF | {Cause.AWAY} if look.record.away else BY_ITSELF
+        causes = by_itself.union(*(BY_VERB.get(verb, frozenset()) for verb in _verbs(look, cell)))
         if after not in _reachable(before, causes):
             yield f"{cell.name} went from {before.value} to {after.value}, and nobody asked for that"
 
@@ -180,16 +188,55 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
         yield f"task requests {tokens} were answered as {told}"
 
 
+@invariant(When.COMMANDED)
+def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
+    """After the plant was away for longer than a robot may be silent, no robot is told to move before an
+    operator gets its cell going, or somebody brings a task to a cell that had nothing to do.
+    """
+    for command in look.record.unasked:
+        yield f"the plant was away, and by itself sends {command}"
+
+
 @invariant(When.TOLD)
 def no_internal_failure(look: Look) -> Iterable[str]:
     """No task fails, and no cell is held, for a defect of the plant itself."""
     for change in look.record.tasks.changes:
         if change.said.reason is Reason.INTERNAL:
             yield f"task {change.said.task}: {change.said.sentence}"
+    for defect in look.record.errors:
+        yield f"{defect.cell or 'the plant'} raised {type(defect.error).__name__}: {defect.error}"
     for cell, _, after in look.record.transitions:
         trouble = cell.run.trouble
         if after is CellState.HELD and trouble is not None and trouble.reason is Reason.INTERNAL:
             yield f"{cell.name} is held: {trouble.sentence}"
+
+
+@invariant(When.TOLD)
+def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
+    """As long as nothing has gone wrong and no operator has acted, no task of a shipped recipe fails."""
+    world, record = look.world, look.record
+    if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
+        return
+    for change in record.tasks.changes:
+        if change.said.state is TaskState.FAILED and not _cannot_be_done(look, change.said):
+            yield f"task {change.said.task} ({change.said.text}) failed: {change.said.sentence}"
+
+
+def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
+    """Whether the plant file asks for what its robots, as they are simulated, cannot do.
+
+    A virtual board without ids has no piece sensor. A path may begin where the mobile robot is not, and the
+    plant may not drive it there, or at `state` not know it, and the board refuses such a path.
+    """
+    order = look.world.plant.intake.tasks[said.task].order
+    cell = look.world.model.cell(order.cell)
+    mobile = look.truth.robot(cell.mobile.name)
+    if said.reason in PIECES and cell.arm.evidence is not Evidence.IDS:
+        return True
+    led_there = cell.drive_to_start and cell.mobile.evidence is not Evidence.STATE
+    if led_there or order.path is None or not isinstance(mobile, MobileTruth):
+        return False
+    return mobile.node != order.path.nodes[0]
 
 
 @invariant(When.TOLD)
@@ -218,6 +265,8 @@ TASKS = (
     only_legal_cell_states,
     rejected_input_changes_nothing,
     every_request_is_answered,
+    nothing_moves_after_an_absence,
     no_internal_failure,
+    no_task_fails_without_a_fault,
     sentences_are_for_people,
 )

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from arboleda.core.messages import FollowPath, MoveJoints
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    SetEffector,
+    Stop,
+    StopMode,
+)
 from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile
 
 from ..recorded.boards import fields, is_number, on_wire
@@ -159,7 +168,43 @@ def _heard(known: Any) -> bool:
     return known.q is not None or known.node is not None
 
 
+@invariant(When.PUBLISHED)
+def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
+    """Each motion, effector and clear that the bridge publishes is one command with an id that it took in."""
+    taken = [each.message for each in look.moment.taken if not isinstance(each.message, Heartbeat)]
+    given = [command for command in taken if command.id]
+    for client, publication in look.moment.published:
+        if client != BRIDGE:
+            continue
+        name, _, channel = publication.topic.partition("/")
+        obeyed = _commanded(channel, fields(publication.payload))
+        robot = look.record.boards.by_name[name].robot.name
+        if obeyed is None:
+            continue
+        match = next((each for each in given if each.robot == robot and obeyed(each)), None)
+        if match is None:
+            yield f"{publication.topic} is {publication.payload!r}, which no command with an id asked for"
+        else:
+            given.remove(match)
+
+
+def _commanded(channel: str, body: dict[str, Any]) -> Callable[[Command], bool] | None:
+    """Whether a command is what a message of the bridge says; None for a message that needs none."""
+    if channel == "juntas":
+        return lambda command: isinstance(command, MoveJoints)
+    if channel == "camino":
+        return lambda command: isinstance(command, FollowPath)
+    if channel == "referencia":
+        return lambda command: isinstance(command, Home)
+    if channel == "efector":
+        return lambda command: isinstance(command, SetEffector) and command.on == body.get("efector")
+    if channel == "paro" and body.get("paro") == StopMode.CLEAR:
+        return lambda command: isinstance(command, Stop) and command.mode is StopMode.CLEAR
+    return None
+
+
 WIRE = (
+    bridge_obeys_only_its_plant,
     executed_numbers_rise,
     no_repeat_has_effect,
     wire_targets_legal,

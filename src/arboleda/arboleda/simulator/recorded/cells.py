@@ -40,6 +40,10 @@ class KnownCell:
         self.tree: Behaviour | None = None
         self.sends: dict[Behaviour, int] = {}
         self.again = 0
+        self.holds_zones = False  # after the last step
+        self.held_before_recovery = False
+        self.recovery_goals: list[Any] = []  # of the recovery that runs, or ran last
+        self._recovering: Behaviour | None = None
         self.leaves: list[Any] = []
         self.looked = False
         self.waited_s = 0.0
@@ -93,11 +97,23 @@ class KnownCell:
         elif self.state not in PAUSED:
             self.waited_s += seconds
 
-    def watch_time(self, now: float) -> None:
-        """Compare the cell's own time with the plant's: it may fall behind only while the cell is held."""
+    def watch_time(self, now: float, *, away: bool = False) -> None:
+        """Compare the cell's own time with the plant's: it may fall behind only while the cell is held.
+
+        Where the plant was `away`, that time does not pass for a cell at work.
+        """
         lag_s = now - self.context.now
-        self.frozen_s = max(lag_s - self._lag_s, 0.0)
+        self.frozen_s = 0.0 if away else max(lag_s - self._lag_s, 0.0)
         self._lag_s = math.inf if self.state in PAUSED else lag_s
+
+    def watch_recovery(self, goals: list[Any]) -> None:
+        """Commands of its tree left; `goals` are where its arm goes."""
+        if not self.run.run.recovering:
+            self._recovering = None
+        elif self._recovering is not self.run.tree:
+            self._recovering, self.held_before_recovery = self.run.tree, self.holds_zones
+            self.recovery_goals = []
+        self.recovery_goals += goals
 
     def look(self, sent: set[str]) -> None:
         """Look up the leaves that run, and count the commands of this step, by id, that are theirs."""

@@ -69,11 +69,13 @@ class Commands:
         self.moved: list[tuple[SentCommand, State | None]] = []
         self.lost: list[SentCommand] = []
         self.goals: dict[str, deque[Command]] = {}
+        self.last: dict[str, SentCommand] = {}  # of each robot, a stop or halt left out
         self.soonest = math.inf
 
     def forget(self) -> None:
         """The plant that sent them is gone."""
         self.open.clear()
+        self.last.clear()
         self.soonest = math.inf
 
     def clear_news(self) -> None:
@@ -86,6 +88,8 @@ class Commands:
         self.new.append(sent)
         command = sent.command
         known.unnamed = command.id
+        if not isinstance(command, Stop):
+            self.last[command.robot] = sent
         if isinstance(command, Stop):
             known.halts += command.mode is not StopMode.CLEAR
         elif not isinstance(command, SetEffector):

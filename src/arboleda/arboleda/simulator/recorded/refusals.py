@@ -29,6 +29,8 @@ def _only_refused(record: Record) -> bool:
 
 def _something_was_due(record: Record) -> bool:
     now = record.world.plant.now
+    if record.away:
+        return True
     # an arm whose tree has ended gives its zones back at the next step, whatever that is
     if any(isinstance(each, Remember) and each.fact is Fact.QUARANTINE for each in record.world.moment.sent):
         return True

@@ -53,6 +53,8 @@ class KnownRobot:
         self.plant: int | None = None
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
+        self.effector: bool | None = None
+        self.piece: bool | None = None
         self.displaced = False  # it cannot report its homing, and has booted
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
@@ -79,12 +81,17 @@ class KnownRobot:
             self.q = report.q
         if report.node is not None:
             self.node = report.node
+        if report.effector is not None:
+            self.effector = report.effector
+        if report.piece is not None:
+            self.piece = report.piece
         if report.state is not None:
             self.state = report.state
 
     def _hear_boot(self, report: Report) -> None:
         changed = self.boot is not None and self.boot != report.boot_id
-        if changed and self.robot.evidence is Evidence.JOINTS and self.epoch == report.epoch:
+        counted_anew = self.robot.evidence is Evidence.JOINTS and self.epoch != report.epoch
+        if changed and not self.robot.says_homed and not counted_anew:
             self.displaced = True
         self.boot = report.boot_id
 
@@ -98,6 +105,11 @@ class KnownRobot:
             return True
         never = self.heard_at is None and self._patience_s < math.inf
         return never or self.stale_at <= now
+
+    @property
+    def unhomed(self) -> bool:
+        """Whether its position means nothing."""
+        return self.homed is False or self.displaced or self.state is MotionState.NOT_HOMED
 
     def is_unfit(self, now: float, plant_epoch: int) -> bool:
         """Whether anything speaks against a command to it."""
@@ -113,9 +125,7 @@ OBSTACLES: dict[Obstacle, Callable[[KnownRobot, float, int], bool]] = {
     Obstacle.UNANSWERED: lambda known, now, epoch: (
         known.robot.link is Link.MQTT and known.epoch is not None and known.plant != epoch
     ),
-    Obstacle.UNHOMED: lambda known, now, epoch: (
-        known.homed is False or known.displaced or known.state is MotionState.NOT_HOMED
-    ),
+    Obstacle.UNHOMED: lambda known, now, epoch: known.unhomed,
     Obstacle.FAULTED: lambda known, now, epoch: known.state is MotionState.FAULT,
     Obstacle.LATCHED: lambda known, now, epoch: (
         known.stop is Stopped.LATCHED or known.state is MotionState.STOP_LATCHED

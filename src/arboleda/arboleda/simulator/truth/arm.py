@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from operator import add, sub
 
-from arboleda.core.model import Arm, Cell, Evidence, Pose
+from arboleda.core.model import Arm, Cell, Pose
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 
@@ -23,7 +23,8 @@ class ArmTruth(RobotTruth):
     `true` is where the axes are, `lost` how many steps each lost since it was last put right. Poses, zones
     and stations have no extent here, so an arm that lost steps counts as where it would be without that, and
     one within its tolerance of a pose as at it: `here` names the poses where it stands still in this sense,
-    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept.
+    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept; `opened`:
+    in this step somebody else than the plant opened its effector.
     """
 
     SIGNS = ("next_change_us", "effector", "holding")
@@ -32,6 +33,7 @@ class ArmTruth(RobotTruth):
     def __init__(self, robot: Arm, cell: Cell, board: Board, client: Client) -> None:
         assert isinstance(board.body, ArmBody)
         self.on, self.holding = board.body.effector, board.body.holding
+        self.opened = False
         super().__init__(robot, cell, board, client)
         self.arm = robot
         self.lost: Steps = (0,) * len(robot.joints)
@@ -84,14 +86,6 @@ class ArmTruth(RobotTruth):
         return not self.moving and not any(self.intended)
 
     @property
-    def unseen(self) -> bool:
-        """Whether nobody can know where it is, for what its board tells: at `state`, that it moved and
-        stopped; at `joints`, counters that a boot may have set to 0 without a trace.
-        """
-        evidence = self.robot.evidence
-        return evidence is Evidence.STATE or (evidence is Evidence.JOINTS and not self.homed)
-
-    @property
     def outside(self) -> str | None:
         """The first joint that stands beyond its limits by more than lost steps and a ramp explain."""
         rows = zip(self.arm.joints, self.true, self.lost, strict=True)
@@ -103,7 +97,7 @@ class ArmTruth(RobotTruth):
 
     def forget(self) -> None:
         super().forget()
-        self.was_on, self.was_holding = self.on, self.holding
+        self.was_on, self.was_holding, self.opened = self.on, self.holding, False
 
     @property
     def _slows_down(self) -> bool:

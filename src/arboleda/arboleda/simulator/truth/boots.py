@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from arboleda.core.messages import Report
-from arboleda.core.model import Evidence
+from arboleda.core.model import Evidence, Robot
 
 from .robot import RobotTruth
 
@@ -13,10 +13,10 @@ NEVER = (None, None)
 
 
 class Boots:
-    """Follows the robots at `joints`, whose boots show only in the number that the bridge gives them."""
+    """Follows the robots whose boots show only in the number of them; at `joints` the bridge counts them."""
 
     def __init__(self, robots: Iterable[RobotTruth]) -> None:
-        self.mute = {each.robot.name: each for each in robots if each.robot.evidence is Evidence.JOINTS}
+        self.mute = {each.robot.name: each for each in robots if _boots_show(each.robot)}
         self._last: dict[str, tuple[int | None, int | None]] = {}
         self._told: set[str] = set()
 
@@ -32,9 +32,14 @@ class Boots:
         said, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
         if said != last:
             self._last[report.robot] = said
-            if said[0] == last[0]:
+            known = last is not NEVER and self.mute[report.robot].robot.evidence is Evidence.IDS
+            if said[0] == last[0] or (known and said[1] != last[1]):
                 self._told.add(report.robot)
 
     def told(self, robot: str) -> bool:
         """Whether the plant knows that it booted, and nobody has put it right since."""
         return robot in self._told
+
+
+def _boots_show(robot: Robot) -> bool:
+    return robot.evidence is not Evidence.STATE and not robot.says_homed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.model import Cell, Pose
+from arboleda.core.model import Cell, Evidence, Pose
 from arboleda.core.task import Order
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
@@ -18,9 +18,9 @@ KEPT = 50  # switches of one task
 class Switch:
     """An effector that changed, at the named poses where its arm stood still.
 
-    `asked`: the board carried out a command for it; `released`: an operator had it opened; `legal`: at the
-    pick-up or palletizing pick or, opened, where the part of the cell's last task belongs or at the
-    palletizing place.
+    `by_others`: somebody else than the plant opened it; `asked`: the board carried out a command for it;
+    `released`: an operator had it opened; `legal`: at the pick-up or palletizing pick or, opened, where the
+    part of the cell's last task belongs or at the palletizing place.
     """
 
     cell: str
@@ -28,6 +28,7 @@ class Switch:
     on: bool
     poses: frozenset[str]
     lost_power: bool
+    by_others: bool
     asked: bool
     released: bool
     legal: bool
@@ -35,7 +36,11 @@ class Switch:
 
 @dataclass(frozen=True, kw_only=True)
 class Ended:
-    """A task that has ended, and how things stood then; `missing`: why it is not done if it is called so."""
+    """A task that has ended, and how things stood then.
+
+    `robbed`: somebody else opened the effector while it held its part elsewhere than where that belongs;
+    `missing`: why it is not done if it is called so; `unprovable`: its mobile's evidence cannot show that.
+    """
 
     cell: CellTruth
     task: str
@@ -44,8 +49,11 @@ class Ended:
     began_at: float
     picks: int
     places: int
+    blind: bool
     grips: bool
+    robbed: bool
     missing: str | None
+    unprovable: bool
 
 
 class CellTruth:
@@ -64,7 +72,9 @@ class CellTruth:
         self.released = False  # an operator has the effector opened
         self.switch: Switch | None = None  # of this step
         self.picks = self.places = 0
+        self.robbed = False  # somebody else opened the effector on the way
         self.let_go = False  # the effector was opened where the part belongs
+        self.blind = False  # nobody could know for some time what its arm does
         self._switches: list[Switch] = []
         self._heading = self._arrived = False
 
@@ -84,13 +94,16 @@ class CellTruth:
     def begin(self, task: str, order: Order, now: float) -> None:
         """A task begins."""
         self.task, self.order, self.began_at = task, order, now
-        self.released = self.let_go = self._heading = self._arrived = False
+        self.robbed = self.released = self.let_go = self.blind = False
+        self._heading = self._arrived = False
         self.picks = self.places = 0
         self._switches = []
 
     def end(self, text: str = "", *, done: bool = False) -> Ended:
         """The running task has ended, or nobody knows of it any more."""
         task, self.task = self.task, None
+        of_arm = self._missing_of_arm() if done and self.arm is not None else None
+        of_way = self._missing_way() if done and self.arm is not None else None
         return Ended(
             cell=self,
             task=task or "",
@@ -99,8 +112,11 @@ class CellTruth:
             began_at=self.began_at,
             picks=self.picks,
             places=self.places,
+            blind=self.blind,
             grips=self.arm is not None and self.arm.on,
-            missing=self._missing() if done and self.arm is not None else None,
+            robbed=self.robbed,
+            missing=of_arm or of_way,
+            unprovable=of_arm is None and self._proves_no_way,
         )
 
     def look(self) -> None:
@@ -112,9 +128,14 @@ class CellTruth:
             self.released = self.released and arm.on
             at_place = self.place is not None and self._at(arm, self.place)
             self.let_go = self.let_go or (not arm.on and at_place)
+            self.robbed = self.robbed or (arm.opened and arm.was_holding and not at_place)
             self._switches = [*self._switches[-KEPT:], self.switch]
 
-    def _missing(self) -> str | None:
+    @property
+    def _proves_no_way(self) -> bool:
+        return self.mobile is not None and self.mobile.robot.evidence is not Evidence.IDS
+
+    def _missing_of_arm(self) -> str | None:
         assert self.arm is not None and self.place is not None and self.order is not None
         due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
         done = [(each.on, bool(each.poses & poses)) for each, poses in zip(self._switches, due, strict=True)]
@@ -125,9 +146,12 @@ class CellTruth:
         ends = [q for q in (last.q, last.above) if q is not None]
         if not any(self.arm.stands_at(q) for q in ends):
             return f"the arm does not stand at {last.name}"
-        if self.order.path and self.mobile and not self._arrived:
-            return f"the mobile never stood at node {self.order.path.nodes[-1]}"
         return None
+
+    def _missing_way(self) -> str | None:
+        if self.order is None or not self.order.path or self.mobile is None or self._arrived:
+            return None
+        return f"the mobile never stood at node {self.order.path.nodes[-1]}"
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
         """Whether nothing falls down where the arm stands."""
@@ -144,6 +168,7 @@ class CellTruth:
             on=arm.on,
             poses=arm.stood,
             lost_power=arm.lost_power,
+            by_others=arm.opened,
             asked=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
             released=self.released,
             legal=at_pick if arm.on else self.legal_to_open(arm),

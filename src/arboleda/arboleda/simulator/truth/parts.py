@@ -102,7 +102,7 @@ class Parts:
         if self._at_a_pick(arm.stood, cell, arm):
             self.returned[name, _pick_like(arm.stood, cell, arm)] = part
         elif station is not None:
-            if cell.task is not None:  # else the customer has it at once
+            if cell.task is not None and not cell.blind:  # else the customer has it at once
                 self.stations.setdefault((name, station), []).append(part)
         elif not cell.legal_to_open(arm):
             return FLOOR
@@ -115,7 +115,7 @@ class Parts:
 def _cause(cell: CellTruth, arm: ArmTruth) -> str:
     if arm.lost_power:
         return POWER
-    if arm.on:
+    if arm.on or arm.opened:
         return FELL
     return RELEASED if cell.switch is not None and cell.switch.released else PUT
 

@@ -9,7 +9,7 @@ from operator import attrgetter
 from typing import Any
 
 from arboleda.core.messages import StopMode
-from arboleda.core.model import Cell, Robot
+from arboleda.core.model import Cell, Evidence, Robot
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
@@ -138,6 +138,15 @@ class RobotTruth:
         self.jumped = self.jumped and not self._put_right
         self._put_right = False
         self._follow_homing()
+
+    @property
+    def blind(self) -> bool:
+        """Whether nobody can know where it is, for what its board tells: at `state`, that it moved and
+        stopped; else counters that a boot may have set to 0, of a board that does not say so.
+        """
+        if self.robot.evidence is Evidence.STATE:
+            return True
+        return not (self.homed or self.robot.says_homed)
 
     @property
     def _slows_down(self) -> bool:

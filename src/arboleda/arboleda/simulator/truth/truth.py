@@ -89,8 +89,8 @@ class Truth:
         At `joints` nothing tells whether what it says is older than its last command, if that took its time,
         and a lie about place or state is all it takes.
         """
-        if arm.unseen or arm.robot.evidence is not Evidence.JOINTS:
-            return arm.unseen
+        if arm.blind or arm.robot.evidence is not Evidence.JOINTS:
+            return arm.blind
         board, now = arm.robot.mqtt, self.world.now
         lies = any(self.deceived_since(board, what, now) for what in ("q", "state"))
         return lies or arm.robot.name in self.books.late
@@ -119,6 +119,9 @@ class Truth:
             self._overhear()
         for board, goal in moment.executed:
             self._boards[board].carry_out(goal)
+        for board in moment.opened:
+            if isinstance(arm := self._boards[board], ArmTruth):
+                arm.opened = True
         for board in moment.put_right:
             self._boards[board].put_right(self.world.now)
 
@@ -196,6 +199,7 @@ class Truth:
             cell = self.cells[name]
             cell.look()
             if cell.arm is not None:
+                cell.blind = cell.blind or self.unseen(cell.arm)
                 self.parts.look(cell, cell.arm)
 
     def _take_in(self, message: object) -> None:

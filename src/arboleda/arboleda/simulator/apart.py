@@ -1,0 +1,100 @@
+"""Robots whose state and position are not of one instant: two topics on ROS 2, or one that was put together.
+
+A robot with command ids says everything in one message that its board made. Others may be anybody's: what
+they say of moving and of where they are comes up to APART_S apart, either of them first.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
+
+from arboleda.core.belief import APART_S
+from arboleda.core.messages import Report
+from arboleda.core.model import Evidence, Mobile, Robot
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+from .chance import Dice
+from .world import World
+
+PERIOD_S = 0.1
+STATE = "estado"
+
+
+def come_apart(world: World, seed: int) -> None:
+    """Have each robot without command ids say things together, in two messages, or in one of two instants."""
+    for robot in world.model.robots.values():
+        dice = Dice(seed, "apart", robot.name)
+        if (way := dice.pick(_ways(robot))) is not None:
+            way(world, robot, dice)
+
+
+def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ...]:
+    """Two instants are two readings: a state, or a node, that lasts shorter would not be told at all."""
+    if robot.evidence is Evidence.IDS:
+        return (None,)
+    too_fast = isinstance(robot, Mobile) and robot.grid.pitch / robot.speed < APART_S
+    if robot.evidence is Evidence.STATE or too_fast:
+        return (None, _two_topics)
+    return (None, _two_topics, _two_instants)
+
+
+def _two_topics(world: World, robot: Robot, dice: Dice) -> None:
+    world.partings[robot.name] = TwoTopics(dice).parted
+
+
+class TwoTopics:
+    """Each report as one of its position and one of all the rest; each of them late, and in its own order."""
+
+    def __init__(self, dice: Dice) -> None:
+        self._dice = dice
+        self._latest_s = {which: dice.pick((0.0, APART_S)) for which in ("state", "position")}
+        self._last = {"state": 0.0, "position": 0.0}  # when the last of each comes
+
+    def parted(self, report: Report) -> Iterable[Report]:
+        """The parts, stamped with when they come."""
+        place = report.q is not None or report.node is not None
+        if place:
+            position = Report(at=0.0, robot=report.robot, q=report.q, node=report.node)
+            yield self._late("position", position, report.at)
+        rest = replace(report, q=None, node=None) if place else report
+        yield self._late("state", rest, report.at)
+
+    def _late(self, which: str, part: Report, at: float) -> Report:
+        late_s = self._dice.between(0.0, self._latest_s[which])
+        self._last[which] = max(self._last[which], at + late_s)
+        return part.again(self._last[which])
+
+
+def _two_instants(world: World, robot: Robot, dice: Dice) -> None:
+    address = topic(robot.mqtt, Channel.TELEMETRY)
+    mixed = partial(_mixed, state_s=dice.between(0.0, PERIOD_S), place_s=dice.between(0.0, PERIOD_S))
+    said: deque[tuple[float, bytes]] = deque()
+
+    def carry(publication: Publication) -> Iterable[Publication]:
+        # a stranger may publish there too, and is not altered
+        if publication.topic != address or world.moment.published[-1][0] != robot.mqtt:
+            return (publication,)
+        said.append((world.now, publication.payload))
+        while len(said) > 1 and said[1][0] <= world.now - PERIOD_S:
+            said.popleft()
+        return (replace(publication, payload=mixed(said, world.now)),)
+
+    world.carriers.append(carry)
+
+
+def _mixed(said: Iterable[tuple[float, bytes]], now: float, *, state_s: float, place_s: float) -> bytes:
+    """The state of `state_s` ago with all else of `place_s` ago, as far back as is known."""
+    state, place = (_as_of(said, now - ago_s) for ago_s in (state_s, place_s))
+    if state == place:
+        return place
+    return json.dumps({**json.loads(place), STATE: json.loads(state)[STATE]}, separators=(",", ":")).encode()
+
+
+def _as_of(said: Iterable[tuple[float, bytes]], at: float) -> bytes:
+    rows = list(said)
+    return next((payload for when, payload in reversed(rows) if when <= at), rows[0][1])

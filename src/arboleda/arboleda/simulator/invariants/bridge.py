@@ -1,0 +1,23 @@
+"""The bridge says what it heard, and sends what it was told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..recorded.bridge import COMMANDS, REPORTS
+from .invariant import Look, When, invariant
+
+
+@invariant(When.BRIDGED)
+def telemetry_is_reported(look: Look) -> Iterable[str]:
+    """Whatever a board says while it is there is reported at once, as it is, and nothing else is."""
+    return look.record.bridges.wrong[REPORTS]
+
+
+@invariant(When.BRIDGED)
+def commands_are_passed_on(look: Look) -> Iterable[str]:
+    """The bridge sends a command on, under the next number, or refuses it with the word that is true."""
+    return look.record.bridges.wrong[COMMANDS]
+
+
+BRIDGE = (telemetry_is_reported, commands_are_passed_on)

@@ -1,0 +1,61 @@
+"""What a plant has kept, for its next start: before anything that hangs on it leaves, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.messages import Fact, Remember, SetEffector, Stop, StopMode
+
+from ..recorded.robots import Stopped
+from .invariant import Look, When, invariant
+
+KEPT = {Stopped.LATCHED: "on", Stopped.CLEARED: "cleared", None: None}
+
+
+@invariant(When.COMMANDED)
+def kept_before_it_leaves(look: Look) -> Iterator[str]:
+    """A stop is kept before it leaves, so is its clear, and that an effector is being switched."""
+    kept = {(fact, name): value for fact, rows in look.record.kept.items() for name, value in rows.items()}
+    for message in look.moment.sent:
+        if isinstance(message, Remember):
+            kept[message.fact, message.name] = message.value or ""
+        elif isinstance(message, Stop) and message.mode is not StopMode.HALT:
+            latched = kept.get((Fact.LATCH, message.robot)) == "on"
+            if latched is not (message.mode is StopMode.LATCH):
+                yield f"{message} leaves, and a latch is {'' if latched else 'not '}kept"
+        elif isinstance(message, SetEffector) and kept.get((Fact.EFFECTOR, message.robot)) != "switching":
+            yield f"{message} leaves, and nobody would know after a restart"
+
+
+@invariant(When.NEWS)
+def kept_is_what_is(look: Look) -> Iterable[str]:
+    """What is kept of stops, effectors and zones is how they are."""
+    return (*_stops(look), *_effectors(look), *_zones(look))
+
+
+def _stops(look: Look) -> Iterator[str]:
+    """A clear of a whole cell counts for a robot that was not stopped, too, until the cell is reset."""
+    kept = look.world.memory.get(Fact.LATCH, {})
+    for cell in look.record.cells.values():
+        for robot in cell.cell.robots:
+            stop, word = look.record.robots[robot.name].stop, kept.get(robot.name)
+            if word != KEPT[stop] and not (stop is None and cell.stopped and word == "cleared"):
+                yield f"{robot.name} is {stop.value if stop else 'not stopped'}, and {word} is kept"
+
+
+def _effectors(look: Look) -> Iterator[str]:
+    kept = look.world.memory.get(Fact.EFFECTOR, {})
+    for cell in look.record.cells.values():
+        grip = cell.context.grip.value
+        if kept.get(cell.cell.arm.name, "off") != grip:
+            yield f"the effector of {cell.cell.arm.name} is {grip}, kept is {kept.get(cell.cell.arm.name)}"
+
+
+def _zones(look: Look) -> Iterator[str]:
+    zones = look.world.plant.zones
+    for zone, robot in look.world.memory.get(Fact.QUARANTINE, {}).items():
+        if zones.holder(zone) != robot:
+            yield f"zone {zone} belongs to {zones.holder(zone) or 'nobody'}, and is kept for {robot}"
+
+
+MEMORY = (kept_before_it_leaves, kept_is_what_is)

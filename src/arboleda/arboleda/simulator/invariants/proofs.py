@@ -1,0 +1,90 @@
+"""What the plant concludes of its commands is what robots have said: no more, no less and no later."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.ledger import State
+from arboleda.core.messages import Reason, SetEffector
+from arboleda.core.model import Evidence
+
+from ..recorded.commands import SentCommand
+from ..recorded.proofs import Proof, told
+from .invariant import Look, When, invariant
+
+NOTHING_SAID = Proof()
+ANSWERED = frozenset({State.RUNNING, State.DONE})
+ROUNDING_S = 1e-6
+
+
+@invariant(When.HEARD)
+def proofs_end_commands(look: Look) -> Iterable[str]:
+    """What a robot says ends its open commands where it proves their end, and shows them to be under way."""
+    record = look.record
+    for id, proof in record.proofs.of.items():
+        sent = record.commands.open.get(id)
+        if sent is None:
+            continue
+        if proof.must_end:
+            yield f"{sent} is still {_word(sent)}, though {proof.must_end}"
+        if proof.must_run and sent.state is State.SENT:
+            yield f"{sent} is taken for not accepted, though its board has named it"
+
+
+@invariant(When.NEWS)
+def ends_are_proven(look: Look) -> Iterator[str]:
+    """A command changes its state only for what was said after it was sent, or for its time being over."""
+    record = look.record
+    for sent, before in record.commands.moved:
+        proof = record.proofs.of.get(sent.command.id, NOTHING_SAID)
+        if sent in record.commands.new:
+            if sent.state in ANSWERED and not _said_since(look, sent):
+                yield f"{sent} is {_word(sent)} in the step that sent it, and nobody has said so"
+        elif sent.state is State.RUNNING and before is State.SENT and not proof.named:
+            yield f"{sent} is taken for accepted, which nobody has said"
+        elif sent.state is State.DONE and not (proof.done or _settled(look, sent)):
+            yield f"{sent} is taken for done, which nobody has said since it was sent"
+        elif sent.state is State.CANCELLED and not (proof.still or proof.must_end):
+            yield f"{sent} is taken for halted, and nobody has said that it stands still"
+        elif sent.state is State.FAILED:
+            yield from _wrong_cause(look, sent, proof)
+
+
+def _said_since(look: Look, sent: SentCommand) -> bool:
+    return any(each.robot == sent.robot and each.at >= sent.at for each in look.moment.heard)
+
+
+def _word(sent: SentCommand) -> str:
+    return sent.state.value if sent.state else "open"
+
+
+def _settled(look: Look, sent: SentCommand) -> bool:
+    """What its robot need not answer counts as done after its time.
+
+    So do an effector that reports nothing and, at `state`, a move to where the robot is already.
+    """
+    evidence, timing = look.world.model.robots[sent.robot].evidence, look.world.model.timing
+    passed_s = look.record.stepped_at - sent.at + ROUNDING_S
+    if isinstance(sent.command, SetEffector):
+        return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s
+    return evidence is Evidence.STATE and passed_s >= min(timing.stop_timeout_s, sent.deadline - sent.at)
+
+
+def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
+    failure = sent.entry.failure if sent.entry else None
+    if failure is None:
+        yield f"{sent} failed without a cause"
+    elif failure.reason not in proof.causes | _by_time(look, sent):
+        yield f"{sent} failed for {told(failure)}, which is not what happened"
+
+
+def _by_time(look: Look, sent: SentCommand) -> set[Reason]:
+    """For what it may fail now though its robot says nothing."""
+    record, known = look.record, look.record.robots[sent.robot]
+    found = {Reason.LINK_LOST} if known.stale_at <= record.stepped_at else set()
+    if sent.entry is not None and sent.entry.deadline <= record.stepped_at + ROUNDING_S:
+        found.add(Reason.STOP_UNCONFIRMED if sent.cancelled_at is not None else Reason.DEADLINE)
+    return found
+
+
+PROOFS = (proofs_end_commands, ends_are_proven)

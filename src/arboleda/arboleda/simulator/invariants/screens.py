@@ -1,0 +1,285 @@
+"""What screens, drawings and ROS 2 are shown of the plant is how it is, by the record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.core import places, twin_view, view
+from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import State
+from arboleda.core.messages import FollowPath, MoveJoints
+from arboleda.core.model import Arm, Mobile
+from arboleda.wire import status
+
+from ..recorded.cells import KnownCell
+from ..recorded.commands import SentCommand
+from ..recorded.robots import KnownRobot, Stopped
+from .invariant import Look, When, invariant
+
+NOTHING: tuple[str, ...] = ()
+EVERY_S, STATUS_S = 5.0, 1.0
+EXACT = 1e-6
+GOING = (State.SENT, State.RUNNING)
+STALE, ERROR, WARN, OK = 3, 2, 1, 0
+Row = dict[str, Any]
+
+
+@invariant(When.STEPPED)
+def screens_show_what_is(look: Look) -> Iterable[str]:
+    """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
+    return _shown(look) if look.record.due_for("screens", EVERY_S) else NOTHING
+
+
+def _shown(look: Look) -> Iterator[str]:
+    plant, record = look.world.plant, look.record
+    shown = view.snapshot(plant)
+    yield from _unlike("the plant", shown, _plant(look))
+    for row in shown["cells"]:
+        cell = record.cells[row["name"]]
+        yield from _unlike(cell.name, row, _cell(look, cell))
+        yield from _tree(cell, row["tree"])
+    for row in shown["robots"]:
+        known = record.robots[row["name"]]
+        yield from _unlike(known.robot.name, row, _robot(look, known))
+    open_tasks = {row["id"]: row["state"] for row in shown["tasks"] if row["ended_at"] is None}
+    if open_tasks != {id: task.state.value for id, task in record.tasks.open.items()}:
+        yield f"tasks {open_tasks} are shown as open"
+    yield from _diagnoses(shown)
+    yield from _drawn(look, twin_view.positions(plant))
+
+
+def _unlike(whose: str, shown: Row, expected: Row) -> Iterator[str]:
+    for key, value in expected.items():
+        if key not in shown:
+            yield f"{whose}: nothing is shown for {key}"
+        elif not _same(shown[key], value):
+            yield f"{whose}: {key} is shown as {shown[key]!r}, it is {value!r}"
+
+
+def _same(shown: Any, value: Any) -> bool:
+    if isinstance(shown, float) and isinstance(value, float):
+        return abs(shown - value) <= EXACT
+    return bool(shown == value)
+
+
+def _plant(look: Look) -> Row:
+    plant, model = look.world.plant, look.world.model
+    return {
+        "plant": model.name,
+        "epoch": plant.epoch,
+        "at": look.record.stepped_at,
+        "ending": False,
+        "zones": [_zone(look, zone) for zone in model.zones],
+    }
+
+
+def _zone(look: Look, zone: str) -> Row:
+    zones = look.world.plant.zones
+    robot = zones.holder(zone)
+    word = "free" if robot is None else "quarantined" if zones.is_quarantined(zone) else "held"
+    waiting = [name for name, wanted in zones.waiting if zone in wanted]
+    return {"zone": zone, "state": word, "robot": robot, "waiting": waiting}
+
+
+def _cell(look: Look, cell: KnownCell) -> Row:
+    tasks, run, now = look.record.tasks, cell.run, look.record.stepped_at
+    expected: Row = {
+        "state": cell.state.value,
+        "arm": cell.cell.arm.name,
+        "mobile": cell.cell.mobile.name,
+        "queue": list(tasks.queues[cell.name]),
+        "paused": cell.paused,
+    }
+    if not tasks.queues[cell.name]:
+        expected["waiting_for"] = None
+    if cell.state is not CellState.HELD:
+        expected["held_by"] = None
+    running = tasks.open.get(tasks.running.get(cell.name, ""))
+    if running is None:
+        expected["task"] = None
+    if run.tree is None:
+        expected |= {"tree": [], "step": None, "progress": None}
+    shown = view.task_by_id(look.world.plant, running.id) if running else None
+    if running is not None and shown is not None:
+        began = {"started_at": running.since, "elapsed_s": now - running.since, "ended_at": None}
+        expected["task"] = {**shown, **began, "id": running.id, "cell": cell.name, "state": "running"}
+    return expected
+
+
+def _tree(cell: KnownCell, rows: list[Row]) -> Iterator[str]:
+    """Each node in its place, with what it is doing."""
+    tree = cell.run.tree
+    if tree is None:
+        return
+    if len(rows) != sum(1 for _ in tree.iterate()):
+        yield f"{cell.name}: {len(rows)} nodes are shown of a tree with more or less"
+    for row in rows:
+        node = _node(tree, row["path"])
+        if (row["name"], row["status"]) != (node.name, node.status.value):
+            yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
+        entry = getattr(node, "entry", None)
+        if entry is not None and row["parameters"].get("command") != entry.command.id:
+            yield f"{cell.name}: {row['path']} is shown with {row['parameters']}"
+        if entry is not None and row["kind"] != "command":
+            yield f"{cell.name}: {row['path']} is shown as a {row['kind']}"
+        left = row["deadline_s"]
+        if left is not None and left < -EXACT:
+            yield f"{cell.name}: {row['path']} is shown with {left} s left"
+
+
+def _node(tree: Behaviour, path: str) -> Behaviour:
+    for number in () if path == "root" else path.split("."):
+        tree = tree.children[int(number)]
+    return tree
+
+
+def _robot(look: Look, known: KnownRobot) -> Row:
+    now, robot = look.record.stepped_at, known.robot
+    last = look.record.commands.last.get(robot.name)
+    is_arm = isinstance(robot, Arm)
+    kept = look.record.effector_of(robot.name)
+    return {
+        "mqtt": robot.mqtt,
+        "online": not known.offline(now),
+        "state": known.state.value if known.state is not None else None,
+        "age_s": None if known.heard_at is None else now - known.heard_at,
+        "q": known.q,
+        "node": known.node,
+        "homed": known.homed,
+        "latched": known.stop is Stopped.LATCHED,
+        "effector": known.effector,
+        "piece": known.piece,
+        "boot_id": known.boot,
+        "bridge_epoch": known.epoch,
+        "holding": kept != "off" if is_arm else None,
+        "units": [_unit(joint) for joint in robot.joints] if isinstance(robot, Arm) else None,
+        "goal": _goal(last),
+    }
+
+
+def _unit(joint: Any) -> str:
+    return "m" if joint.pinion_radius_m else "rad"
+
+
+def _goal(last: SentCommand | None) -> Row | None:
+    """Where a command leads that has not ended."""
+    if last is None or last.state not in GOING:
+        return None
+    if isinstance(last.command, MoveJoints):
+        return {"q": list(last.command.q)}
+    return {"nodes": list(last.command.nodes)} if isinstance(last.command, FollowPath) else None
+
+
+def _diagnoses(shown: Row) -> Iterator[str]:
+    rows = {name: (level, message) for name, _, level, message, _ in view.diagnostics(shown)}
+    for robot in shown["robots"]:
+        level, message = rows.pop(f"arboleda: {robot['name']}", (None, ""))
+        bad = robot["state"] not in (None, 0, 1)
+        expected = STALE if not robot["online"] else ERROR if bad else OK
+        if level != expected or message != (robot["obstacle"] or "ready"):
+            yield f"{robot['name']} has the diagnosis {level} {message!r}"
+    for cell in shown["cells"]:
+        level, message = rows.pop(f"arboleda: {cell['name']}", (None, ""))
+        well = cell["state"] in ("idle", "execute") and not cell["paused"]
+        if level != (OK if well else WARN) or not message:
+            yield f"{cell['name']} has the diagnosis {level} {message!r}"
+    if rows:
+        yield f"there are diagnoses of {sorted(rows)}"
+
+
+def _drawn(look: Look, drawn: Row) -> Iterator[str]:
+    for row in drawn["robots"]:
+        known = look.record.robots[row["name"]]
+        expected = _robot(look, known)
+        wanted = {key: expected[key] for key in ("online", "q", "node", "goal")}
+        wanted["homed"] = not known.unhomed if known.robot.evidence.value == "ids" else row["homed"]
+        yield from _unlike(f"{row['name']} as drawn", row, {**wanted, "heard_at": known.heard_at})
+    for name, part in drawn["parts"].items():
+        kept = look.record.effector_of(look.record.cells[name].cell.arm.name)
+        if (part is not None and part["at"] == "arm") is not (kept != "off"):
+            yield f"the part of {name} is drawn at {part}, its effector is {kept}"
+        if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
+            yield f"the part of {name} is drawn as {part}, its effector is {kept}"
+
+
+@invariant(When.HEARD)
+def status_says_the_report(look: Look) -> Iterable[str]:
+    """A report that goes over ROS 2 arrives as it left."""
+    if not look.record.anew or not look.record.due_for("status", STATUS_S):
+        return NOTHING
+    return _carried(look)
+
+
+def _carried(look: Look) -> Iterator[str]:
+    for report in look.record.anew:
+        robot = look.world.model.robots.get(report.robot)
+        if robot is None:
+            continue
+        try:
+            sent = status.to_status(robot, report)
+            heard = status.from_status(report.at, robot, sent)
+        except Exception as error:  # noqa: BLE001 - whatever it is, the report does not arrive
+            yield f"{report} cannot be told over ROS 2: {error}"
+            continue
+        if heard != report:
+            yield f"{report} arrives over ROS 2 as {heard}"
+        refused = sent.message == "command refused"
+        if sent.hardware_id != robot.mqtt or refused is not (report.state is None):
+            yield f"{report} is told over ROS 2 as {sent.message!r} of {sent.hardware_id}"
+
+
+@invariant(When.END)
+def plans_show_the_model(look: Look) -> Iterator[str]:
+    """What never changes is shown as the plant file says it."""
+    model = look.world.model
+    shown = {row["name"]: row for row in view.layout(model)["cells"]}
+    placed = places.places(model)
+    rows = {row["name"]: row for row in placed["robots"]}
+    for cell in model.cells:
+        grid = cell.mobile.grid
+        yield from _unlike(
+            cell.name,
+            shown[cell.name],
+            {
+                "arm": cell.arm.name,
+                "mobile": cell.mobile.name,
+                "grid": {"rows": grid.rows, "columns": grid.columns},
+                "paths": {path.code: list(path.nodes) for path in cell.paths},
+                "stations": len(cell.stations),
+            },
+        )
+        for robot in cell.robots:
+            yield from _unlike(robot.name, rows[robot.name], PLACED[type(robot)](cell, robot))
+    for row in placed["zones"]:
+        yield from _spots(look, row)
+
+
+def _arm_placed(cell: Any, arm: Arm) -> Row:
+    at = [arm.base.x, arm.base.y, arm.base.yaw]
+    zero = [0.0] * len(arm.joints)
+    speeds = [joint.speed for joint in arm.joints]
+    return {"cell": cell.name, "kind": "arm", "at": at, "reference": zero, "speeds": speeds}
+
+
+def _mobile_placed(cell: Any, mobile: Mobile) -> Row:
+    grid = mobile.grid
+    rows = range(grid.rows)
+    nodes = [[column * grid.pitch, row * grid.pitch] for row in rows for column in range(grid.columns)]
+    at = [grid.origin.x, grid.origin.y, grid.origin.yaw]
+    return {"cell": cell.name, "kind": "mobile", "at": at, "nodes": nodes, "speeds": [mobile.speed] * 2}
+
+
+def _spots(look: Look, row: Row) -> Iterator[str]:
+    cells, zone = look.world.model.cells, row["zone"]
+    inside = sum(zone in pose.zones for cell in cells for pose in cell.poses)
+    ways = sum(zone in way.zones for cell in cells for way in cell.crossings)
+    if len(row["spots"]) != inside + ways:
+        yield f"zone {zone} is shown with {len(row['spots'])} spots"
+
+
+PLACED: dict[type, Callable[[Any, Any], Row]] = {Arm: _arm_placed, Mobile: _mobile_placed}
+
+SCREENS = (screens_show_what_is, status_says_the_report, plans_show_the_model)

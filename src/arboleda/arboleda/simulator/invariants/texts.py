@@ -1,0 +1,71 @@
+"""Task texts by a grammar of our own: what is taken, as what, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from arboleda.core.messages import TaskRequest, TaskState
+from arboleda.core.model import PlantModel
+
+from .invariant import Look, When, invariant
+
+LONGEST = 200
+ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
+
+
+@invariant(When.ASKED)
+def texts_mean_what_they_say(look: Look) -> Iterator[str]:
+    """A task text is taken where it names what the plant has and its cell has room, and only there."""
+    asked, record = look.moment.asked, look.record
+    if len(asked) != 1 or not isinstance(asked[0], TaskRequest) or asked[0].trigger:
+        return
+    changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
+    refused = record.tasks.refused > 0
+    meant = _meant(look.world.model, asked[0].text)
+    if meant is None:
+        if not refused:
+            yield f"{asked[0].text[:60]!r} means nothing, and was taken"
+        return
+    cell, words, id = meant
+    before = next(each for each in record.asked.cells if each.name == cell)
+    known = id is not None and id in record.asked.ids
+    if not known and refused is not (before.queued >= look.world.model.cell(cell).queue_limit):
+        word = "refused" if refused else "taken"
+        yield f"{asked[0].text!r} was {word}, {before.queued} tasks wait in {cell}"
+    if not refused and not any(said.text == words and said.cell == cell for said in changes):
+        yield f"{asked[0].text!r} was taken as {[said.text for said in changes]}"
+    if id is not None and not refused and not any(said.task == id for said in changes):
+        yield f"{asked[0].text!r} has another id: {[said.task for said in changes]}"
+    if not known and not refused and not any(said.state is TaskState.QUEUED for said in changes):
+        yield f"{asked[0].text!r} was taken, and nobody says that it waits"
+
+
+def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:
+    """The cell, the words and the id of a text; None where it means no task."""
+    words = text.split()
+    id = None
+    if len(text) > LONGEST:
+        return None
+    if words and words[-1].startswith("#"):
+        if not ID.fullmatch(words[-1]):
+            return None
+        id = words.pop()[1:]
+    if not words or not all(word.isascii() for word in words[:2]):
+        return None
+    name, *rest = (word.lower() for word in words[:2])
+    cell = next((each for each in model.cells if each.name.lower() == name), None)
+    if len(words) == 2 and rest == ["palletizing"]:
+        cell = cell or next((each for each in model.cells if each.arm.name.lower() == name), None)
+        return (cell.name, f"{cell.name} palletizing", id) if cell else None
+    if cell is None or len(words) != 3:
+        return None
+    code = next((path.code for path in cell.paths if path.code.lower() == rest[0]), None)
+    if code is None:
+        return None
+    if words[2] not in map(str, range(len(cell.stations))):
+        return None
+    return cell.name, f"{cell.name} {code} {words[2]}", id
+
+
+TEXTS = (texts_mean_what_they_say,)

@@ -1,0 +1,232 @@
+"""Operators' verbs by a table of our own: when each may be refused, and what it must have done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.ledger import State
+from arboleda.core.messages import (
+    Command,
+    Home,
+    Journal,
+    OperatorAnswer,
+    OperatorRequest,
+    SetEffector,
+    Stop,
+    StopMode,
+    TaskState,
+    Verb,
+)
+from arboleda.core.model import Arm, Evidence
+
+from ..recorded.cells import KnownCell
+from ..recorded.robots import Stopped
+from ..recorded.verbs import Asked
+from .invariant import Look, When, invariant
+
+Can = Callable[[Asked], bool]  # whether a verb can be done in a cell, as the cell was before
+S = CellState
+
+
+def _resumable(cell: Asked) -> bool:
+    if cell.state is S.IDLE:
+        return cell.paused
+    return cell.state is S.HELD and cell.has_task and not cell.troubled and not cell.stranded
+
+
+CAN: dict[Verb, Can] = {
+    Verb.STOP: lambda cell: True,
+    Verb.RESET: lambda cell: cell.state is S.STOPPED,
+    Verb.HOLD: lambda cell: cell.state is S.EXECUTE,
+    Verb.RESUME: _resumable,
+    Verb.CANCEL: lambda cell: cell.has_task and cell.state in (S.EXECUTE, S.HELD),
+    Verb.RETRY: lambda cell: (
+        cell.state is S.HELD and not cell.stranded and (cell.troubled or not cell.has_task)
+    ),
+    Verb.ABANDON: lambda cell: cell.state is S.HELD and (cell.has_task or not cell.holding),
+}
+# Verbs whose refusal also hangs on what robots say: in these states of a cell it is sure.
+CANNOT: dict[Verb, Can] = {
+    Verb.CLEAR: lambda cell: cell.state not in (S.ABORTED, S.CLEARING),
+    Verb.RELEASE: lambda cell: cell.state in (S.EXECUTE, S.HOLDING, S.ABORTING),
+    Verb.HOME: lambda cell: cell.state not in (S.IDLE, S.HELD),
+}
+
+
+@invariant(When.ASKED)
+def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
+    """A verb is refused where it can be done nowhere in its scope, and only there."""
+    for request, answer in _alone(look):
+        expected = _refused(look, request)
+        if expected is not None and expected is not (answer.refusal is not None):
+            what = f"{request.verb.value} {request.scope!r}"
+            states = {cell.name: cell.state.value for cell in look.record.asked.cells}
+            yield f"{what} was {'not ' if expected else ''}refused ({answer.refusal}); before it {states}"
+
+
+def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
+    """The one verb of a step, before which nothing else happened in it."""
+    asked, answers = look.moment.asked, look.record.answers
+    alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.born
+    if alone and isinstance(asked[0], OperatorRequest):
+        yield asked[0], answers[0]
+
+
+def _refused(look: Look, request: OperatorRequest) -> bool | None:
+    """None where it cannot be said by what the record has."""
+    record, verb, scope = look.record, request.verb, request.scope
+    if verb is Verb.OVERRIDE:
+        quarantined = record.asked.quarantined.get(scope.strip().lower())
+        return True if quarantined is None else None
+    task = record.asked.tasks.get(scope.strip().lstrip("#")) if verb is Verb.CANCEL else None
+    if task is not None:
+        return None if task is TaskState.RUNNING else False
+    if scope not in record.scopes:
+        return True
+    names = record.scopes.cells(scope)
+    cells = [cell for cell in record.asked.cells if cell.name in names]
+    if verb is Verb.HOME:
+        return True if any(map(CANNOT[verb], cells)) or _not_so(look, request) else None
+    if verb is Verb.CLEAR and any(cell.state is S.ABORTING for cell in cells):
+        return True
+    if verb in CANNOT:
+        return True if all(map(CANNOT[verb], cells)) else None
+    return not any(map(CAN[verb], cells))
+
+
+def _not_so(look: Look, request: OperatorRequest) -> bool:
+    """Whether a robot of the scope is not homed in this way."""
+    robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
+    if request.by_hand:
+        return any(robot.says_homed for robot in robots)
+    return any(robot.evidence is not Evidence.IDS for robot in robots)
+
+
+@invariant(When.ASKED)
+def verbs_do_what_they_say(look: Look) -> Iterator[str]:
+    """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
+    journalled = sum(isinstance(each, Journal) for each in look.moment.sent)
+    done = sum(answer.refusal is None for answer in look.record.answers)
+    if journalled != done:
+        yield f"{done} verbs were done, {journalled} are in the journal"
+    for request, answer in _alone(look):
+        effect = EFFECTS.get(request.verb)
+        if answer.refusal is None and effect is not None and not _is_task(look, request):
+            for wrong in effect(look, request):
+                yield f"{request.verb.value} {request.scope or 'plant'}: {wrong}"
+
+
+def _is_task(look: Look, request: OperatorRequest) -> bool:
+    return request.scope not in look.record.scopes
+
+
+def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[Asked, KnownCell]]:
+    """Those of its scope in which the verb could be done."""
+    names = look.record.scopes.cells(request.scope)
+    asked = [cell for cell in look.record.asked.cells if cell.name in names and can(cell)]
+    return [(cell, look.record.cells[cell.name]) for cell in asked]
+
+
+def _stops(look: Look, mode: StopMode) -> set[str]:
+    sent = (each for each in look.moment.sent if isinstance(each, Stop))
+    return {each.robot for each in sent if each.mode is mode}
+
+
+def _stopped(look: Look, request: OperatorRequest) -> Iterator[str]:
+    scope = set(look.record.scopes.robots(request.scope))
+    if _stops(look, StopMode.LATCH) != scope:
+        yield f"{sorted(scope)} had to be stopped, {sorted(_stops(look, StopMode.LATCH))} were"
+    for _, cell in _cells(look, request, CAN[Verb.STOP]):
+        if cell.state not in (S.ABORTING, S.ABORTED) or cell.task is not None or not cell.paused:
+            yield f"{cell.name} is {cell.state.value}, its queue {'is' if cell.paused else 'is not'} paused"
+        yield from _uncancelled(look, cell.name)
+
+
+def _uncancelled(look: Look, cell: str, *, motions: bool = False) -> Iterator[str]:
+    for sent in look.record.commands.open.values():
+        if sent.entry is None or sent.entry.cell != cell or (motions and not sent.is_motion):
+            continue
+        if sent.state is not State.CANCELLING:
+            yield f"{sent} goes on"
+
+
+def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
+    record = look.record
+    could = _cells(look, request, lambda cell: not CANNOT[Verb.CLEAR](cell))
+    names = {robot.name for _, cell in could for robot in cell.cell.robots}
+    wanted = names & set(record.scopes.robots(request.scope))
+    cleared = _stops(look, StopMode.CLEAR)
+    if not cleared <= wanted or (len(could) == 1 and cleared != wanted):
+        yield f"{sorted(wanted)} could be cleared, {sorted(cleared)} were"
+    for before, cell in could:
+        latched = [r.name for r in cell.cell.robots if record.robots[r.name].stop is Stopped.LATCHED]
+        if latched and before.state is S.ABORTED and cell.state is not S.ABORTED:
+            yield f"{cell.name} is {cell.state.value}, and {latched} are still stopped"
+        if not latched and cell.state is S.ABORTED and len(could) == 1:
+            yield f"{cell.name} is still aborted, and none of its robots is stopped"
+
+
+def _reset(look: Look, request: OperatorRequest) -> Iterator[str]:
+    for _, cell in _cells(look, request, CAN[Verb.RESET]):
+        if cell.state in (S.STOPPED, S.RESETTING):
+            yield f"{cell.name} is still {cell.state.value}"
+
+
+def _held(look: Look, request: OperatorRequest) -> Iterator[str]:
+    for _, cell in _cells(look, request, CAN[Verb.HOLD]):
+        if cell.state not in (S.HOLDING, S.HELD) or not cell.paused:
+            yield f"{cell.name} is {cell.state.value}, its queue {'is' if cell.paused else 'is not'} paused"
+        yield from _uncancelled(look, cell.name, motions=True)
+
+
+def _gone_on(look: Look, request: OperatorRequest) -> Iterator[str]:
+    for before, cell in _cells(look, request, CAN[Verb.RESUME]):
+        if before.state is S.IDLE and cell.state is S.IDLE and cell.paused:
+            yield f"the queue of {cell.name} is still paused"
+        if before.state is S.HELD and cell.state is S.HELD and cell.task is not None and not cell.run.trouble:
+            yield f"{cell.name} is still held"
+
+
+def _given_up(look: Look, request: OperatorRequest) -> Iterator[str]:
+    for before, cell in _cells(look, request, CAN[Verb.ABANDON]):
+        if before.has_task and cell.run.tree is not None and not cell.run.run.recovering:
+            yield f"{cell.name} goes on with its task"
+
+
+def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
+    sent = [each for each in look.moment.sent if isinstance(each, SetEffector) and not each.on]
+    if not sent:
+        yield "no effector was opened"
+    yield from _outside(look, request, sent)
+
+
+def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
+    sent = [each for each in look.moment.sent if isinstance(each, Home)]
+    scope = look.record.scopes.robots(request.scope)
+    if not {each.robot for each in sent} <= set(scope):
+        yield f"{[each.robot for each in sent]} were sent to their reference"
+    if request.by_hand and sent:
+        yield f"{[each.robot for each in sent]} move by themselves"
+
+
+def _outside(look: Look, request: OperatorRequest, sent: Iterable[Command]) -> Iterator[str]:
+    scope = look.record.scopes.robots(request.scope)
+    for each in sent:
+        if each.robot not in scope or not isinstance(look.world.model.robots[each.robot], Arm):
+            yield f"{each} is not in its scope"
+
+
+Effect = Callable[[Look, OperatorRequest], Iterator[str]]
+EFFECTS: dict[Verb, Effect] = {
+    Verb.STOP: _stopped,
+    Verb.CLEAR: _cleared,
+    Verb.RESET: _reset,
+    Verb.HOLD: _held,
+    Verb.RESUME: _gone_on,
+    Verb.ABANDON: _given_up,
+    Verb.RELEASE: _released,
+    Verb.HOME: _homed,
+}
+
+VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say)

@@ -1,0 +1,70 @@
+"""What is commanded is what the recipe says, in its order; a recovery holds what its way needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core.messages import MoveJoints
+from arboleda.core.model import Arm, Cell, Evidence
+
+from ..recorded.cells import KnownCell
+from ..recorded.commands import SentCommand
+from .invariant import Look, When, invariant
+
+
+@invariant(When.NEWS)
+def commands_follow_the_recipe(look: Look) -> Iterable[str]:
+    """A task commands what its shipped recipe says, each step after the one before is done, and all of it."""
+    return look.record.works.wrong if look.world.recipes is None else ()
+
+
+@invariant(When.COMMANDED)
+def recovery_takes_its_zones(look: Look) -> Iterator[str]:
+    """An arm that recovers from where nobody knows moves only while it holds all that its way may cross."""
+    for sent in look.record.commands.new:
+        cell = look.record.cells[sent.entry.cell] if sent.entry else None
+        if cell is None or not cell.cell.zones or not isinstance(sent.command, MoveJoints):
+            continue
+        if cell.run.run.recovering and _sets_out(cell, sent.command.q) and not _is_seen(look, cell.cell):
+            yield from _lacking(look, cell, sent)
+
+
+def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
+    held = look.world.plant.zones.held_by(cell.cell.arm.name)
+    if cell.held_before_recovery:
+        return  # it stands inside of what it holds, and goes on with that
+    lacking = _of_any_way(cell.cell) - held
+    if lacking:
+        yield f"{sent} leaves from an unknown place without zone {', '.join(sorted(lacking))}"
+
+
+def _of_any_way(cell: Cell) -> frozenset[str]:
+    """Zones of the pick-up and home, and of every move that leads there."""
+    ends = {cell.pickup.name, cell.home.name}
+    crossed = (each.zones for each in cell.crossings if {each.a, each.b} & ends)
+    return cell.pickup.zones.union(cell.home.zones, *crossed)
+
+
+def _sets_out(cell: KnownCell, q: tuple[float, ...]) -> bool:
+    """Whether this is where its recovery goes first after it took its zones; it rises before."""
+    pickup, home = cell.cell.pickup, cell.cell.home
+    way = [goal for goal in cell.recovery_goals if goal in (pickup.q, pickup.above, home.q)]
+    return way == [q]
+
+
+def _is_seen(look: Look, cell: Cell) -> bool:
+    """Whether the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
+    arm, q = cell.arm, look.record.robots[cell.arm.name].q
+    if arm.evidence is Evidence.STATE:
+        return True
+    spots = [spot for pose in cell.poses if not pose.zones for spot in (pose.q, pose.above) if spot]
+    return q is not None and any(_near(arm, q, spot) for spot in (*spots, (0.0,) * len(arm.joints)))
+
+
+def _near(arm: Arm, q: tuple[float, ...], goal: tuple[float, ...]) -> bool:
+    tolerances = arm.tolerance or [joint.step / 2 + 1e-5 for joint in arm.joints]
+    rows = zip(arm.joints, q, goal, tolerances, strict=True)
+    return all(abs(at - to) <= off + joint.step / 2 + 1e-9 for joint, at, to, off in rows)
+
+
+WORK = (commands_follow_the_recipe, recovery_takes_its_zones)

@@ -1,0 +1,8 @@
+"""Plant files drawn from a seed, as plain data: what a person could write, odd values included."""
+
+from __future__ import annotations
+
+from .draw import draw
+from .smaller import smaller
+
+__all__ = ["draw", "smaller"]

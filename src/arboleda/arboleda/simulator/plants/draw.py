@@ -1,0 +1,73 @@
+"""A whole plant file from a seed: one to four cells, what they share, their zones and times."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from arboleda.core.model import Joint
+
+from ..chance import Dice
+from .cells import DrawnCell, draw_cell
+from .poses import Section, draw_rack
+from .timing import draw_timing
+from .ways import draw_paths
+from .zones import draw_zones
+
+CELLS = (1, 1, 1, 1, 1, 2, 2, 2, 3, 4)  # how many; many are simulated slower and find little more
+SHARED = 0.25  # how often cells share a section at the top of the file
+
+
+def draw(
+    seed: int, attempt: int = 0, *, arms: Mapping[str, Sequence[Joint]], mobiles: Mapping[str, float]
+) -> Section:
+    """The content of a plant file; `arms` are the joints and `mobiles` the speeds in m/s of the models.
+
+    What is drawn has the form of a plant file, but `arboleda check` may refuse it for what its values mean
+    together; another `attempt` draws another one. The same seed and attempt give the same file.
+    """
+    dice = Dice(seed, "plant", attempt)
+    cells = [
+        draw_cell(Dice(seed, "plant", attempt, "cell", number), number, arms=arms, mobiles=mobiles)
+        for number in range(1, dice.pick(CELLS) + 1)
+    ]
+    file: Section = {"name": f"drawn_{seed}"}
+    if dice.chance(0.3):
+        file["mqtt_version"] = dice.pick(("3.1.1", "5", 5))
+    if Dice(seed, "plant", attempt, "foreign").chance(0.3):
+        file["foreign_commands"] = "refuse"  # with "obey" strangers of the simulator would rightly command
+    if dice.chance(0.7):
+        file["timing"] = draw_timing(dice)
+    shared = _share(dice, cells)
+    file |= shared
+    file["cells"] = {cell.name: cell.section for cell in cells}
+    if zones := draw_zones(dice, cells, shared):
+        file["zones"] = zones
+    return file
+
+
+def _share(dice: Dice, cells: Sequence[DrawnCell]) -> Section:
+    """Sections at the top of the file, and some cells that have none of their own because of that."""
+    shared: Section = {}
+    if dice.chance(SHARED):
+        shared["paths"] = draw_paths(dice)
+        for cell in _some(dice, cells):
+            del cell.section["paths"]
+    if dice.chance(SHARED):
+        kind = dice.pick(cells).arm
+        alike = [cell for cell in cells if cell.arm.model == kind.model]
+        shared["stations"], count = draw_rack(dice, kind.around_zero())
+        for cell in _some(dice, alike):
+            cell.take_stations(count)
+    if dice.chance(SHARED):
+        shared["palletizing"] = dice.pick(
+            ({"pick": "pickup", "place": "station 0"}, {"pick": "station 0", "place": "pickup"})
+        )
+        for cell in _some(dice, cells):
+            cell.section.pop("palletizing", None)
+    return shared
+
+
+def _some(dice: Dice, cells: Sequence[DrawnCell]) -> list[DrawnCell]:
+    """At least one of them."""
+    first = dice.pick(cells)
+    return [cell for cell in cells if cell is first or dice.chance(0.5)]

@@ -1,0 +1,24 @@
+"""The waiting times of a drawn plant: usual, none at all, short."""
+
+from __future__ import annotations
+
+from ..chance import Dice
+from .poses import Section
+
+TIMES: dict[str, tuple[float, ...]] = {
+    "dwell_s": (0, 0.01, 0.2, 0.4),
+    "effector_settle_s": (0, 0.01, 0.2, 0.4),
+    "effector_timeout_s": (0.3, 1, 5),
+    "stale_after_s": (0.3, 0.5, 1, 3),
+    "stop_timeout_s": (0.3, 1, 5),
+    "deadline_factor": (1, 1.5, 3),
+    "deadline_floor_s": (0.5, 1, 2),
+    "piece_wait_s": (0.5, 1, 2),
+    "piece_debounce_s": (0, 0.05, 0.1, 0.3),
+}
+
+
+def draw_timing(dice: Dice) -> Section:
+    """Some of the times, at least one."""
+    drawn: Section = {key: dice.pick(values) for key, values in TIMES.items() if dice.chance(0.5)}
+    return drawn or {"dwell_s": 0}

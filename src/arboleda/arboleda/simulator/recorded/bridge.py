@@ -1,0 +1,475 @@
+"""What the bridge was told and what it said, board by board: its rules once more, without its short cuts.
+
+What it keeps is not asked. `Bridges.wrong` has what it did otherwise, by the name of the rule.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import OrderedDict, defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from arboleda.core.belief import Belief
+from arboleda.core.messages import (
+    Command,
+    FollowPath,
+    Heartbeat,
+    Home,
+    MoveJoints,
+    Report,
+    SetEffector,
+    Stop,
+    StopMode,
+)
+from arboleda.core.model import Arm, Evidence, Link, Mobile, MotionState, PlantModel, Robot
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+from ..world import Passed
+
+EXACT = 1e-9
+YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
+STALLED_S = 0.1
+COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
+SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
+FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
+KEPT = 200  # numbers of a board, fewer than the bridge remembers
+REPORTS, COMMANDS, BEATS = "reports", "commands", "beats"
+CHANNELS = {
+    MoveJoints: "juntas",
+    FollowPath: "camino",
+    SetEffector: "efector",
+    Stop: "paro",
+    Home: "referencia",
+}
+Motions = (MoveJoints, FollowPath, Home)
+
+
+class Bridges:
+    """Follows every bridge of the plant; `wrong` is what was wrong in this pass: rule -> sentences."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self.wrong: defaultdict[str, list[str]] = defaultdict(list)
+        self._model = model
+        self._bridge: Any = None
+        self._known: _Bridge | None = None
+
+    def take_over(self, bridge: Any, now: float, beliefs: Mapping[str, Belief]) -> None:
+        """A bridge that ran before anybody looked: the only time that the plant is asked."""
+        self._bridge, self._known = bridge, _Bridge(self._model, self.wrong)
+        self._known.take_over(now, beliefs)
+
+    def look(self, passed: Iterable[Passed]) -> None:
+        self.wrong.clear()
+        for each in passed:
+            if each.bridge is not self._bridge:
+                self._bridge, self._known = each.bridge, _Bridge(self._model, self.wrong)
+            if self._known is not None:
+                self._known.take(each)
+
+
+class _Bridge:
+    """One start of the bridge."""
+
+    def __init__(self, model: PlantModel, wrong: defaultdict[str, list[str]]) -> None:
+        robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
+        self._wrong = wrong
+        self._boards = {robot.name: _Board(robot, model.timing.stale_after_s, wrong) for robot in robots}
+        self._by_topic = {
+            f"{robot.mqtt}/{channel}": (self._boards[robot.name], channel)
+            for robot in robots
+            for channel in ("sensores", "conexion")
+        }
+        self._plant: int | None = None  # whose heartbeat it hears
+        self.is_followed = True  # until it was stalled: what it makes of old news hangs on their age
+
+    def take_over(self, now: float, beliefs: Mapping[str, Belief]) -> None:
+        for name, board in self._boards.items():
+            board.take_over(now, beliefs[name])
+            self._plant = beliefs[name].plant
+
+    def take(self, passed: Passed) -> None:
+        reports: defaultdict[str, list[Report]] = defaultdict(list)
+        published: defaultdict[str, list[Publication]] = defaultdict(list)
+        for message in passed.out:
+            if isinstance(message, Report):
+                reports[message.robot].append(message)
+            elif isinstance(message, Publication):
+                published[message.topic.partition("/")[0]].append(message)
+        for event in passed.events:
+            self._event(event)
+        late = any(event.at < passed.now for event in passed.events)
+        if any(event.at + STALLED_S <= passed.now for event in passed.events):
+            self.is_followed = False
+        if not self.is_followed:
+            return
+        for name, board in self._boards.items():
+            mqtt = board.robot.mqtt
+            if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
+                board.end_step(passed.now, reports[name], published[mqtt], late=late)
+
+    def _event(self, event: Any) -> None:
+        if isinstance(event, Delivery):
+            board, channel = self._by_topic.get(event.topic, (None, ""))
+            if board is not None:
+                board.deliver(event, channel)
+        elif isinstance(event, Connection):
+            for board in self._boards.values():
+                board.connect(event.up)
+        elif isinstance(event, FromPlant) and isinstance(event.message, Heartbeat):
+            self._beat(event.message.epoch, event.unix_s)
+        elif isinstance(event, FromPlant) and event.message.robot in self._boards:
+            board = self._boards[event.message.robot]
+            if not event.message.id:
+                board.hear_others(event.at, event.message)
+                return
+            if event.copied:
+                board.expect_copy(event.at, event.message)
+            board.command(event.message, self._plant)
+
+    def _beat(self, epoch: int, unix_s: int | None) -> None:
+        if epoch > (YEAR_2100 if unix_s is None else unix_s + AHEAD_S):
+            return
+        if self._plant is None or epoch >= self._plant:
+            self._plant = epoch
+            for board in self._boards.values():
+                board.hear_plant(epoch)
+
+
+class _Board:
+    """One board as the bridge should see it."""
+
+    def __init__(self, robot: Robot, stale_after_s: float, wrong: defaultdict[str, list[str]]) -> None:
+        self.robot = robot
+        self._wrong = wrong
+        self._by_ids = robot.evidence is Evidence.IDS
+        self._patience_s = math.inf if robot.evidence is Evidence.STATE else stale_after_s
+        self._connected = self._absent = self._up = False
+        self._heard_at = -math.inf
+        self._number: int | None = None
+        self._boot: int | None = None
+        self._returns = 0
+        self._plant: int | None = None
+        self._latched = False
+        self._ids: OrderedDict[tuple[int, int], str] = OrderedDict()  # (epoca, seq) -> command
+        self._seq = 0
+        self._seen: set[str] = set()
+        self._refused: set[tuple[str, str]] = set()
+        self._words: tuple[Any, ...] = ()  # of the last telemetry: its bytes without the number, the report
+        self._telling: list[Delivery] = []
+        self._maybe: list[Delivery] = []
+        self._copies: list[tuple[float, Command]] = []  # that are to come of what the plant said
+        self._early: list[tuple[float, Command]] = []  # without an id, whose original may still come
+        self._orders: list[tuple[Command, str]] = []  # with the word that refuses it, or ""
+        self._fell = self._rose = False
+        self.touched = True  # in this step
+        self._late = False
+        self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
+        self._is_new = True  # a bridge that starts tells that it has no link yet
+        self._beats = 0
+
+    def take_over(self, now: float, belief: Belief) -> None:
+        self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
+        self._up, self._heard_at = belief.heard_at is not None, now
+
+    @property
+    def stale_at(self) -> float:
+        """When its silence will have lasted too long."""
+        return self._heard_at + self._patience_s if self._up else math.inf
+
+    def connect(self, up: bool) -> None:
+        self.touched = True
+        self._connected, self._absent = up, False
+        if not up:
+            self._lose()
+
+    def hear_plant(self, epoch: int) -> None:
+        self._plant = epoch
+        self._beats += 1
+
+    def deliver(self, delivery: Delivery, channel: str) -> None:
+        self.touched = True
+        if channel == "conexion":
+            self._presence(delivery.payload)
+        elif not delivery.retain and self._connected and not self._absent:
+            self._telemetry(delivery)
+
+    def _presence(self, payload: bytes) -> None:
+        if payload in (b"0", b"1"):
+            self._returns += self._absent and payload == b"1"
+            self._absent = payload == b"0"
+            if self._absent:
+                self._lose()
+            elif self._up:
+                self._rose = True
+
+    def _telemetry(self, delivery: Delivery) -> None:
+        said = self._fields(delivery.payload)
+        if said is None:
+            return
+        number, boot = said.get("seq"), said.get("arranque")
+        same = boot is not None and boot == self._boot
+        if same and number is not None and self._number is not None and number <= self._number:
+            if self._up:
+                return
+            self._maybe.append(delivery)  # a counter that began anew counts again after some time
+            return
+        self._rose |= not self._up or (boot is not None and self._boot is not None and boot != self._boot)
+        self._take(delivery, said)
+
+    def _fields(self, payload: bytes) -> dict[str, Any] | None:
+        """The fields of telemetry; what differs from the last in its number alone is not read again."""
+        before, number, after = _parts(payload)
+        last = self._parsed
+        if last is not None and number and last[0] == before and last[1] == after:
+            last[2]["seq"] = int(number)
+            return last[2]
+        said = _read(payload, self.robot)
+        if said is not None and payload.count(b'"seq"') == 1:
+            self._parsed = (before, after, said)
+        return said
+
+    def _take(self, delivery: Delivery, said: dict[str, Any]) -> None:
+        self._up, self._heard_at = True, delivery.at
+        self._number = said.get("seq")
+        self._boot = said.get("arranque", self._boot)
+        self._telling.append(delivery)
+
+    def expect_copy(self, at: float, command: Command) -> None:
+        plain = replace(command, id="")
+        early = next((each for each in self._early if each[1] == plain), None)
+        if early is None:
+            self._copies.append((at, plain))
+        else:
+            self._early.remove(early)
+
+    def hear_others(self, at: float, command: Command) -> None:
+        """A command without an id: nothing where it is a copy, and an order where it is a stop."""
+        self.touched = True
+        self._copies = [each for each in self._copies if each[0] + COPIES_S > at]
+        copy = next((each for each in self._copies if each[1] == command), None)
+        if copy is not None:
+            self._copies.remove(copy)
+            return
+        self._early.append((at, command))
+        stops = isinstance(command, Stop) and command.mode is not StopMode.CLEAR
+        if stops:
+            self._latched |= command.mode is StopMode.LATCH
+        if stops and self._up and self.robot.has_stop:
+            self._orders.append((command, ""))
+
+    def command(self, command: Command, plant: int | None) -> None:
+        self.touched = True
+        if command.id in self._seen:
+            return
+        halts = isinstance(command, Stop) and command.mode is not StopMode.CLEAR
+        if not halts and command.id.partition("-")[0] != str(plant or 0):
+            self._orders.append((command, "old_epoch"))
+            return
+        self._seen.add(command.id)
+        if isinstance(command, Stop) and command.mode is not StopMode.HALT:
+            self._latched = command.mode is StopMode.LATCH
+        word = "" if self._up else "no_link"
+        if not word and isinstance(command, Stop) and not self.robot.has_stop:
+            word = "no_stop"
+        if not word and not self._is_within(command):
+            word = "limite"
+        grips = isinstance(command, SetEffector) and command.on
+        if not word and self._latched and (isinstance(command, Motions) or grips):
+            word = "paro"
+        self._orders.append((command, word))
+
+    def _is_within(self, command: Command) -> bool:
+        """Whether the robot can reach the goal: where an arm lies, a way up may lead beyond its limits."""
+        if not isinstance(command, MoveJoints) or not isinstance(self.robot, Arm):
+            return True
+        rows = zip(self.robot.joints, command.q, strict=True)
+        return all(joint.lower - SLACK <= value <= joint.upper + SLACK for joint, value in rows)
+
+    def _lose(self) -> None:
+        self._fell |= self._up
+        self._up = False
+
+    def end_step(
+        self, now: float, reports: list[Report], published: list[Publication], *, late: bool
+    ) -> None:
+        """Compare all that this step should have brought with what it brought; `late`: it was away before."""
+        self._late = late
+        if self._up and self._heard_at + self._patience_s <= now:
+            self._lose()
+        if self._orders or published:
+            self._compare_orders(reports, published)
+        if reports or self._telling or self._fell:
+            self._compare_reports(reports)
+        if self._heard_at + self._patience_s <= now:
+            self._up = False  # what counted only in hindsight may be too old by now
+        self._telling, self._maybe, self._orders = [], [], []
+        self._is_new = False
+        self._early = [each for each in self._early if each[0] + EARLY_S > now]
+        self.touched = bool(self._early)
+        self._fell = self._rose = False
+        self._beats = 0
+
+    def _compare_orders(self, reports: list[Report], published: list[Publication]) -> None:
+        orders = [each for each in published if not each.topic.endswith("/latido")]
+        name = self.robot.name
+        for command, word in self._orders:
+            if word:
+                self._refused.add((command.id, word))
+                if (command.id, word) not in [(each.rejected, each.refusal) for each in reports]:
+                    self._say(COMMANDS, f"{command} had to be refused as {word}, and was not")
+                continue
+            if (command.id, "no_link") in [(each.rejected, each.refusal) for each in reports] and self._late:
+                self._refused.add((command.id, "no_link"))  # a bridge that was away does not trust its link
+                continue
+            publication = orders.pop(0) if orders else None
+            is_it = publication is not None and publication.topic.endswith("/" + CHANNELS[type(command)])
+            if not command.id and not is_it:
+                orders[:0] = [publication] if publication else []
+                continue  # whether a stop without an id is a copy of the plant's shows only later
+            if publication is None or not is_it:
+                self._say(COMMANDS, f"{command} should have left; what left is {publication}")
+                return
+            self._check_body(command, publication)
+        for publication in orders:
+            again = publication.topic.endswith("/paro") and b'"paro":1' in publication.payload
+            if again and self._latched and self._rose:
+                self._number_of("", publication)
+            else:
+                self._say(COMMANDS, f"{name} is sent {publication.payload!r}, which nobody commanded")
+
+    def _check_body(self, command: Command, publication: Publication) -> None:
+        body = json.loads(publication.payload)
+        if isinstance(command, SetEffector) and body.get("efector") != int(command.on):
+            self._say(COMMANDS, f"{command} left as {body}")
+        if isinstance(command, Stop) and body.get("paro") != command.mode.value:
+            self._say(COMMANDS, f"{command} left as {body}")
+        if publication.qos < 1:
+            self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
+        self._number_of(command.id, publication)
+
+    def _number_of(self, id: str, publication: Publication) -> None:
+        if not self._by_ids:
+            return
+        body = json.loads(publication.payload)
+        number = (body.get("epoca"), body.get("seq"))
+        self._seq += 1
+        if number[1] != self._seq:
+            self._say(COMMANDS, f"{publication.topic} has the number {number[1]} after {self._seq - 1}")
+        self._ids[number] = id
+        if len(self._ids) > KEPT:
+            self._ids.popitem(last=False)
+
+    def _compare_reports(self, reports: list[Report]) -> None:
+        name = self.robot.name
+        told = [each for each in reports if each.state is not None and each.state is not MotionState.NO_LINK]
+        lost = [each for each in reports if each.state is MotionState.NO_LINK]
+        if self._fell and not lost:
+            self._say(REPORTS, f"the link to {name} was lost, and nobody was told")
+        if lost and self._up and not self._fell and not self._is_new:
+            self._say(REPORTS, f"{name} is reported lost, and is there")
+        rest = list(told)
+        for delivery in self._telling:
+            report = next((each for each in rest if self._says(each, delivery)), None)
+            if report is None:
+                self._say(REPORTS, f"{delivery.payload!r} of {name} is not reported as it is: {rest}")
+                return
+            rest.remove(report)
+        for report in rest:
+            if not self._is_known(report):
+                self._say(REPORTS, f"{name} is reported with what it has not said: {report}")
+
+    def _is_known(self, report: Report) -> bool:
+        """Whether it repeats the last words, as for a plant that was not heard before, or what may count."""
+        if any(self._says(report, delivery) for delivery in self._maybe):
+            said = _read(self._maybe[-1].payload, self.robot) or {}
+            self._take(self._maybe[-1], said)
+            self._telling = []
+            return True
+        return bool(self._words) and _content(report) == _content(self._words[2])
+
+    def _says(self, report: Report, delivery: Delivery) -> bool:
+        """Whether a report says what telemetry says, of our commands too."""
+        if report.at != delivery.at or report.plant != self._plant:
+            return False
+        before, _, after = _parts(delivery.payload)
+        if self._words and (before, after) == self._words[:2] and report.words == self._words[2].words:
+            self._words = (before, after, report)
+            return True
+        said = _read(delivery.payload, self.robot)
+        if said is None or not _agree(report, said, self.robot) or not self._names(report, said):
+            return False
+        self._words = (before, after, report)
+        return True
+
+    def _names(self, report: Report, said: dict[str, Any]) -> bool:
+        """Whether it names the commands by the numbers that the board tells."""
+        if not self._by_ids:
+            return report.accepted is None and report.done is None
+        epoch = said.get("epoca_ack")
+        numbers = {key: (epoch, said.get(key)) for key in ("ack", "hecho", "rechazo_seq")}
+        if report.accepted != (self._ids.get(numbers["ack"]) or None):
+            return False
+        if report.done != (self._ids.get(numbers["hecho"]) or None):
+            return False
+        if report.rejected is None:
+            return True
+        by_board = self._ids.get(numbers["rechazo_seq"]) == report.rejected
+        by_board = by_board and said.get("rechazo") == report.refusal
+        if by_board or said.get("rechazo") == "viejo":
+            self._refused.add((report.rejected, report.refusal or ""))
+        return (report.rejected, report.refusal) in self._refused
+
+    def _say(self, rule: str, sentence: str) -> None:
+        self._wrong[rule].append(sentence)
+
+
+def _content(report: Report) -> tuple[Any, ...]:
+    return (report.state, report.q, report.node, report.homed, report.effector, report.piece, report.boot_id)
+
+
+def _parts(payload: bytes) -> tuple[bytes, bytes, bytes]:
+    """A message up to its number, its number, and what comes after it."""
+    before, _, rest = payload.partition(b'"seq":')
+    after = rest.lstrip(b"0123456789")
+    return before, rest[: len(rest) - len(after)], after
+
+
+def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
+    """The fields of telemetry; None where it is refused, as far as the simulated world makes such."""
+    try:
+        said = json.loads(payload)
+    except ValueError:
+        return None
+    place = (
+        [f"q{number + 1}_mov" for number in range(len(robot.joints))] if isinstance(robot, Arm) else ["nodo"]
+    )
+    if not isinstance(said, dict) or len(payload) > 512 or not all(key in said for key in place):
+        return None
+    if any(key in said for key in (FOREIGN_TO_ARMS if isinstance(robot, Arm) else FOREIGN_TO_MOBILES)):
+        return None
+    if isinstance(robot, Mobile) and not 0 <= said["nodo"] < robot.grid.size:
+        return None
+    if not all(type(said[key]) in (int, float) and math.isfinite(said[key]) for key in place):
+        return None
+    return said if type(said.get("estado")) is int and 0 <= said["estado"] <= 4 else None
+
+
+def _agree(report: Report, said: dict[str, Any], robot: Robot) -> bool:
+    flags = ((report.homed, "ref"), (report.effector, "efector"), (report.piece, "pieza"))
+    if any(flag != (None if key not in said else said[key] == 1) for flag, key in flags):
+        return False
+    if report.state is None or report.state.value != said["estado"]:
+        return False
+    if not isinstance(robot, Arm):
+        return report.node == said["nodo"] and report.q is None
+    if report.q is None or report.node is not None:
+        return False
+    rows = zip(robot.joints, report.q, strict=True)
+    return all(
+        abs(value - math.radians(said[f"q{number}_mov"]) * (joint.pinion_radius_m or 1.0)) < EXACT
+        for number, (joint, value) in enumerate(rows, start=1)
+    )

@@ -1,0 +1,193 @@
+"""What the reports of one step prove about each open command, by rules that are written down here once more.
+
+They are slower and plainer than those of the plant, and ask none of its books.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from itertools import starmap
+
+from arboleda.core.messages import Failure, FollowPath, Home, MoveJoints, Reason, Report, SetEffector
+from arboleda.core.model import Arm, Evidence, MotionState, Robot
+
+from .commands import SentCommand
+from .robots import KnownRobot
+
+FLOAT_SLACK = 1e-9
+REFUSED = {"no_link": Reason.LINK_LOST, "paro": Reason.STOPPED, "sin_ref": Reason.NOT_HOMED}
+
+
+@dataclass
+class Proof:
+    """What one command's robot said in this step, in the order of its reports.
+
+    `causes` are reasons for which it may fail now; `must_end` says what leaves no way but an end;
+    `must_run` that its board has named it; `done`, `named`, `still`: whether it may be done, be under way,
+    have come to a halt.
+    """
+
+    causes: set[Reason] = field(default_factory=set)
+    must_end: str = ""
+    must_run: bool = False
+    done: bool = False
+    named: bool = False
+    still: bool = False
+
+
+@dataclass
+class Shown:
+    """What reports have shown of a command since it was sent."""
+
+    moving: bool = False
+    position: bool = False
+    unhomed: bool = False
+
+
+class Proofs:
+    """`of`: by command id, in this step; a command of which nothing was said has none."""
+
+    def __init__(self) -> None:
+        self.of: dict[str, Proof] = {}
+        self._shown: dict[str, Shown] = {}
+        self._by_robot: dict[str, list[SentCommand]] = {}
+
+    def forget(self) -> None:
+        """The plant that sent them is gone."""
+        self.of.clear()
+        self._shown.clear()
+        self._by_robot.clear()
+
+    def clear_news(self) -> None:
+        self.of.clear()
+
+    def follow(self, sent: list[SentCommand]) -> None:
+        """Take over which commands are open after this step."""
+        self._by_robot.clear()
+        for each in sent:
+            self._by_robot.setdefault(each.robot, []).append(each)
+        ids = {each.command.id for each in sent}
+        self._shown = {id: shown for id, shown in self._shown.items() if id in ids}
+
+    def hear(self, report: Report, known: KnownRobot) -> None:
+        """A report comes in; `known` is what its robot had said before."""
+        q = known.q if report.q is None else report.q
+        node = known.node if report.node is None else report.node
+        for sent in self._by_robot.get(report.robot, ()):
+            proof = self.of.setdefault(sent.command.id, Proof())
+            _broken(proof, sent, report, known)
+            if report.at >= sent.at:
+                shown = self._shown.setdefault(sent.command.id, Shown())
+                _see(shown, report)
+                _said(proof, sent, report, known.robot)
+                _moved(proof, sent, shown, report, known.robot, _off(sent, known.robot, q, node))
+
+
+def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) -> None:
+    """What ends a command whenever it was said."""
+    if report.state is MotionState.NO_LINK:
+        _must(proof, Reason.LINK_LOST, "its link was lost")
+    if report.at > known.stale_at:
+        _must(proof, Reason.LINK_LOST, "its robot was silent for too long")
+    if known.epoch is not None and report.epoch is not None and report.epoch != known.epoch:
+        _must(proof, Reason.LINK_LOST, "its bridge was restarted")
+    if _booted(report, known):
+        _must(proof, Reason.REBOOTED, "its board booted")
+    if known.robot.evidence is Evidence.JOINTS:
+        proof.causes.add(Reason.REBOOTED)  # a jump; how far is too far is for the tests of evidence
+    if report.rejected == sent.command.id:
+        _must(proof, REFUSED.get(report.refusal or "", Reason.REJECTED), "it was refused")
+
+
+def _booted(report: Report, known: KnownRobot) -> bool:
+    """At `joints` boots are counted by the bridge, which begins anew with each start of its own."""
+    if report.boot_id == known.boot or None in (report.boot_id, known.boot):
+        return False
+    same_bridge = report.epoch == known.epoch
+    evidence = known.robot.evidence
+    return evidence is Evidence.IDS or (evidence is Evidence.JOINTS and same_bridge)
+
+
+def _must(proof: Proof, reason: Reason, why: str) -> None:
+    proof.causes.add(reason)
+    proof.must_end = proof.must_end or why
+
+
+def _see(shown: Shown, report: Report) -> None:
+    shown.moving |= report.state is MotionState.MOVING
+    shown.position |= report.q is not None or report.node is not None
+    shown.unhomed |= report.homed is False
+
+
+def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None:
+    """Codes that speak for themselves."""
+    if report.state is MotionState.FAULT:
+        _must(proof, Reason.DEVICE_FAULT, "its board reports a fault")
+    if not sent.is_motion:
+        return
+    if report.state is MotionState.NOT_HOMED and not isinstance(sent.command, Home):
+        _must(proof, Reason.NOT_HOMED, "its robot is not homed")
+    if report.state is MotionState.STOP_LATCHED:
+        proof.causes.add(Reason.STOPPED)
+    proof.still |= report.state in (MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED)
+    proof.still |= report.state in (MotionState.FAULT, None)  # a position alone may be what was missing
+
+
+def _moved(
+    proof: Proof, sent: SentCommand, shown: Shown, report: Report, robot: Robot, off: float | None
+) -> None:
+    """Whether it is under way or done; `off` is how far beyond its tolerance the robot stands."""
+    command, stopped = sent.command, report.state is MotionState.STOPPED
+    if isinstance(command, SetEffector):
+        proof.done |= report.effector is command.on
+        return
+    if isinstance(command, Home):
+        proof.named |= shown.unhomed
+        proof.done |= shown.unhomed and bool(report.homed) and stopped
+        return
+    if robot.evidence is Evidence.IDS:
+        ended = report.done == command.id
+        proof.named |= ended or report.accepted == command.id
+        proof.must_run |= report.accepted == command.id
+        proof.done |= ended and stopped and _at(off)
+        if ended and stopped and not _surely_at(off):
+            proof.causes.add(Reason.NOT_REACHED)
+        if ended and stopped and off is not None and (_surely_at(off) or sent.cancelled_at is None):
+            proof.must_end = proof.must_end or "its board says that it is done"
+    else:
+        proof.named |= shown.moving
+        # how near is near enough at `joints`, where words come apart, is for what is true to say
+        seen = shown.moving if robot.evidence is Evidence.STATE else shown.position
+        proof.done |= seen and (stopped or report.state is None)
+    if (stopped or report.state is None) and not _surely_at(off):
+        proof.causes.add(Reason.STOPPED_SHORT)
+
+
+def _at(off: float | None) -> bool:
+    return off is not None and off <= FLOAT_SLACK
+
+
+def _surely_at(off: float | None) -> bool:
+    return off is not None and off < -FLOAT_SLACK
+
+
+def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int | None) -> float | None:
+    """By how much the worst joint misses its goal beyond its tolerance; 1 or -1 for the node of a path."""
+    command = sent.command
+    if isinstance(command, FollowPath):
+        return None if node is None else (-1.0 if node == command.nodes[-1] else 1.0)
+    if not isinstance(command, MoveJoints) or not isinstance(robot, Arm) or q is None:
+        return None
+
+    def beyond(at: float, goal: float, step: float, tolerance: float) -> float:
+        steps = math.floor(abs(goal) / step + 0.5) * (1 if goal >= 0 else -1)
+        return abs(at - steps * step) - tolerance
+
+    tolerances = robot.tolerance or [joint.step / 2 + 1e-5 for joint in robot.joints]
+    steps = [joint.step for joint in robot.joints]
+    return max(starmap(beyond, zip(q, command.q, steps, tolerances, strict=True)))
+
+
+def told(failure: Failure | None) -> str:
+    return f"{failure.reason.value} ({failure.sentence})" if failure else "no cause"

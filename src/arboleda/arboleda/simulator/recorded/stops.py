@@ -1,0 +1,42 @@
+"""Which moves the bridge takes in although the plant gave a stop or a halt after them, which came first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.core.messages import FollowPath, Home, MoveJoints
+from arboleda.wire.hop import FromPlant, is_stop
+
+Number = tuple[int, int]  # the plant's start, and the how-manieth command of it
+
+
+class EarlyStops:
+    """`overtaken` are sentences on the moves of this step."""
+
+    def __init__(self) -> None:
+        self.overtaken: list[str] = []
+        self._last: dict[str, Number] = {}
+
+    def look(self, taken: Iterable[FromPlant]) -> None:
+        """Take in what the bridge took in, in its order."""
+        self.overtaken.clear()
+        for command in (each.message for each in taken):
+            number = _number(getattr(command, "id", ""))
+            if number is None:
+                continue
+            if is_stop(command):
+                self._last[command.robot] = max(number, self._last.get(command.robot, number))
+            elif isinstance(command, MoveJoints | FollowPath | Home):
+                self._judge(command, number)
+
+    def _judge(self, command: MoveJoints | FollowPath | Home, number: Number) -> None:
+        stopped = self._last.get(command.robot)
+        if stopped is not None and number < stopped and number[0] == stopped[0]:
+            what = f"{type(command).__name__} {command.id} reaches the bridge for {command.robot}"
+            self.overtaken.append(f"{what} after its stop {stopped[0]}-{stopped[1]}")
+
+
+def _number(id: str) -> Number | None:
+    """None for a command of somebody else."""
+    epoch, _, count = id.partition("-")
+    return (int(epoch), int(count)) if epoch.isdigit() and count.isdigit() else None

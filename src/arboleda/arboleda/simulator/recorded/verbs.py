@@ -1,0 +1,58 @@
+"""How cells, zones and tasks were when an operator's verb came in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.messages import TaskState
+from arboleda.core.plant import Plant
+
+from .cells import KnownCell
+from .tasks import Tasks
+
+
+@dataclass(slots=True)
+class Asked:
+    """A cell after the last step: what may speak for or against a verb."""
+
+    name: str
+    state: CellState
+    paused: bool
+    queued: int
+    has_task: bool
+    troubled: bool
+    stranded: bool
+    holding: bool
+
+
+class Before:
+    """All of that just before the step in which somebody asks."""
+
+    def __init__(self) -> None:
+        self.cells: list[Asked] = []
+        self.quarantined: dict[str, str] = {}  # zone -> its silent robot
+        self.tasks: dict[str, TaskState] = {}
+        self.ids: frozenset[str] = frozenset()  # of all tasks that were accepted and may be remembered
+
+    def look(self, cells: Iterable[KnownCell], tasks: Tasks, plant: Plant) -> None:
+        """Somebody asks: the plant has not heard it yet."""
+        self.tasks = {id: task.state for id, task in tasks.open.items()}
+        self.ids = frozenset(tasks.open) | frozenset(tasks.ended)
+        self.cells = [
+            Asked(
+                cell.name,
+                run.state,
+                run.queue_paused,
+                len(run.queue),
+                run.task is not None,
+                run.trouble is not None,
+                run.stranded is not None,
+                cell.context.holding(),
+            )
+            for cell in cells
+            for run in (cell.run,)
+        ]
+        zones, names = plant.zones, plant.model.zones
+        self.quarantined = {zone: zones.holder(zone) or "" for zone in names if zones.is_quarantined(zone)}

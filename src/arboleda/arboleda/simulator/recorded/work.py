@@ -1,0 +1,162 @@
+"""What each cell's task has commanded so far, beside what its recipe says, written down here once more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.core.ledger import State
+from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector, TaskState, Verb
+from arboleda.core.model import Cell, Pose
+
+from .commands import SentCommand
+from .tasks import Tasks
+
+ROUNDING_S = 1e-6
+OPTIONAL, TO_START = "maybe", "to the start"
+Step = tuple[str, Any]  # what is commanded, and where to; OPTIONAL: an attempt to grip that may be needed
+
+
+@dataclass
+class Work:
+    """A task that runs: its steps, and how many of them have been commanded; `last` is the newest command."""
+
+    task: str
+    steps: list[Step]
+    began_at: float
+    at: int = 0
+    last: SentCommand | None = None
+    recovering: bool = False
+
+
+class Works:
+    """Follows the work of every cell; `wrong` is what was commanded otherwise in this step."""
+
+    def __init__(self, cells: dict[str, Any], dwell_s: float) -> None:
+        self.wrong: list[str] = []
+        self._cells = cells
+        self._dwell_s = dwell_s
+        self._works: dict[str, Work] = {}
+
+    def forget(self) -> None:
+        """The plant is gone, and with it what it did."""
+        self._works.clear()
+
+    def clear_news(self) -> None:
+        self.wrong.clear()
+
+    def follow(self, tasks: Tasks, new: list[SentCommand], now: float) -> None:
+        """Take over what this step began, commanded and ended."""
+        for change in tasks.changes:
+            said = change.said
+            if said.state is TaskState.RUNNING and not change.answer and said.cell is not None:
+                cell = self._cells[said.cell].cell
+                self._works[said.cell] = Work(said.task, list(_steps(cell, said.text.split())), now)
+        for sent in new:
+            if sent.entry is not None and sent.entry.cell in self._works and not _by_operator(sent):
+                self._take(sent.entry.cell, sent)
+        for change in tasks.changes:
+            said = change.said
+            if said.cell is not None and not change.answer and said.state is not TaskState.RUNNING:
+                work = self._works.get(said.cell)
+                if work is not None and work.task == said.task:
+                    del self._works[said.cell]
+                    if said.state is TaskState.DONE:
+                        self._finished(said.cell, work)
+
+    def _take(self, name: str, sent: SentCommand) -> None:
+        cell, work = self._cells[name], self._works[name]
+        work.recovering |= cell.run.run.recovering
+        if work.recovering:
+            return
+        step = _step_of(sent.command)
+        last = work.last
+        again = last is not None and last.state is not State.DONE
+        if again and _is_again(step, work.steps[work.at - 1]):
+            work.last = sent
+            return
+        if again:
+            self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
+        while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
+            if work.steps[work.at][0] not in (OPTIONAL, TO_START):
+                expected = work.steps[work.at]
+                self.wrong.append(f"{name}: {sent} is {step}, by the recipe it is {expected}'s turn")
+                return
+            work.at += 1
+        if work.at == len(work.steps):
+            self.wrong.append(f"{name}: {sent} comes after the last step of the recipe")
+            return
+        self._in_time(name, work, sent)
+        work.at += 1
+        work.last = sent
+
+    def _in_time(self, name: str, work: Work, sent: SentCommand) -> None:
+        since = work.began_at if work.last is None else -1.0
+        if work.last is not None and isinstance(work.last.command, SetEffector):
+            since = work.last.at
+        if since >= 0 and sent.at < since + self._dwell_s - ROUNDING_S:
+            self.wrong.append(f"{name}: {sent} leaves {sent.at - since:.3f} s after what it has to wait for")
+
+    def _finished(self, name: str, work: Work) -> None:
+        left = [step for step in work.steps[work.at :] if step[0] not in (OPTIONAL, TO_START)]
+        if left:
+            self.wrong.append(f"{name}: {work.task} is done, and {left} were never commanded")
+        if work.last is not None and work.last.state is not State.DONE:
+            self.wrong.append(f"{name}: {work.task} is done, and {work.last} is not")
+
+
+def _by_operator(sent: SentCommand) -> bool:
+    return Verb.RELEASE in sent.verbs or Verb.HOME in sent.verbs or _step_of(sent.command) is None
+
+
+def _step_of(command: Command) -> Step | None:
+    if isinstance(command, MoveJoints):
+        return "move", command.q
+    if isinstance(command, FollowPath):
+        return "path", command.nodes
+    return ("effector", command.on) if isinstance(command, SetEffector) else None
+
+
+def _fits(step: Step | None, expected: Step) -> bool:
+    """A path may begin later where the robot has driven a part of it already."""
+    if step is None:
+        return False
+    if expected[0] == OPTIONAL:
+        return step == expected[1]
+    if expected[0] == TO_START:
+        return step[0] == "path" and step[1] != expected[1] and step[1][-1] == expected[1][0]
+    if step[0] == expected[0] == "path":
+        return expected[1][-len(step[1]) :] == step[1] and bool(step[1])
+    return step == expected
+
+
+def _is_again(step: Step | None, expected: Step) -> bool:
+    return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
+
+
+def _steps(cell: Cell, words: list[str]) -> Iterator[Step]:
+    """What a task of this text commands, in order."""
+    if words[1] == "palletizing":
+        yield "move", cell.home.q
+        yield from _at(cell.palletizing.pick, list(_grip(cell)))
+        yield from _at(cell.palletizing.place, [("effector", False)])
+        return
+    nodes = next(path.nodes for path in cell.paths if path.code == words[1])
+    yield TO_START, nodes
+    yield "path", nodes
+    yield from _at(cell.pickup, list(_grip(cell)))
+    yield from _at(cell.stations[int(words[2])], [("effector", False)])
+    yield from _at(cell.home, [])
+
+
+def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:
+    above = [("move", pose.above)] if pose.above is not None else []
+    yield from (*above, ("move", pose.q), *work, *above)
+
+
+def _grip(cell: Cell) -> Iterator[Step]:
+    yield "effector", True
+    for _ in range(cell.retry.times if cell.piece_check else 0):
+        yield OPTIONAL, ("effector", False)
+        yield OPTIONAL, ("effector", True)

@@ -1,0 +1,36 @@
+"""Further bugs that others planted and nobody found; most of theirs are an invariant's own mutant."""
+
+from __future__ import annotations
+
+from arboleda.core import evidence
+from arboleda.core.cell import CellRun
+from arboleda.core.intake import Intake
+from arboleda.core.tree_run import TreeRun
+
+from .mutant import edit, mutant
+
+PLANTED = (
+    mutant(
+        "proofs_end_commands",
+        "A device fault fails only motions.",
+        edit(
+            evidence._device,
+            "if report.state is MotionState.FAULT:",
+            "if report.state is MotionState.FAULT and entry.is_motion:",
+        ),
+        weather={"driver_alarm": 60.0},
+    ),
+    mutant(
+        "verbs_do_what_they_say",
+        "A stop does not cancel homing and release.",
+        edit(CellRun.stop, "self.context.cancel_all()", ""),
+        edit(TreeRun.drop, "self._context.cancel_all()", ""),
+        weather={"operator_stop": 60.0, "operator_home": 60.0, "operator_release": 60.0, "reboot": 10.0},
+    ),
+    mutant(
+        "accepted_tasks_are_kept",
+        "The oldest task is forgotten though it runs.",
+        edit(Intake.remember, "if known.ended_at is not None", ""),
+        weather={"flood_of_tasks": 3.0},
+    ),
+)

@@ -1,0 +1,139 @@
+"""Mutants for what the plant concludes, keeps, shows and does on an operator's word, and for the bridge."""
+
+from __future__ import annotations
+
+from arboleda.core import evidence, recipes, text, view
+from arboleda.core.belief import Belief
+from arboleda.core.context import Context
+from arboleda.core.dispatcher import Dispatcher
+from arboleda.core.operator import Operator
+from arboleda.wire import status
+from arboleda.wire.board import Board
+from arboleda.wire.bridge import Bridge
+
+from .mutant import SHARED, edit, mutant
+
+PROOFS = (
+    mutant(
+        "proofs_end_commands",
+        "A bridge's restart does not fail open commands.",
+        edit(evidence._broken_link, "report.epoch != before.epoch", "False"),
+        weather={"bridge_restart": 30.0, "hop_partition": 40.0},
+    ),
+    mutant(
+        "ends_are_proven",
+        "Reports made before a command was sent are judged.",
+        edit(evidence.judge, " or report.at < entry.sent_at", ""),
+        weather={"plant_stall": 60.0, "operator_home": 20.0, "operator_release": 40.0, "operator_stop": 10.0},
+    ),
+)
+
+BRIDGE = (
+    mutant(
+        "telemetry_is_reported",
+        "Retained telemetry that repeats the last is believed.",
+        edit(Board._again, " or delivery.retain", ""),
+        weather={"foreign_repeat": 40.0},
+    ),
+    mutant(
+        "commands_are_passed_on",
+        "A clear of an old plant passes the fence.",
+        edit(Bridge._fence, "if is_stop(command):", "if isinstance(command, Stop):"),
+        weather={"second_orchestrator": 60.0},
+    ),
+)
+
+PEOPLE = (
+    mutant(
+        "believed_as_said",
+        "That a robot is homed again is not believed.",
+        edit(
+            Belief.merge,
+            "if value is not None:",
+            'if value is not None and (name != "homed" or value is False):',
+        ),
+    ),
+    mutant(
+        "texts_mean_what_they_say",
+        "The last station of a rack is not known.",
+        edit(text._storage, "range(len(cell.stations))]", "range(len(cell.stations) - 1)]"),
+        weather="none",
+    ),
+    mutant(
+        "commands_follow_the_recipe",
+        "After an effector nobody dwells.",
+        edit(
+            recipes._effector,
+            'Dwell("dwell", context, context.timing.dwell_s)',
+            'Dwell("dwell", context, 0.0)',
+        ),
+        weather="none",
+    ),
+    mutant(
+        "recovery_takes_its_zones",
+        "A recovery from an unknown place is planned as from home.",
+        edit(
+            Context.recovery_zones,
+            "self._dispatcher.place(self.cell)",
+            "self.standing()",
+        ),
+        seeds=SHARED,
+        weather={"brown_out": 10.0, "operator_override": 20.0, "operator_retry": 20.0, "lost_steps": 10.0},
+    ),
+    mutant(
+        "verbs_are_refused_rightly",
+        "A cell whose queue runs can be resumed.",
+        edit(Operator._not_resumable, "None if cell.queue_paused else", "None if True else"),
+        weather={"operator_resume": 40.0},
+    ),
+    mutant(
+        "verbs_do_what_they_say",
+        "To clear one robot clears its cell.",
+        edit(
+            Operator._clear,
+            "if not any(robot.name in self._dispatcher.latched for robot in cell.cell.robots):",
+            "if True:",
+        ),
+        weather={"operator_stop": 20.0, "operator_clear": 40.0},
+    ),
+    mutant(
+        "kept_before_it_leaves",
+        "A latch is remembered only after it left.",
+        edit(
+            Dispatcher.latch,
+            "self.remember(Fact.LATCH, robot, LATCHED)\n    self._stop(robot, StopMode.LATCH)",
+            "self._stop(robot, StopMode.LATCH)\n    self.remember(Fact.LATCH, robot, LATCHED)",
+        ),
+        weather={"operator_stop": 10.0},
+    ),
+    mutant(
+        "kept_is_what_is",
+        "An overridden zone is still kept, and so quarantined again after a restart.",
+        edit(Operator._override, "self._dispatcher.forget_zone(zone)", ""),
+        seeds=SHARED,
+        weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
+    ),
+)
+
+SCREENS = (
+    mutant(
+        "screens_show_what_is",
+        "A screen shows the age of a report as of the start of the plant.",
+        edit(view._robot, "now - belief.heard_at", "now"),
+        weather="none",
+    ),
+    mutant(
+        "status_says_the_report",
+        "The status has no word of the piece.",
+        edit(status._said, "getattr(report, name) is not None", 'getattr(report, name) and name != "piece"'),
+        weather="none",
+    ),
+    mutant(
+        "plans_show_the_model",
+        "A rack is shown with a station too many.",
+        edit(view._cell_layout, '"stations": len(cell.stations)', '"stations": len(cell.stations) + 1'),
+        weather="none",
+    ),
+)
+
+TOLD = (*PROOFS, *BRIDGE, *PEOPLE, *SCREENS)

@@ -1,0 +1,144 @@
+"""A plant that was away holds what was at work, and nothing moves before somebody says so."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.messages import Absence, FollowPath, Home, MoveJoints, Reason, Verb
+from arboleda.core.model import Evidence
+from arboleda.simulator.world import BRIDGE, PLANT
+from arboleda.testing import shipped
+from arboleda.testing.rig import Rig
+
+MOTIONS = (MoveJoints, FollowPath, Home)
+GAPS_S = (2.0, 20.0, 45.0)
+LEVELS = (Evidence.IDS, Evidence.JOINTS)
+
+
+@pytest.fixture(params=LEVELS, ids=lambda level: level.value)
+def rig(request: pytest.FixtureRequest) -> Rig:
+    made = Rig(shipped("sis_a", "sis_b", evidence=request.param))
+    made.wait(2.0)
+    return made
+
+
+def away(rig: Rig, seconds: float, *processes: str) -> None:
+    """These processes do nothing for a while, then what they find is dealt with."""
+    for process in processes:
+        rig.stall(process, seconds)
+    del rig.sent[:]
+    rig.wait(seconds + 30.0)
+
+
+def motions(rig: Rig) -> list[Any]:
+    return [message for message in rig.sent if isinstance(message, MOTIONS)]
+
+
+@pytest.mark.parametrize("seconds", GAPS_S)
+@pytest.mark.parametrize("processes", [(PLANT,), (PLANT, BRIDGE)], ids=["plant", "machine"])
+@pytest.mark.parametrize("step", ["drive path 0A", "move to pick-up", "move to station 4"])
+def test_a_cell_at_work_is_held_and_its_next_task_waits(
+    rig: Rig, seconds: float, processes: tuple[str, ...], step: str
+) -> None:
+    rig.submit("sis_a 0A 4")
+    rig.submit("sis_a 0A 5")
+    rig.wait_for("sis_a", f"main/{step}")
+    away(rig, seconds, *processes)
+    held = rig.plant.cells["sis_a"]
+    assert (held.state, held.trouble.reason) == (CellState.HELD, Reason.LINK_LOST)
+    assert f"the plant was away for {seconds:.0f}" in held.held_by
+    assert "retry sis_a or abandon sis_a" in held.held_by
+    assert motions(rig) == [] and len(held.queue) == 1
+    assert [type(each) for each in rig.sent if isinstance(each, Absence)] == [Absence]
+
+
+def test_retry_gives_the_interrupted_step_anew_and_the_task_is_done(rig: Rig) -> None:
+    task = rig.submit("sis_a 0A 4").task
+    rig.wait_for("sis_a", "main/move to pick-up")
+    away(rig, 20.0, PLANT)
+    assert rig.operate(Verb.RETRY, "sis_a") is None
+    assert rig.wait(60.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_abandon_recovers_and_the_queue_waits_for_resume(rig: Rig) -> None:
+    first, second = rig.submit("sis_a 0A 4").task, rig.submit("sis_a 0A 5").task
+    rig.wait_for("sis_a", "main/move to station 4")
+    away(rig, 20.0, PLANT)
+    assert rig.operate(Verb.ABANDON, "sis_a") is None
+    rig.wait(60.0)
+    assert rig.outcomes()[first].reason is Reason.LINK_LOST
+    assert rig.outcomes()[second].state.value == "queued"
+    assert rig.operate(Verb.RESUME, "sis_a") is None
+    assert rig.wait(90.0, until=lambda: rig.outcomes()[second].state.value == "done")
+
+
+def test_a_recovery_is_held_too_and_goes_on_only_when_told(rig: Rig) -> None:
+    rig.submit("sis_a 0A 4")
+    rig.wait_for("sis_a", "main/move to station 4")
+    assert rig.operate(Verb.CANCEL, "sis_a") is None
+    rig.wait(1.0)
+    away(rig, 20.0, PLANT)
+    assert rig.plant.cells["sis_a"].state is CellState.HELD and motions(rig) == []
+
+
+def test_a_task_that_waits_in_an_idle_cell_does_not_start_by_itself(rig: Rig) -> None:
+    rig.power_off("ra_1")
+    rig.wait(2.0)
+    rig.submit("sis_a 0A 4")
+    rig.stall(PLANT, 20.0)
+    rig.wait(5.0)
+    rig.power_on("ra_1")
+    del rig.sent[:]
+    rig.wait(60.0)
+    assert motions(rig) == []
+    assert rig.plant.cells["sis_a"].queue_paused
+
+
+def test_a_cell_with_nothing_to_do_takes_a_task_at_once(rig: Rig) -> None:
+    away(rig, 20.0, PLANT)
+    task = rig.submit("sis_b 0A 4").task
+    assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_a_short_pause_is_nothing(rig: Rig) -> None:
+    task = rig.submit("sis_a 0A 4").task
+    rig.wait_for("sis_a", "main/move to pick-up")
+    rig.stall(PLANT, 0.7)
+    assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_a_robot_that_was_to_be_homed_at_the_start_waits_for_a_word(
+    slowly_booting: Callable[[], Rig],
+) -> None:
+    rig = slowly_booting()
+    away(rig, 20.0, PLANT)
+    assert not [each for each in rig.sent if isinstance(each, Home)]
+    assert rig.operate(Verb.HOME, "ra1") is None
+
+
+@pytest.fixture
+def slowly_booting() -> Callable[[], Rig]:
+    """A plant that homes its arm at the start, as soon as that is heard; it boots while the plant is away."""
+
+    def make() -> Rig:
+        made = Rig(shipped("sis_a", evidence=Evidence.IDS, home_at_start=True))
+        made.power_off("ra_1")
+        made.crash(PLANT)
+        made.wait(1.0)
+        made.at(made.now + 5.0, lambda _: made.power_on("ra_1"))
+        return made
+
+    return make
+
+
+def test_a_hold_of_an_operator_is_still_his(rig: Rig) -> None:
+    rig.submit("sis_a 0A 4")
+    rig.wait_for("sis_a", "main/move to pick-up")
+    rig.operate(Verb.HOLD, "sis_a")
+    rig.wait(5.0)
+    away(rig, 1.8, PLANT)
+    assert rig.plant.cells["sis_a"].state is CellState.HELD and motions(rig) == []

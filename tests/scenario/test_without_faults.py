@@ -1,0 +1,37 @@
+"""Where nothing goes wrong no task fails, at every level of evidence, pose order and speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.model import Evidence, PlantModel
+from arboleda.simulator.run import Simulation
+from arboleda.testing import shipped, slowed
+
+SEEDS = (1, 2, 3, 4)  # robots say where they are and that they move together, apart, or of two instants
+CYCLES = 6
+
+
+def plant(evidence: Evidence, place: str, slower: float) -> PlantModel:
+    """One cell whose palletizing puts the part at its home pose, where it picked it up, or somewhere else."""
+    model = slowed(shipped("sis_a", evidence=evidence, assume_homed=evidence is not Evidence.IDS), slower)
+    (cell,) = model.cells
+    poses = {
+        "at home": next(station for station in cell.stations if station.q == cell.home.q),
+        "at the pick-up": cell.pickup,
+        "elsewhere": cell.stations[8],
+    }
+    palletizing = replace(cell.palletizing, place=poses[place])
+    return replace(model, cells=(replace(cell, palletizing=palletizing),))
+
+
+@pytest.mark.parametrize("slower", [1.0, 4.0], ids=["as it is", "slow"])
+@pytest.mark.parametrize("place", ["at home", "at the pick-up", "elsewhere"])
+@pytest.mark.parametrize("evidence", list(Evidence), ids=lambda evidence: evidence.value)
+def test_no_task_fails(evidence: Evidence, place: str, slower: float) -> None:
+    for seed in SEEDS:
+        result = Simulation(plant(evidence, place, slower), seed, lambda minute: []).run(cycles=CYCLES)
+        assert result.broken is None
+        assert result.checks["no_task_fails_without_a_fault"] and result.outcomes["done"]
