@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 SWITCH = ("true", "false")
 EMBEDDED = "embedded"
+AUTO = "auto"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +45,12 @@ ARGUMENTS = (
         description="the page, in the process of the orchestrator",
     ),
     Argument(name="rviz", default="true", choices=SWITCH, description="RViz2 with the shipped view"),
+    Argument(
+        name="describe",
+        default=AUTO,
+        choices=(AUTO, *SWITCH),
+        description="robot_description and TF of each robot, by robot_state_publisher; auto: as rviz",
+    ),
     Argument(
         name="state_dir",
         default="",

@@ -9,7 +9,7 @@ from arboleda.app.parts.broker import MQTT_PORT, address
 from arboleda.app.rate import check_rate
 from arboleda.core.errors import StartError
 
-from .arguments import EMBEDDED
+from .arguments import AUTO, EMBEDDED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,6 +22,7 @@ class Choice:
     orchestrator: bool
     dashboard: bool
     rviz: bool
+    describe: bool
     state_dir: str
     rate: float
 
@@ -40,6 +41,7 @@ def read(texts: Mapping[str, str]) -> Choice:
         orchestrator=texts["orchestrator"] == "true",
         dashboard=texts["dashboard"] == "true",
         rviz=texts["rviz"] == "true",
+        describe=(texts["rviz"] if texts["describe"] == AUTO else texts["describe"]) == "true",
         state_dir=texts["state_dir"],
         rate=_rate(texts["rate"]),
     )

@@ -18,8 +18,8 @@ RVIZ_CONFIG = "rviz/plant.rviz"  # in the share folder of this package
 def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], share: str) -> list[Row]:
     """The nodes of a plant; `urdf` describes a robot by its name, `share` is this package's folder."""
     robots = [robot for cell in plant.cells for robot in (cell.arm, cell.mobile)]
-    rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))]
-    rows += _plant(choice)
+    rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))] if choice.describe else []
+    rows += _plant(choice, boards=plant.has_boards)
     if choice.rviz:
         rows.append(Row(package="rviz2", executable="rviz2", arguments=("-d", f"{share}/{RVIZ_CONFIG}")))
     return rows
@@ -56,12 +56,13 @@ def _placed(robot: Arm | Mobile) -> Row:
     )
 
 
-def _plant(choice: Choice) -> list[Row]:
+def _plant(choice: Choice, *, boards: bool) -> list[Row]:
     """The executables of arboleda_ros, as the plant is put together with these arguments."""
     rows = []
-    if choice.sim:
+    if boards and choice.sim:
         rows.append(_part("virtual_devices", choice, broker=choice.broker))
-    rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address))
+    if boards:
+        rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address))
     if choice.orchestrator:
         rows.append(_part("orchestrator", choice, dashboard=choice.dashboard))
     return rows

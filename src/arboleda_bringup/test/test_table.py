@@ -98,7 +98,23 @@ def test_joints_are_published_only_for_robots_that_are_only_drawn() -> None:
 def test_rviz_shows_the_view_of_this_package_or_is_left_out() -> None:
     (rviz,) = [row for row in rows() if row.package == "rviz2"]
     assert rviz.arguments == ("-d", "/share/rviz/plant.rviz")
-    assert rows(rviz="false") == rows()[:-1]
+    assert rows(rviz="false", describe="true") == rows()[:-1]
+
+
+def test_without_rviz_nobody_needs_what_it_draws_unless_asked() -> None:
+    def refuse(robot: str) -> str:
+        raise AssertionError(f"the description of {robot} is asked for; xacro may not be there")
+
+    alone = table(shipped(), read({**DEFAULTS, "rviz": "false"}), urdf=refuse, share="/share")
+    assert {row.package for row in alone} == {"arboleda_ros"}
+    drawn = {"robot_state_publisher", "tf2_ros"}
+    assert {row.package for row in rows(rviz="false", describe="true")} == {"arboleda_ros", *drawn}
+    assert not drawn & {row.package for row in rows(describe="false")}
+
+
+@pytest.mark.parametrize("link", [Link.ROS, Link.NONE])
+def test_robots_without_boards_need_no_broker_no_boards_and_no_bridge(link: Link) -> None:
+    assert ours(rows(shipped(link=link))) == [ORCHESTRATOR]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Any
 from rclpy.node import Node
 
 from arboleda.core.errors import StartError
+from arboleda.core.outside import plain
 
 _POLL_S = 0.02
 # Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
@@ -85,7 +86,7 @@ class Alone:
         return found
 
     def _others(self, topic: str) -> list[str]:
-        names = [_full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]
+        names = [full_name(info) for info in self._node.get_publishers_info_by_topic(topic)]
         own = self._node.get_fully_qualified_name()
         if own in names:  # once: a second node of the same name is another one
             names.remove(own)
@@ -104,7 +105,8 @@ def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
     return [(topic, name) for topic, name in publishers if name != _UNNAMED]
 
 
-def _full_name(info: Any) -> str:
+def full_name(info: Any) -> str:
+    """The name of the node that an endpoint belongs to, with its namespace."""
     if "_UNKNOWN_" in info.node_name:
         return _UNNAMED
-    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+    return plain(f"{info.node_namespace.rstrip('/')}/{info.node_name}")  # whoever joins DDS chooses it

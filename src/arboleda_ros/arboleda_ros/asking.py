@@ -36,11 +36,12 @@ class Asker:
 
     def refusal(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
         """Have an operator's verb done; why it was not, None where it was."""
+        return self._refusal(verb, scope, by_hand=by_hand)
+
+    def _refusal(self, verb: Verb, scope: str, **more: bool) -> str | None:
         try:
             answer = self._ask(
-                lambda token: OperatorRequest(
-                    at=self._clock(), verb=verb, scope=scope, by_hand=by_hand, request=token
-                )
+                lambda token: OperatorRequest(at=self._clock(), verb=verb, scope=scope, request=token, **more)
             )
         except NoAnswer as error:
             return str(error)
@@ -57,9 +58,13 @@ class Asker:
         """Ask for a task; the TaskChanged that answers carries the token."""
         self._post(TaskRequest(at=self._clock(), text=text, request=token))
 
+    def cancellation_refusal(self, task: str) -> str | None:
+        """Have a task cancelled for its client; why it was not, None where it was."""
+        return self._refusal(Verb.CANCEL, task, client=True)
+
     def cancel_later(self, task: str) -> None:
-        """Ask for a task to be cancelled; its changes tell what came of it."""
-        self._post(OperatorRequest(at=self._clock(), verb=Verb.CANCEL, scope=task))
+        """Ask for a task to be cancelled for its client; its changes tell what came of it."""
+        self._post(OperatorRequest(at=self._clock(), verb=Verb.CANCEL, scope=task, client=True))
 
     def answered(self, answer: Answer) -> None:
         """Take in an answer of the plant, to whomever it is."""

@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from std_msgs.msg import UInt32
+from std_msgs.msg import Float32MultiArray, String, UInt32
 
+from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, Heartbeat, Report
 from arboleda.core.model import Link, PlantModel, Robot
-from arboleda.wire.bridge import FromPlant
-from arboleda.wire.status import ERROR, OK
+from arboleda.wire import epochs
+from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN, FromPlant
+from arboleda.wire.rejections import ForeignCommand, Rejection
+from arboleda.wire.status import ERROR, OK, WARN
 
 from . import convert, qos, statuses
 from .port import Port
+from .senders import Senders
 from .voice import Voice
+
+NEWS_S = 10.0  # for so long `/diagnostics` warns of a command of somebody else
 
 
 class BridgePort(Port):
@@ -29,42 +40,100 @@ class BridgePort(Port):
         super().__init__(node, clock)
         self._on_event = on_event
         self._mqtt: DiagnosticStatus | None = None
+        self._senders = Senders(node, clock)
+        self._rejected: Counter[str] = Counter()
+        self._last = ""
+        self._last_at = -NEWS_S
         robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
         for robot in robots:
             self._obey(robot)
         speak = partial(self._speak, profile=qos.COMMAND)
         self._voices = {robot.name: Voice(robot, speak, node.get_clock()) for robot in robots}
+        self._rejections = {robot.name: speak(String, f"{robot.name}/rejected") for robot in robots}
         # Discovery keeps the order in which endpoints were made, here and in the orchestrator: a heartbeat
         # that arrives proves that the commands, made before it, arrive too.
-        self._listen(UInt32, "plant/heartbeat", self._on_heartbeat, qos.COMMAND)
+        self._listen(UInt32, HEARTBEAT, self._on_heartbeat, qos.COMMAND)
 
     def send(self, report: Report) -> None:
         """Publish one report on every topic that carries a part of it."""
         self._voices[report.robot].say(report)
 
+    def tell(self, news: Rejection | ForeignCommand) -> None:
+        """Publish that a command was refused, or that one of somebody else was obeyed."""
+        self._last, self._last_at = news.sentence, self._clock()
+        if isinstance(news, Rejection):
+            self._publish_rejection(news)
+
     def mqtt_link(self, up: bool, broker: str) -> None:
         """The bridge has reached or lost its broker; `/diagnostics` says so at once, then with the rest."""
-        name = f"arboleda: {self._node.get_name()} on MQTT"
+        name = self._diagnosed(f"{self._node.get_name()} on MQTT")
         level, words = (OK, "connected to") if up else (ERROR, "not connected to")
         sentence = f"{words} the MQTT broker at {broker}"
         self._mqtt = statuses.diagnostic(name, "mqtt", level, sentence, {"broker": broker})
         self._publish_diagnostics([self._mqtt])
 
     def _links(self) -> list[DiagnosticStatus]:
-        return [self._mqtt] if self._mqtt is not None else []
+        return [*([self._mqtt] if self._mqtt is not None else []), self._commands()]
+
+    def _commands(self) -> DiagnosticStatus:
+        """How many commands were refused, and the last thing that was told of one."""
+        fresh = self._clock() < self._last_at + NEWS_S
+        values = {"rejected": str(self._rejected.total()), "last": self._last}
+        name = self._diagnosed(f"{self._node.get_name()} commands")
+        return statuses.diagnostic(
+            name, "ros", WARN if fresh else OK, self._last if fresh else "ready", values
+        )
+
+    def _publish_rejection(self, rejection: Rejection) -> None:
+        self._rejected[rejection.robot] += 1
+        publisher = self._rejections.get(rejection.robot)
+        if publisher is not None:
+            plain = {key: value for key, value in asdict(rejection).items() if key != "at"}
+            plain["count"] = self._rejected[rejection.robot]
+            publisher.publish(String(data=json.dumps(plain)))
 
     def _obey(self, robot: Robot) -> None:
+        self._listen(
+            Float32MultiArray, f"{robot.name}/{COMMAND}", partial(self._on_labelled, robot), qos.COMMAND
+        )
         for kind in convert.commands_of(robot):
-            topic = f"{robot.name}/{convert.COMMAND_TOPICS[kind]}"
-            self._listen(
-                convert.message_type(kind), topic, partial(self._on_command, kind, robot), qos.COMMAND
-            )
+            handle = partial(self._on_plain, kind, robot)
+            self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", handle, qos.COMMAND)
 
-    def _on_command(self, kind: type[Command], robot: Robot, message: Any) -> None:
-        self._forward(convert.command(kind, robot, message))
+    def _on_labelled(self, robot: Robot, message: Float32MultiArray) -> None:
+        with self._telling(robot, COMMAND):
+            command, copied = convert.labelled_command(robot, message)
+        self._on_event(FromPlant(at=self._clock(), message=command, copied=copied))
+
+    def _on_plain(self, kind: type[Command], robot: Robot, message: Any) -> None:
+        if convert.is_copy(message):
+            return
+        with self._telling(robot, PLAIN[kind]):
+            command = convert.command(kind, robot, message)
+        sender = "" if command.id else self._senders.of(f"{robot.name}/{PLAIN[kind]}")
+        self._on_event(FromPlant(at=self._clock(), message=command, sender=sender))
+
+    @contextmanager
+    def _telling(self, robot: Robot, topic: str) -> Iterator[None]:
+        """A message that cannot be read is a refused command, too."""
+        try:
+            yield
+        except PayloadError as error:
+            sentence = f"{robot.name}: {topic} was refused (formato): {error}"
+            self.tell(
+                Rejection(
+                    at=self._clock(),
+                    robot=robot.name,
+                    command=topic,
+                    id="",
+                    reason="formato",
+                    sentence=sentence,
+                )
+            )
+            raise
 
     def _on_heartbeat(self, message: UInt32) -> None:
-        self._forward(Heartbeat(epoch=message.data))
-
-    def _forward(self, message: Command | Heartbeat) -> None:
-        self._on_event(FromPlant(at=self._clock(), message=message))
+        unix_s = int(time.time())
+        if (objection := epochs.objection(message.data, unix_s)) is not None:
+            raise PayloadError(objection)
+        self._on_event(FromPlant(at=self._clock(), message=Heartbeat(epoch=message.data), unix_s=unix_s))

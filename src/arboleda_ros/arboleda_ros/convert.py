@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
@@ -11,15 +12,10 @@ from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, Report, SetEffector, Stop, StopMode
 from arboleda.core.model import Arm, Mobile, MotionState, Robot
+from arboleda.wire.hop import PLAIN, loses_its_id
 from arboleda.wire.status import from_label, to_label
 
-COMMAND_TOPICS: dict[type[Command], str] = {
-    MoveJoints: "joint_goals_q",
-    FollowPath: "path_cmd",
-    SetEffector: "effector_cmd",
-    Stop: "stop_cmd",
-    Home: "home_cmd",
-}
+COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
 
 _AT_NODE = 0.125  # of the pitch: a mobile farther than this from every node is between nodes
 
@@ -30,23 +26,52 @@ def commands_of(robot: Robot) -> tuple[type[Command], ...]:
 
 
 def message_type(kind: type[Command]) -> type:
-    """The ROS 2 type of a command topic."""
+    """The ROS 2 type of a plain command topic."""
     return Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8
 
 
-def command_message(command: Command) -> Float32MultiArray | UInt8:
-    """A command as its topic carries it; arrays are labelled with the command id."""
-    if isinstance(command, MoveJoints):
-        return _labelled(command.id, command.q)
-    if isinstance(command, FollowPath):
-        return _labelled(command.id, command.nodes)
-    if isinstance(command, SetEffector):
-        return UInt8(data=int(command.on))
-    return UInt8(data=int(command.mode) if isinstance(command, Stop) else 1)
+def command_message(command: Command, *, copy: bool = False) -> Float32MultiArray | UInt8:
+    """A command as its plain topic carries it; arrays are labelled with the id, and as copies."""
+    if not loses_its_id(command):
+        return _labelled(command.id, _values(command), *((COPY,) if copy else ()))
+    return UInt8(data=int(_values(command)[0]))
+
+
+def labelled_message(command: Command, *, copied: bool) -> Float32MultiArray:
+    """A command as the topic `command` carries it: id and plain topic; and whether that has a copy."""
+    return _labelled(command.id, _values(command), PLAIN[type(command)], *((COPY,) if copied else ()))
+
+
+def is_copy(message: Float32MultiArray | UInt8) -> bool:
+    """Whether a message of a plain topic says that `command` carries the same; UInt8 cannot say so."""
+    return isinstance(message, Float32MultiArray) and any(dim.label == COPY for dim in message.layout.dim[1:])
+
+
+def labelled_command(robot: Robot, message: Float32MultiArray) -> tuple[Command, bool]:
+    """The command in a message of the robot's topic `command`, and whether a UInt8 copy of it comes."""
+    labels = [dim.label for dim in message.layout.dim]
+    topics = {PLAIN[kind]: kind for kind in commands_of(robot)}
+    if len(labels) < 2 or labels[1] not in topics:
+        raise PayloadError(
+            f"{robot.name}: the labels are {ascii(labels)[:60]}; id=<command id> and one of "
+            f"{', '.join(topics)} are needed"
+        )
+    kind = topics[labels[1]]
+    if message_type(kind) is Float32MultiArray:
+        given = command(kind, robot, message)
+    else:
+        id, values = _unlabelled(message, robot.name)
+        if len(values) != 1 or values[0] not in range(256):
+            raise PayloadError(f"{robot.name}: {labels[1]} needs one whole number of 0 to 255")
+        given = replace(command(kind, robot, UInt8(data=int(values[0]))), id=id)
+    if not given.id:
+        first = ascii(labels[0])[:40]
+        raise PayloadError(f"{robot.name}: the first label is {first}; id=<command id> is needed")
+    return given, COPY in labels[2:] and loses_its_id(given)
 
 
 def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt8) -> Command:
-    """The command in a message of `robot`'s topic; the id is "" where the message carries none."""
+    """The command in a message of `robot`'s plain topic; the id is "" where the message carries none."""
     if isinstance(robot, Arm) and kind is MoveJoints:
         id, values = _unlabelled(message, robot.name)
         return MoveJoints(id=id, robot=robot.name, q=_joints(robot, values))
@@ -96,10 +121,22 @@ def joint_states_topic(robot: Robot) -> str:
     return f"{robot.twin if isinstance(robot, Arm) else robot.name}/joint_states"
 
 
-def _labelled(id: str, values: Sequence[float]) -> Float32MultiArray:
+def _values(command: Command) -> Sequence[float]:
+    if isinstance(command, MoveJoints):
+        return command.q
+    if isinstance(command, FollowPath):
+        return command.nodes
+    if isinstance(command, SetEffector):
+        return (int(command.on),)
+    return (int(command.mode) if isinstance(command, Stop) else 1,)
+
+
+def _labelled(id: str, values: Sequence[float], *more: str) -> Float32MultiArray:
+    """The further labels have size and stride 1, so that the layout describes the same values."""
     message = Float32MultiArray(data=[float(value) for value in values])
     size = len(message.data)
-    message.layout.dim = [MultiArrayDimension(label=to_label(id), size=size, stride=size)]
+    first = MultiArrayDimension(label=to_label(id), size=size, stride=size)
+    message.layout.dim = [first, *(MultiArrayDimension(label=label, size=1, stride=1) for label in more)]
     return message
 
 

@@ -6,7 +6,7 @@ To build and serialise one of 300 statuses takes 5 ms, every second and at each 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
@@ -27,12 +27,15 @@ class Diagnostics:
     def __init__(self) -> None:
         self._known: dict[str, tuple[Diagnostic, bytes, bytes]] = {}
 
-    def of(self, plain: Iterable[Diagnostic], stamp: Time) -> bytes:
-        """The array as CDR, for Publisher.publish."""
+    def of(self, plain: Iterable[Diagnostic], stamp: Time) -> Generator[None, None, bytes]:
+        """The array as CDR, for Publisher.publish; each status is a part."""
         message = DiagnosticArray()
         message.header.stamp = stamp
         written = bytearray(serialize_message(message)[:-4])  # the number of statuses comes last, 0
-        parts = [self._status(each) for each in plain]
+        parts = []
+        for each in plain:
+            parts.append(self._status(each))
+            yield
         written += len(parts).to_bytes(4, sys.byteorder)
         for level, rest in parts:
             written += level

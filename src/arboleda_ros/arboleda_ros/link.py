@@ -17,11 +17,12 @@ from rclpy.node import Node
 from arboleda.core.errors import StartError
 from arboleda.core.messages import Event
 from arboleda.core.model import PlantModel
-from arboleda.wire.bridge import FromPlant
+from arboleda.wire.hop import FromPlant
 
 from .bridge import BridgePort
 from .orchestrator import OrchestratorPort
 from .port import Port
+from .ros_log import QUIET, RosLog
 
 LOG = logging.getLogger("arboleda.ros")
 
@@ -35,7 +36,7 @@ def connect(*, args: Sequence[str] = (), lan: bool = False) -> Link:
     note = limit_discovery(os.environ, lan=lan)
     context = Context()
     try:
-        context.init(args=list(args))
+        context.init(args=[*QUIET, *args])
     except Exception as error:
         raise StartError(f"ROS 2 does not start: {error}") from error
     return Link(context, notes=(note,) if note else ())
@@ -60,6 +61,7 @@ class Link:
         self._executor = _executor(context)
         self._nodes: dict[str, Node] = {}
         self._ports: list[Port] = []
+        self.log = RosLog()
         self._thread = threading.Thread(target=self._spin, name="ros", daemon=True)
         self._closing = False
         atexit.register(self.close)  # a thread still in rclpy aborts the process at its exit
@@ -68,6 +70,7 @@ class Link:
         """The node of that name, made at the first call; before `start` only."""
         if name not in self._nodes:
             self._nodes[name] = Node(name, context=self._context)
+            self.log.join(self._nodes[name])
         return self._nodes[name]
 
     def orchestrator(
@@ -100,6 +103,9 @@ class Link:
         for port in self._ports:
             port.close()
         self._flush()
+        for handler in logging.getLogger().handlers:
+            handler.flush()
+        self.log.close()
         self._closing = True
         atexit.unregister(self.close)
         if self._thread.is_alive():

@@ -10,7 +10,6 @@ HOW = {
     **dict.fromkeys(("arboleda", "arboleda_description", "arboleda_interfaces", "arboleda_ros"), OURS),
 }
 ON_PYPI = {
-    "amqtt": "amqtt>=0.12.1",
     "paho": "paho-mqtt>=2",
     "pydantic": "pydantic>=2",
     "starlette": "fastapi",

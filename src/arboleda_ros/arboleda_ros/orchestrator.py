@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, String, UInt8, UInt32
+from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
 
+from arboleda.app import view_text
 from arboleda.core import view
 from arboleda.core.errors import ArboledaError, PayloadError
 from arboleda.core.messages import (
@@ -28,11 +29,12 @@ from arboleda.core.messages import (
     TaskRequest,
 )
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
 
 from . import convert, qos, statuses
 from .asking import Asker
 from .diagnostics import Diagnostic, Diagnostics
-from .port import Port
+from .port import NAMED, Port
 from .verbs import VerbServices
 
 if TYPE_CHECKING:  # it is there only where arboleda_interfaces is built
@@ -57,15 +59,18 @@ class OrchestratorPort(Port):
         super().__init__(node, clock)
         self._robots = model.robots
         self._on_event = on_event
+        speak = partial(self._speak, profile=qos.COMMAND, alone=True)
+        self._labelled = {
+            robot.name: speak(Float32MultiArray, f"{robot.name}/{COMMAND}")
+            for robot in model.robots.values()
+            if robot.link is Link.MQTT
+        }
         self._commands = {
-            (robot.name, kind): self._speak(
-                convert.message_type(kind), f"{robot.name}/{topic}", qos.COMMAND, alone=True
-            )
+            (robot.name, kind): speak(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}")
             for robot in model.robots.values()
             for kind in convert.commands_of(robot)
-            for topic in (convert.COMMAND_TOPICS[kind],)
         }
-        self._heartbeat = self._speak(UInt32, "plant/heartbeat", qos.COMMAND, alone=True)
+        self._heartbeat = speak(UInt32, HEARTBEAT)
         self._start = self._speak(UInt8, "system/start", qos.COMMAND)
         self._unheard = 0
         self._task_status = self._speak(String, "task_status", qos.TASK_STATUS)
@@ -101,15 +106,19 @@ class OrchestratorPort(Port):
         """Whether another node listens to `/diagnostics`."""
         return self._diagnostics.get_subscription_count() > 0
 
-    def publish_view(self, snapshot: Mapping[str, Any]) -> None:
-        """Publish the snapshot; plain data that JSON can carry."""
-        self._view.publish(String(data=json.dumps(snapshot, ensure_ascii=False)))
+    def publish_view(self, snapshot: Mapping[str, Any]) -> Iterator[None]:
+        """Publish the snapshot, plain data that JSON can carry, in parts that take a moment each."""
+        text = yield from view_text.in_parts(snapshot)
+        self._view.publish(String(data=text))
         if self._offer is not None:
+            yield
             self._offer.show(snapshot)
 
-    def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> None:
-        """Publish one status per robot and cell; the port's own status goes out by itself."""
-        self._diagnostics.publish(self._all.of(plain, self._node.get_clock().now().to_msg()))
+    def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> Iterator[None]:
+        """Publish one status per robot and cell, in parts; the port's own status goes out by itself."""
+        named = ((self._diagnosed(name.removeprefix(NAMED)), *rest) for name, *rest in plain)
+        data = yield from self._all.of(named, self._node.get_clock().now().to_msg())
+        self._diagnostics.publish(data)
 
     def close(self) -> None:
         if self._offer is not None:
@@ -147,11 +156,19 @@ class OrchestratorPort(Port):
             self._unheard = 0
 
     def _command(self, command: Command) -> None:
-        publisher = self._commands[command.robot, type(command)]
-        bridged = self._robots[command.robot].link is Link.MQTT
-        if bridged and publisher.get_subscription_count() == 0:
-            raise NoBridge(f"no bridge listens to {publisher.topic_name}")
-        publisher.publish(convert.command_message(command))
+        """On `command` where a bridge of ours listens; on the plain topic for whoever else does."""
+        plain, labelled = self._commands[command.robot, type(command)], self._labelled.get(command.robot)
+        bridges = labelled.get_subscription_count() if labelled is not None else 0
+        listeners = plain.get_subscription_count()
+        if labelled is not None and not bridges and not listeners:
+            raise NoBridge(f"no bridge listens to {labelled.topic_name}")
+        if labelled is None or not bridges:
+            plain.publish(convert.command_message(command))
+            return
+        copied = listeners > bridges  # a bridge listens to both
+        labelled.publish(convert.labelled_message(command, copied=copied))
+        if copied:
+            plain.publish(convert.command_message(command, copy=True))
 
     def _hear(self, robot: Robot) -> None:
         """Subscribe to what a robot's link and evidence let it say."""
@@ -159,10 +176,14 @@ class OrchestratorPort(Port):
             self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS:
             ear = statuses.Ear(robot, self._clock, self._on_event)
-            self._listen(DiagnosticStatus, f"{robot.name}/status", ear, qos.COMMAND, raw=True)
+            topic = f"{robot.name}/status"
+            if robot.link is Link.ROS:
+                self._listen_as_offered(DiagnosticStatus, topic, ear, raw=True)
+            else:
+                self._listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True)
             return
         on_state = self._reporting(convert.state_report, robot)
-        self._listen(UInt8, f"{robot.name}/motion_state", on_state, qos.COMMAND)
+        self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state)
         if robot.evidence is Evidence.JOINTS:
             on_joints = self._reporting(convert.joints_report, robot)
             self._listen(JointState, convert.joint_states_topic(robot), on_joints, qos.SENSOR)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -12,6 +13,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
 
 from arboleda.core.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
@@ -19,8 +21,7 @@ from arboleda.wire.status import ERROR, OK, WARN
 from . import qos, statuses
 from .alone import DISCOVERY_S, Alone
 
-LOG = logging.getLogger("arboleda.ros")
-
+NAMED = "arboleda: "  # how the names of all our statuses begin
 _REPEAT_S = 5.0  # the same sentence about the same topic is logged at most this often
 _REMEMBERED = 200  # sentences; a stranger must not fill the memory
 _DIAGNOSTICS_S = 1.0
@@ -42,12 +43,13 @@ class Port:
     def __init__(self, node: Node, clock: Callable[[], float]) -> None:
         self._node = node
         self._clock = clock
+        self._log = logging.getLogger(f"arboleda.ros.{node.get_name()}")
         self._alone = Alone(node)
         self._refused = 0
         self._failures = 0
         self._warnings: dict[str, None] = {}
         self._logged: dict[tuple[str, str], float] = {}
-        self._diagnostics = self._speak(DiagnosticArray, "diagnostics", qos.COMMAND)
+        self._diagnostics = self._speak(DiagnosticArray, "/diagnostics", qos.COMMAND)
         node.create_timer(_DIAGNOSTICS_S, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def check_alone(self, wait_s: float = DISCOVERY_S) -> None:
@@ -69,6 +71,11 @@ class Port:
             warnings=tuple(self._warnings), errors=errors, refused=self._refused, failures=self._failures
         )
 
+    def _diagnosed(self, what: str) -> str:
+        """The name of a status: plants of all namespaces share `/diagnostics`, so it says whose it is."""
+        namespace = self._node.get_namespace().strip("/")
+        return f"{NAMED}{namespace}/{what}" if namespace else f"{NAMED}{what}"
+
     def _publish_diagnostics(self, status: list[DiagnosticStatus]) -> None:
         message = DiagnosticArray(status=status)
         message.header.stamp = self._node.get_clock().now().to_msg()
@@ -83,7 +90,7 @@ class Port:
         level = ERROR if health.errors else WARN if health.warnings or health.failures else OK
         sentence = "; ".join(health.errors + health.warnings) or "ready"
         counts = {"refused": str(health.refused), "failures": str(health.failures)}
-        name = f"arboleda: {self._node.get_name()} on ROS 2"
+        name = self._diagnosed(f"{self._node.get_name()} on ROS 2")
         here = statuses.diagnostic(name, "ros", level, sentence, counts)
         self._publish_diagnostics([here, *self._links()])
 
@@ -102,6 +109,34 @@ class Port:
             kind, topic, self._guarded(topic, handle), profile, event_callbacks=events, raw=raw
         )
 
+    def _listen_as_offered(
+        self, kind: type, topic: str, handle: Callable[[Any], None], *, raw: bool = False
+    ) -> None:
+        """Like `_listen`, reliably for as long as every publisher offers that, else best effort."""
+        guarded = self._guarded(topic, handle)
+
+        def make(profile: QoSProfile, on_policy: Callable[[str], None]) -> Subscription:
+            events = qos.subscription_events(on_policy)
+            return self._node.create_subscription(
+                kind, topic, guarded, profile, event_callbacks=events, raw=raw
+            )
+
+        def refuse(policy: str) -> None:
+            self._incompatible(topic, "publisher", policy)
+
+        def adapt(policy: str) -> None:
+            if policy != qos.RELIABILITY:
+                refuse(policy)
+            elif reliable and self._node.executor is not None:
+                # not from here: this callback belongs to the subscription that goes
+                self._node.executor.create_task(partial(replace, reliable.pop()))
+
+        def replace(old: Subscription) -> None:
+            self._node.destroy_subscription(old)
+            make(qos.BEST_EFFORT, refuse)
+
+        reliable = [make(qos.COMMAND, adapt)]
+
     def _speak(self, kind: type, topic: str, profile: QoSProfile, *, alone: bool = False) -> Publisher:
         """A publisher; `alone` where a second publisher of the topic is a fault."""
         if alone:
@@ -116,9 +151,9 @@ class Port:
             except PayloadError as error:
                 self._refused += 1
                 self._log_seldom(topic, str(error))
-            except Exception:  # one broken handler must not silence the other topics
+            except Exception:  # noqa: BLE001 - one broken handler must not silence the other topics
                 self._failures += 1
-                LOG.exception("the handler of %s failed", self._absolute(topic))
+                self._log.exception("the handler of %s failed", self._absolute(topic))
 
         return guarded
 
@@ -128,12 +163,12 @@ class Port:
             if len(self._logged) >= _REMEMBERED:
                 self._logged.clear()
             self._logged[topic, sentence] = now
-            LOG.warning("refused a message on %s: %s", self._absolute(topic), sentence)
+            self._log.warning("refused a message on %s: %s", self._absolute(topic), sentence)
 
     def _log_once(self, sentence: str, level: int) -> None:
         if ("", sentence) not in self._logged:
             self._logged["", sentence] = self._clock()
-            LOG.log(level, sentence)
+            self._log.log(level, sentence)
 
     def _incompatible(self, topic: str, what: str, policy: str) -> None:
         sentence = (

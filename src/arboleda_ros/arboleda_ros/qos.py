@@ -8,6 +8,7 @@ from typing import Any
 from rclpy.qos import (
     DurabilityPolicy,
     HistoryPolicy,
+    QoSPolicyKind,
     QoSProfile,
     ReliabilityPolicy,
     qos_policy_name_from_kind,
@@ -32,7 +33,13 @@ TASK_REQUEST = QoSProfile(
 )
 TASK_STATUS = _reliable(100, DurabilityPolicy.TRANSIENT_LOCAL)
 VIEW = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
+BEST_EFFORT = QoSProfile(
+    depth=100, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE
+)
 SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+
+
+RELIABILITY = qos_policy_name_from_kind(QoSPolicyKind.RELIABILITY)
 
 
 def publisher_events(on_policy: Callable[[str], None]) -> PublisherEventCallbacks:

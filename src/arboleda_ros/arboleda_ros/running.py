@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import logging
+import os
 import signal
 import sys
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -14,12 +17,17 @@ from rclpy.node import Node
 
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
+from arboleda.app.log_file import LogFile
+from arboleda.app.log_queue import log_to
 from arboleda.app.parts.broker import login
 from arboleda.core.errors import ArboledaError, StartError
 
 from . import missing
 from .link import Link, connect
+from .ros_log import RosLog
 
+LOG = logging.getLogger("arboleda.ros")
+STDERR = 2
 Value = str | float | bool
 EMBEDDED = "embedded"
 
@@ -38,7 +46,6 @@ _KINDS = {float: "a number", str: "a text", bool: "true or false"}
 
 def run(name: str) -> int:
     """Run the node `name` until a signal raises KeyboardInterrupt; 1 where it cannot start."""
-    logging.basicConfig(level=logging.INFO, format="[%(levelname)s] [%(name)s]: %(message)s")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _interrupt)
     try:
@@ -56,17 +63,38 @@ def offered(name: str) -> dict[str, tuple[Value, str]]:
 def _run(name: str) -> int:
     link = connect(args=sys.argv)
     try:
-        app = _app(link, name)
-        try:
-            app.start()
-            for note in app.notes:
-                logging.info(note)
-            app.wait()
-        finally:
-            app.stop()
+        # two queues: a console that nobody reads holds up neither /rosout nor the file
+        with log_to(partial(_to_console, link.log)), log_to(link.log) as log:
+            app = _app(link, name)
+            with closing(LogFile(app.log_file, _complain)) as details:
+                log.add(details.handle)
+                _run_app(app)
+                log.flush()
     finally:
         link.close()
     return 0
+
+
+def _run_app(app: App) -> None:
+    try:
+        app.start()
+        for note in app.notes:
+            LOG.info(note)
+        app.wait()
+    finally:
+        app.stop()
+
+
+def _to_console(log: RosLog, line: logging.LogRecord) -> None:
+    """A line as ROS 2 writes it."""
+    heading = log.heading(line)
+    if heading is not None:
+        _complain(heading + line.getMessage())
+
+
+def _complain(sentence: str) -> None:
+    """A line on standard error, past Python's buffer: a thread that waits there must not hold up the exit."""
+    os.write(STDERR, f"{sentence}\n".encode())
 
 
 def _app(link: Link, name: str) -> App:
@@ -83,6 +111,7 @@ def _app(link: Link, name: str) -> App:
         credentials=login(),
         rate=values["rate"],
         page="web" in parts,
+        log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
     )
     return build(model, parts, options)
@@ -104,7 +133,7 @@ def _has_web() -> bool:
         import arboleda.app.parts.web
         import arboleda.dashboard.page  # noqa: F401
     except ImportError as error:
-        logging.warning("the dashboard is off: %s", missing.sentence(error))
+        LOG.warning("the dashboard is off: %s", missing.sentence(error))
         return False
     return True
 

@@ -89,6 +89,7 @@ def test_a_running_task_is_cancelled_and_recovered_from(execute: Execute) -> Non
     assert goal.cancel()
     status, result = goal.end()
     assert (status, result.outcome, result.reason) == (CANCELED, "cancelled", "cancelled")
+    assert result.sentence == "cancelled by the client"
     assert any(step.startswith("recovery: ") for step, _ in goal.feedback)
     assert execute(text="sis_a 0A 0").end()[1].outcome == "done"
 

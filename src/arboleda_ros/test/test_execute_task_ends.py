@@ -100,8 +100,8 @@ def test_a_cancel_before_the_plant_has_answered_is_kept_for_it(plant: Plant, exe
     assert goal.cancel() and plant.events == []
     plant.says(TaskState.QUEUED, request=request)
     asked = plant.asked(OperatorRequest)
-    assert (asked.verb, asked.scope) == (Verb.CANCEL, "t-1")
-    plant.says(TaskState.CANCELLED, reason=Reason.CANCELLED, sentence="cancelled by the operator")
+    assert (asked.verb, asked.scope, asked.client) == (Verb.CANCEL, "t-1", True)
+    plant.says(TaskState.CANCELLED, reason=Reason.CANCELLED, sentence="cancelled by the client")
     ended, result = goal.end()
     assert (ended, result.outcome) == (GoalStatus.STATUS_CANCELED, "cancelled")
 

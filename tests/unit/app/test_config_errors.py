@@ -201,3 +201,22 @@ def test_a_rack_may_give_the_sliding_joint_and_an_approach(tmp_path: Path) -> No
 def test_without_palletizing_the_place_is_the_last_station(tmp_path: Path) -> None:
     cell = load(tmp_path, f"{ONE_CELL}stations: {{0: {{deg: [0, 10], mm: 0}}}}\n").cell("sis_a")
     assert (cell.palletizing.pick, cell.palletizing.place) == (cell.pickup, cell.stations[0])
+
+
+ROUND_TRIP = ONE_CELL.replace("[0, 3, 4, 7]", "[0, 3, 0]")
+FAST = ROUND_TRIP.replace(
+    "rm_sis_a, link: mqtt, evidence: ids", "rm_sis_a, link: mqtt, evidence: joints, grid: {pitch_mm: 39}"
+)
+
+
+def test_at_joints_a_round_trip_needs_edges_that_are_seen(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, FAST + "    stations: {0: {deg: [1, 1], mm: 1}}\n")
+    assert found.startswith("6:13: cells.sis_a.mobile: path 0B comes by its last node before its end")
+    assert "a pitch_mm of 40 or more" in found
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("39", "40"), ("evidence: joints", "evidence: ids"), ("[0, 3, 0]", "[0, 3, 4]")]
+)
+def test_elsewhere_edges_may_be_short(tmp_path: Path, old: str, new: str) -> None:
+    load(tmp_path, FAST.replace(old, new) + "    stations: {0: {deg: [1, 1], mm: 1}}\n")

@@ -53,6 +53,7 @@ KEYS = {  # id: (text in the shipped file, put in its place, the sentence has in
     "retry as number": ("    pickup:", "    retry: 3\n    pickup:", "must be a mapping"),
     "piece check": ("    pickup:", "    piece_check: yes\n    pickup:", 'true or false, is "yes"'),
     "no wait": ("    pickup:", "    zone_wait_s: 0\n    pickup:", "must be more than 0, is 0"),
+    "long settle": ("paths:", "timing: {effector_timeout_s: 0.1}\npaths:", "is 0.1, else an effector that"),
     "long debounce": ("paths:", "timing: {piece_debounce_s: 2}\npaths:", "piece_wait_s, which is 2"),
     "trigger": ("      twin:", "      trigger_when_busy: refused\n      twin:", 'did you mean "refuse"?'),
     "homed and to be homed": (
@@ -112,8 +113,14 @@ def test_palletizing_knows_the_zones_of_its_poses(tmp_path: Path) -> None:
 def test_a_crossing_names_every_zone_between_its_ends(tmp_path: Path) -> None:
     plant = load(tmp_path, ZONES + PLANT)
     both, rack = frozenset({"centre", "rack"}), frozenset({"rack"})
-    assert plant.cell("sis_a").crossings == (Crossing(a="home", b="station 2", zones=both),)
-    assert plant.cell("sis_b").crossings == (Crossing(a="home", b="pick-up", zones=rack),)
+    assert plant.cell("sis_a").crossings == (
+        Crossing(a="home", b="station 2", zones=both),
+        Crossing(a="station 0", b="station 2", zones=both),  # station 0 is where home is
+    )
+    assert plant.cell("sis_b").crossings == (
+        Crossing(a="home", b="pick-up", zones=rack),
+        Crossing(a="pick-up", b="station 0", zones=rack),
+    )
     assert plant.cell("sis_c").crossings == ()
 
 
@@ -168,3 +175,65 @@ def test_a_mistake_in_a_key_of_a_cell_is_named(tmp_path: Path, mistake: tuple[st
     assert old in PLANT
     found = problems(tmp_path, PLANT.replace(old, new, 1))
     assert [words in problem for problem in found] == [True], found
+
+
+def alike(tmp_path: Path, zones: str) -> list[str]:
+    """What is refused of an arm whose stations 0 and 1 are just within twice its tolerance."""
+    return problems(tmp_path, TOLERANT.format(tolerance=WIDE) + zones)
+
+
+@pytest.mark.parametrize(
+    ("zones", "sentence"),
+    [
+        ("{poses: [a station 1]}", "station 1 lies in the zone and station 0 does not; in every joint they"),
+        ("{moves: [[a station 1, a station 0]]}", "a move between station 0 and station 1 crosses the zone"),
+        (
+            "{poses: [a station 2]}",
+            "station 2 looks like the reference (all joints 0) to the arm; homing",
+        ),
+    ],
+)
+def test_a_zone_that_the_tolerance_blurs_is_refused(tmp_path: Path, zones: str, sentence: str) -> None:
+    found = alike(tmp_path, f"zones:\n  z: {zones}\n")
+    assert [f"cell a: {sentence}" in problem for problem in found] == [True], found
+
+
+@pytest.mark.parametrize(
+    "zones", ["{poses: [a station 1, a station 0]}", "{moves: [[a station 1, a pickup]]}"]
+)
+def test_poses_that_look_the_same_and_lie_in_the_same_zones_are_taken(tmp_path: Path, zones: str) -> None:
+    cell = load(tmp_path, TOLERANT.format(tolerance=WIDE) + f"zones:\n  z: {zones}\n").cell("a")
+    named = {"station 0", "station 1"}
+    assert {pose.name for pose in cell.poses if pose.zones} in (set(), named)
+    assert {each.a for each in cell.crossings} | {each.b for each in cell.crossings} <= named | {"pick-up"}
+
+
+def test_a_pose_in_a_zone_beyond_twice_the_tolerance_is_taken(tmp_path: Path) -> None:
+    zones = "zones:\n  z: {poses: [a station 1]}\n"
+    assert load(tmp_path, TOLERANT.format(tolerance="{deg: [3, 2.24], mm: 5}") + zones).zones == ("z",)
+
+
+def test_the_point_above_a_pose_counts_as_the_pose(tmp_path: Path) -> None:
+    text = TOLERANT.format(tolerance=WIDE).replace(
+        "1: {deg: [45, 49.5], mm: 60}", "1: {deg: [45, 49.5], mm: 90, approach_mm: 30}"
+    )
+    (found,) = problems(tmp_path, text + "zones:\n  z: {poses: [a station 1]}\n")
+    assert "station 1 lies in the zone and station 0 does not" in found
+
+
+WIDE = "{deg: [3, 2.26], mm: 5}"
+TOLERANT = """\
+name: tolerant
+cells:
+  a:
+    arm: {{name: arm, model: scara, link: mqtt, evidence: ids, tolerance: {tolerance}}}
+    mobile: {{name: mobile, link: mqtt, evidence: ids}}
+    home: {{deg: [90, 0], mm: 0}}
+    pickup: {{deg: [-90, 0], mm: 50}}
+    paths: {{0A: [0]}}
+    stations:
+      0: {{deg: [45, 45], mm: 60}}
+      1: {{deg: [45, 49.5], mm: 60}}
+      2: {{deg: [1, 1], mm: 1}}
+      3: {{deg: [-40, -40], mm: 60}}
+"""

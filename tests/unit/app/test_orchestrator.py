@@ -10,12 +10,16 @@ from arboleda.app.parts import orchestrator
 from arboleda.app.parts.bridge import BridgePart
 from arboleda.app.parts.broker import OtherBroker, address
 from arboleda.app.parts.orchestrator import Orchestrator
+from arboleda.app.parts.slices import PAUSE_S, SLICE_S
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import (
+    Absence,
     Fact,
     Heartbeat,
     Home,
+    InternalError,
     Journal,
+    MoveJoints,
     OperatorAnswer,
     OperatorRequest,
     Remember,
@@ -139,12 +143,31 @@ def answer(event: OperatorRequest, refusal: str | None = None) -> OperatorAnswer
     return OperatorAnswer(verb=event.verb, scope=event.scope, refusal=refusal, request=event.request)
 
 
+class Shown(dict):
+    """A snapshot of which only what it is made of matters."""
+
+    def __init__(self, of):
+        super().__init__(cells=[], robots=[], tasks=[])
+        self.of = of
+
+    def __eq__(self, other):
+        return self.of == other
+
+    __hash__ = None
+
+
+def at_once(plant):
+    """A snapshot without parts, of which only the version matters."""
+    yield from ()
+    return Shown(plant.version)
+
+
 @pytest.fixture
 def shows(plant, monkeypatch):
     """The versions that were shown, while the plant's clock says what `now[0]` is."""
     now, shown = [100.0], []
     monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
-    monkeypatch.setattr(orchestrator.view, "snapshot", lambda plant: plant.version)
+    monkeypatch.setattr(orchestrator.view, "in_parts", at_once)
     monkeypatch.setattr(Script, "version", 1, raising=False)
     plant.watchers.append(shown.append)
     return now, shown
@@ -184,9 +207,11 @@ class Topics(Robots):
 
     def publish_view(self, snapshot):
         self.told.append("view")
+        yield
 
     def publish_diagnostics(self, statuses):
         self.told.append("diagnostics")
+        yield
 
 
 @pytest.mark.parametrize(
@@ -229,6 +254,58 @@ def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant,
     now[0] += 1.0
     turn(plant)
     assert shown[-1] == 200
+
+
+@pytest.fixture
+def slow_parts(plant, shows, monkeypatch):
+    """As `shows`, but a snapshot has 10 parts of a slice each; `made` are the versions that its parts saw."""
+    spent, made = [0.0], []
+    monkeypatch.setattr(orchestrator.time, "thread_time", lambda: spent[0])
+
+    def in_parts(plant):
+        for _ in range(10):
+            made.append(plant.version)
+            spent[0] += 1.01 * SLICE_S
+            yield
+        return Shown(made[-10:])
+
+    monkeypatch.setattr(orchestrator.view, "in_parts", in_parts)
+    return *shows, made
+
+
+def test_a_snapshot_that_takes_long_is_made_between_steps(plant, slow_parts, monkeypatch):
+    now, shown, made = slow_parts
+    heard = 0
+    turn(plant, ON)
+    now[0] += orchestrator.SETTLE_S
+    for step in range(10):
+        assert shown == [], "it is shown once it is whole"
+        plant.loop.post("an event")
+        before = len(made)
+        heard += len(turn(plant))
+        assert len(made) == before + 1, "a slice follows each step"
+        monkeypatch.setattr(Script, "version", step + 2)
+        turn(plant)
+        assert len(made) == before + 1, "and is followed by a pause"
+        now[0] += 1.01 * (SLICE_S + PAUSE_S)
+    turn(plant)
+    assert heard == 10 and shown == [list(range(1, 11))]
+    now[0] += 1.0
+    for _ in range(12):
+        now[0] += 1.01 * (SLICE_S + PAUSE_S)
+        turn(plant)
+    assert shown[1:] == [[11] * 10], "what changed meanwhile is shown with the next one"
+
+
+def test_a_snapshot_that_is_being_made_is_shown_whole_at_the_end(plant, slow_parts):
+    now, shown, made = slow_parts
+    turn(plant, ON)
+    now[0] += orchestrator.SETTLE_S
+    turn(plant)
+    assert (shown, len(made)) == ([], 1)
+    plant.plant.intake.closed = True
+    turn(plant)
+    assert shown == [[1] * 10]
 
 
 def test_the_last_change_is_shown_before_the_end(plant, shows):
@@ -275,3 +352,55 @@ def test_the_bridge_gets_only_what_is_for_robots(notice):
     part = BridgePart(shipped("sis_a"), 7, OtherBroker(address("127.0.0.1:1883"), None), pytest.fail)
     part.loop.post = pytest.fail
     part.send(notice)
+
+
+def test_an_error_in_a_cell_is_one_line_for_people_and_whole_in_the_log(plant, caplog):
+    try:
+        raise ZeroDivisionError("by design")
+    except ZeroDivisionError as error:
+        defect = InternalError(cell="sis_a", error=error)
+    plant.plant.says = lambda events: [defect, Heartbeat(epoch=7)]
+    with caplog.at_level("DEBUG", logger="arboleda"):
+        plant.loop.turn()
+    said = [record for record in caplog.records if record.levelname == "ERROR"]
+    assert [record.getMessage() for record in said] == [
+        "internal error in sis_a (ZeroDivisionError: by design)"
+    ]
+    assert said[0].exc_info is None and "Traceback" in caplog.text
+    assert plant.robots.messages == [Heartbeat(epoch=7)]
+
+
+def test_a_view_that_cannot_be_made_is_logged_once_and_does_not_end_the_plant(plant, caplog, monkeypatch):
+    def broken(each):
+        raise KeyError("by design")
+
+    monkeypatch.setattr(orchestrator.view, "in_parts", broken)
+    plant.watchers.append(lambda snapshot: None)
+    plant.plant.intake.closed = True
+    plant.plant.says = lambda events: [Heartbeat(epoch=7)]
+    for version in range(3):
+        plant.plant.dispatcher.version = version + 1
+        plant.loop.turn()
+    assert sum("internal error in the screens" in line for line in caplog.messages) == 1
+    assert len(plant.robots.messages) == 3
+
+
+def test_what_a_stopped_process_had_decided_is_not_sent_when_it_goes_on(plant, monkeypatch):
+    move = MoveJoints(id="7-2", robot="ra1", q=(0.0, 0.0, 0.0))
+    halt = Stop(id="7-3", robot="ra1", mode=StopMode.HALT)
+    plant.plant.says = lambda events: [] if events else [ON, move, halt]
+    stepped_at = plant.plant.now
+    monkeypatch.setattr(orchestrator.clock, "seconds", lambda: stepped_at + 20.0)
+    plant.loop.turn()
+    assert plant.robots.messages == [halt]
+    plant.loop.turn()
+    undelivered = [event for event in plant.plant.heard if isinstance(event, Undelivered)]
+    assert [event.id for event in undelivered] == [ON.id, move.id]
+    assert "away for 20.0 s" in undelivered[0].sentence
+
+
+def test_an_absence_is_one_line_in_the_log(plant, caplog):
+    plant.plant.says = lambda events: [Absence(seconds=20.04)]
+    plant.loop.turn()
+    assert [line for line in caplog.messages if "away for 20.0 s" in line]
+    assert plant.robots.messages == []

@@ -1,12 +1,18 @@
 from __future__ import annotations
 
 import io
+import logging
+import time
+from pathlib import Path
 from typing import Any
 
 import pytest
 from rich.console import Console
+from rich.text import Text
 
-from arboleda.app.screen import Screen, joints, parting, table
+from arboleda.app import screen as shown
+from arboleda.app.parts.orchestrator import task_line
+from arboleda.app.screen import Screen, joints, logged, parting, table
 from arboleda.core.messages import Reason, TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.testing import Rig, shipped
@@ -80,15 +86,65 @@ def test_how_each_robot_was_left_is_told(rig: Rig) -> None:
     assert not any(line.startswith("ra3") for line in lines)
 
 
+def line(change: TaskChanged) -> logging.LogRecord:
+    values = {"msg": task_line(change), "levelno": logging.INFO, "change": change}
+    return logging.makeLogRecord(values)
+
+
+FAILED = TaskChanged(
+    task="t-1",
+    text="sis_a 0B 7",
+    cell="sis_a",
+    state=TaskState.FAILED,
+    reason=Reason.LINK_LOST,
+    sentence="ra1: no [bold]link[/]",
+)
+
+
 def test_a_failed_change_shows_sentence_and_reason(rig: Rig) -> None:
-    console = Console(file=io.StringIO(), width=100)
-    change = TaskChanged(
-        task="t-1",
-        text="sis_a 0B 7",
-        cell="sis_a",
-        state=TaskState.FAILED,
-        reason=Reason.LINK_LOST,
-        sentence="ra1: no [bold]link[/]",
-    )
-    Screen(console, rig.snapshot).changed(change)
+    console = Console(file=io.StringIO(), width=100, force_terminal=True, color_system=None)
+    Screen(console, rig.snapshot, Path("arboleda.log")).say(logged(line(FAILED)), at=0.0)
     assert console.file.getvalue() == "failed    sis_a 0B 7  ra1: no [bold]link[/] (link_lost)\n"  # type: ignore[attr-defined]
+
+
+def test_the_state_of_a_task_has_its_colour() -> None:
+    spans = [(span.start, span.end, span.style) for span in logged(line(FAILED)).spans]
+    assert spans == [(0, 9, "bold red"), (10, 20, "bold")]
+
+
+def test_where_no_person_looks_on_every_line_says_its_time(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TZ", "UTC")
+    time.tzset()
+    console = Console(file=io.StringIO(), width=100)
+    screen = Screen(console, rig.snapshot, Path("arboleda.log"))
+    screen.say(logged(line(FAILED)), at=1_700_000_000.9)
+    screen.stepped(rig.snapshot(), at=1_700_000_001.0)
+    first, step, *_ = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    assert first.startswith("2023-11-14 22:13:20 failed    sis_a 0B 7")
+    assert step == "2023-11-14 22:13:21   sis_a: move to pick-up"
+
+
+def test_a_file_that_standard_output_goes_to_does_not_grow_for_ever(
+    rig: Rig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shown, "OUTPUT_BYTES", 2000)
+    with (tmp_path / "out").open("w", buffering=1) as out:
+        screen = Screen(Console(file=out, width=80), rig.snapshot, Path("arboleda.log"))
+        for number in range(500):
+            screen.say(Text(f"line {number}"), at=0.0)
+        whole = (tmp_path / "out").read_text()
+        assert len(whole) < 2200 and "they go on in arboleda.log" in whole.splitlines()[-1]
+        out.truncate(0)
+        screen.say(Text("room again"), at=0.0)
+    assert "room again" in (tmp_path / "out").read_text()
+
+
+def test_texts_of_a_snapshot_are_no_markup_and_nothing_that_a_terminal_obeys(rig: Rig) -> None:
+    snapshot = rig.snapshot()
+    evil = "[red]x[/red]\x1b[2J\u202e"
+    snapshot["plant"] = evil
+    snapshot["cells"][1]["held_by"] = evil
+    snapshot["cells"][2]["step"] = evil
+    text = drawn(snapshot, 200)
+    assert "\x1b" not in text and "\u202e" not in text
+    assert text.count("[red]x[/red]\\x1b[2J") == 3

@@ -100,3 +100,53 @@ def test_the_default_place(monkeypatch, base, expected):
     if base is not None:
         monkeypatch.setenv("XDG_STATE_HOME", base)
     assert default_state("demo") == Path(expected.replace("~", "/home/ana/.local/state/arboleda/demo"))
+
+
+@pytest.mark.parametrize("said", [b"", b"soon", b"\xff", b"-5", b"1e9", b"4294967295", b"9" * 80, b"1\n2"])
+def test_an_epoch_that_nobody_can_read_is_one_sentence(tmp_path, said):
+    (tmp_path / "epoch").write_bytes(said)
+    with StateDir(tmp_path) as owner, pytest.raises(StartError) as refused:
+        owner.next_epoch(1000)
+    assert str(refused.value).startswith(
+        f"{tmp_path / 'epoch'} does not say the number of the last start: delete"
+    )
+    assert (tmp_path / "epoch").read_bytes() == said
+
+
+def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "epoch")
+    with StateDir(tmp_path) as owner, pytest.raises(StartError, match="does not say the number"):
+        owner.next_epoch(1000)
+
+
+FULL = """
+import resource, signal, sys
+from pathlib import Path
+from arboleda.app.state import StateDir
+from arboleda.core.errors import StartError
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+room = int(sys.argv[2])
+state = StateDir(Path(sys.argv[1]))
+resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+try:
+    state.open()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, room))
+    state.next_epoch(5)
+except StartError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("room", [0, 4096])
+def test_a_full_disk_at_the_start_is_one_sentence(tmp_path, room):
+    """The limit for the size of files stands for it: nothing can be written."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, "-c", FULL, str(tmp_path), str(room)]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert ended.stdout.startswith(
+        f"The state directory {tmp_path} cannot be used: File too large; make room"
+    )
+    assert ended.stderr == ""
+    assert [file.name for file in tmp_path.iterdir()] == ["plant.lock"]
+    with StateDir(tmp_path):
+        pass

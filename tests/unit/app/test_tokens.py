@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from arboleda.adapters.web.auth import Role
 from arboleda.app import tokens
 from arboleda.app.cli import cli
+from arboleda.app.state import StateDir
 from arboleda.app.tokens import TOKENS, TokenFile
 from arboleda.core.errors import StartError
 
@@ -71,7 +72,19 @@ def test_a_state_directory_that_cannot_be_used_is_one_sentence(tmp_path: Path) -
         tokens.renew(tmp_path / "file", Role)
 
 
+def test_the_command_makes_nothing_where_no_plant_was(tmp_path: Path) -> None:
+    for folder in (tmp_path / "typo", tmp_path):
+        for words in (["operator"], ["--new"]):
+            answer = CliRunner().invoke(cli, ["token", *words, "--state", str(folder)])
+            assert isinstance(answer.exception, StartError), answer.output
+            assert f"No plant keeps its state in {folder}" in str(answer.exception)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_command_shows_and_renews(tmp_path: Path) -> None:
+    with StateDir(tmp_path):
+        pass
+
     def said(*words: str) -> str:
         answer = CliRunner().invoke(cli, ["token", *words, "--state", str(tmp_path)])
         assert answer.exit_code == 0, answer.output

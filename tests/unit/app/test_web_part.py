@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.app.parts.web import Side
 from arboleda.app.web_options import WebOptions
-from arboleda.core.errors import ArboledaError, StartError
+from arboleda.core.errors import ArboledaError, QueueFull, StartError
 from arboleda.core.messages import TaskChanged, TaskState
 
 
@@ -67,11 +67,24 @@ def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
         bad.result(0)
 
 
+def test_a_task_that_is_refused_for_now_is_an_error_of_its_own() -> None:
+    plant = Plant()
+    side = Side(plant)
+    full, wrong = side.submit("a"), side.submit("b")
+    facts = {"task": "", "cell": None, "state": TaskState.REFUSED}
+    plant.asked[0].set_result(TaskChanged(text="a", sentence="20 tasks wait", for_now=True, **facts))
+    plant.asked[1].set_result(TaskChanged(text="b", sentence="no cell b", **facts))
+    with pytest.raises(QueueFull, match=r"^20 tasks wait$"):
+        full.result(0)
+    assert wrong.result(0)["sentence"] == "no cell b"
+
+
 @pytest.mark.parametrize(
     ("options", "guarded", "near"),
     [
         ({}, False, "127.0.0.1"),
-        ({"host": "localhost"}, False, "localhost"),
+        ({"host": "localhost"}, False, "127.0.0.1"),
+        ({"host": "127.0.0.2"}, False, "127.0.0.2"),
         ({"host": "::1"}, False, "[::1]"),
         ({"host": "0.0.0.0"}, True, "127.0.0.1"),
         ({"host": "::"}, True, "[::1]"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import threading
 import time
@@ -11,12 +12,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arboleda.adapters import clock, descriptors
 from arboleda.adapters.mqtt import Credentials
 from arboleda.adapters.store import Store
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import Link, PlantModel
 
+from .log_queue import Output
 from .parts.bridge import BridgePart
 from .parts.broker import MQTT_PORT, OtherBroker, OwnBroker, address
 from .parts.devices import DevicesPart
@@ -30,7 +33,8 @@ from .web_options import WebOptions
 if TYPE_CHECKING:  # its libraries are needed only where this part is
     from .parts.web import WebPart
 
-PARTS = ("broker", "devices", "linux", "bridge", "orchestrator", "web")
+PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
+OF_BOARDS = frozenset({"broker", "devices", "bridge"})  # of no use where no robot is reached over MQTT
 STORE = "plant.sqlite"
 MQTT_311 = 4  # paho's number of the protocol
 LOG = logging.getLogger(__name__)
@@ -46,8 +50,10 @@ class Options:
     broker_users: dict[str, str] | None = None
     credentials: Credentials | None = None
     rate: float = 1.0
+    firmware: bool = False  # boards that can be are the firmware's, compiled for Linux
     state_dir: Path | None = None
     web: WebOptions = field(default_factory=WebOptions)
+    log_name: str = "arboleda.log"
     page: bool = True  # the API needs none, and a page takes a second to load
 
 
@@ -56,6 +62,8 @@ class App:
 
     def __init__(self, model: PlantModel, parts: Collection[str], options: Options) -> None:
         self.model = at_rate(model, options.rate)
+        descriptors.raise_limit()
+        self._shares = descriptors.shares(len(model.robots))
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
         self._store = Store(self._state.path / STORE)
@@ -64,6 +72,8 @@ class App:
         self._bridge: BridgePart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
+        self._firmware = options.firmware
+        self._log_name = options.log_name
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
         self._trouble: ArboledaError | None = None
@@ -83,7 +93,8 @@ class App:
     def notes(self) -> list[str]:
         """What a person should know of this start, a line each."""
         notes = list(self._link.notes) if self._link else []
-        notes.append(f"MQTT broker: {self._broker.address}")
+        if self.model.has_boards:
+            notes.append(f"MQTT broker: {self._broker.address}")
         if self._web is not None:
             notes += self._web.notes
         return notes
@@ -91,10 +102,18 @@ class App:
     @property
     def log_file(self) -> Path:
         """Where details go that are too much for a terminal."""
-        return self._state.path / "arboleda.log"
+        return self._state.path / self._log_name
+
+    @property
+    def log_outputs(self) -> list[Output]:
+        """Where else than to terminal and file the log goes."""
+        return [self._link.log] if self._link else []
 
     def start(self) -> None:
         """Start every part in order; where one cannot, nothing is left running."""
+        # A full collection would look at every library again: 50 ms in which no thread of Python runs.
+        gc.collect()
+        gc.freeze()
         try:
             for part in self._parts:
                 self._started.append(part)
@@ -123,6 +142,7 @@ class App:
         """Halt the robots, then end the parts in reverse order; idempotent."""
         while self._started:
             self._started.pop().stop()
+        gc.unfreeze()
         self._let_go()
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
@@ -166,7 +186,8 @@ class App:
             past_acts=lambda: self._past_acts,
         )
         mount = page.mounting(sources) if options.page else None
-        return WebPart(self, self._state.path, self._state.announce, options.web, mount)
+        most = self._shares.http
+        return WebPart(self, self._state.path, self._state.announce, options.web, mount, connections=most)
 
     @property
     def _plant(self) -> Orchestrator:
@@ -182,7 +203,7 @@ class App:
             bridge = self._bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
             self._parts.append(bridge)
         if virtual:
-            self._parts += self._boards(now, bridge, scout=scout, linux="linux" in parts)
+            self._parts += self._boards(now, bridge, scout=scout)
         if "orchestrator" in parts:
             epoch = self._state.next_epoch(now)
             self.orchestrator = Orchestrator(self.model, epoch, self._crash, self._store)
@@ -192,16 +213,16 @@ class App:
             self._parts.append(self._web)
         self._join(bridge, self._link)
 
-    def _boards(self, first_boot: int, bridge: BridgePart | None, *, scout: bool, linux: bool) -> list[Part]:
-        """The boards that play the real ones, those of the firmware where `linux` asks for them."""
-        robots = on_linux(self.model) if linux else ()
-        firmware = [LinuxBoards(self.model, robots, self._broker, self._crash, scout=scout)] if linux else []
+    def _boards(self, first_boot: int, bridge: BridgePart | None, *, scout: bool) -> list[Part]:
+        """The boards that play the real ones: the firmware's where wanted and possible, else virtual."""
+        robots = on_linux(self.model) if self._firmware else ()
+        compiled = [LinuxBoards(self.model, robots, self._broker, self._crash, scout=scout)] if robots else []
         joined = bridge.join if bridge is not None and scout else _nothing
         elsewhere = [robot.name for robot in robots]
         virtual = DevicesPart(
             self.model, first_boot, self._broker, self._crash, scout=scout, joined=joined, elsewhere=elsewhere
         )
-        return [virtual, *firmware]
+        return [virtual, *compiled]
 
     def _let_go(self) -> None:
         """Give back what only one process may have; idempotent."""
@@ -212,16 +233,17 @@ class App:
         """Join plant and bridge: over ROS 2 where there is a link, else directly."""
         plant = self.orchestrator
         if link is None:
-            if plant is not None and bridge is not None:
+            if plant is not None:
                 _refuse_ros_robots(self.model)
+            if plant is not None and bridge is not None:
                 plant.connect(bridge)
                 bridge.connect(plant.hear)
             return
         if bridge is not None:
-            port = link.bridge(self.model, bridge.loop.post, time.monotonic)
-            bridge.connect(port.send, port.mqtt_link)
+            port = link.bridge(self.model, bridge.loop.post, clock.seconds)
+            bridge.connect(port.send, port.mqtt_link, port.tell)
         if plant is not None:
-            plant.connect_ros(link.orchestrator(self.model, plant.hear, time.monotonic))
+            plant.connect_ros(link.orchestrator(self.model, plant.hear, clock.seconds))
         self._parts.insert(1, RosPart(link))
 
     def _crash(self, name: str, error: BaseException) -> None:
@@ -247,7 +269,9 @@ class RosPart:
 
 
 def build(model: PlantModel, parts: Collection[str], options: Options) -> App:
-    """A plant of the named PARTS; StartError where they cannot be put together."""
+    """A plant of the named PARTS; StartError where there is no such part or they cannot be put together."""
+    if unknown := sorted(set(parts) - set(PARTS)):
+        raise StartError(f"there is no part {', '.join(unknown)}; there are {', '.join(PARTS)}")
     return App(model, parts, options)
 
 

@@ -14,13 +14,14 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda import __version__
-from arboleda.adapters.web.names import is_loopback, public_origin
+from arboleda.adapters.web.names import listen_address, public_origin
 from arboleda.core import text
-from arboleda.core.errors import ArboledaError, ConfigError, StartError, TextError
+from arboleda.core.errors import ArboledaError, ConfigError, QueueFull, StartError, TextError
 from arboleda.core.model import PlantModel
+from arboleda.core.outside import plain
 
 from . import bench_command, config, session, token_command, tree_command, verbs
-from .build import PARTS, Options, build
+from .build import OF_BOARDS, PARTS, Options, build
 from .client import Refused
 from .conformance import command as conformance
 from .parts.broker import PASSWORD, USER, address, login
@@ -32,6 +33,7 @@ from .web_options import WebOptions
 from .where import PlantFile, StateFolder, client
 
 FAILED, BAD_INPUT = 1, 2
+LONGEST = 1000  # characters of a line on the terminal
 
 cli = typer.Typer(
     help="Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2.",
@@ -56,8 +58,7 @@ def _broker(value: str | None) -> str | None:
 
 
 def _host(value: str) -> str:
-    _or_bad_parameter(is_loopback, value)
-    return value
+    return str(_or_bad_parameter(listen_address, value))
 
 
 def _public_url(value: str | None) -> str | None:
@@ -196,7 +197,7 @@ def submit(
     """Send a task to the plant that runs on this machine. Exit status: 0 accepted, 2 refused."""
     answer = client(plant, state).submit(task)
     sentence = f"  {answer['sentence']}" if answer["sentence"] else ""
-    print(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}")
+    print(plain(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}", LONGEST))
 
 
 @cli.command()
@@ -321,9 +322,10 @@ def _run(
         raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
-    left_out |= {"linux"} if boards is not Boards.LINUX else set()
+    left_out |= set() if model.has_boards else OF_BOARDS
     link = session.ros_link(lan=lan) if ros else None
-    app = build(model, set(PARTS) - left_out, replace(options, link=link, page=stay))
+    options = replace(options, link=link, page=stay, firmware=boards is Boards.LINUX)
+    app = build(model, set(PARTS) - left_out, options)
     raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
 
 
@@ -331,7 +333,7 @@ def main() -> None:
     """The entry point: whatever goes wrong is one sentence on standard error."""
     try:
         cli()
-    except (ConfigError, TextError, Refused) as error:
+    except (ConfigError, TextError, QueueFull, Refused) as error:
         _complain(error)
         sys.exit(BAD_INPUT)
     except ArboledaError as error:
@@ -340,4 +342,5 @@ def main() -> None:
 
 
 def _complain(error: ArboledaError) -> None:
-    Console(stderr=True, highlight=False).print(Text(f"arboleda: {error}", style="red"), soft_wrap=True)
+    lines = "\n".join(plain(line, LONGEST) for line in f"arboleda: {error}".splitlines())
+    Console(stderr=True, highlight=False).print(Text(lines, style="red"), soft_wrap=True)

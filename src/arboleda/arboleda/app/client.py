@@ -22,7 +22,7 @@ class Refused(ArboledaError):
     """The plant does not do now what an operator asks for; the sentence says why."""
 
 
-ERRORS = {409: Refused, 422: TextError, 503: QueueFull}
+ERRORS = {409: Refused, 422: TextError}
 
 
 class PlantClient:
@@ -56,11 +56,10 @@ class PlantClient:
             raise ArboledaError(
                 f"The plant on {self._state} (process {running.pid}) is still starting or ending."
             )
-        host = running.guarded_at or "127.0.0.1"
         try:
             # No proxy of the environment stands between two processes of one machine.
             with httpx.Client(trust_env=False, timeout=TIMEOUT_S, headers=self._login(running)) as client:
-                answer = client.request(method, f"http://{host}:{running.port}{path}", json=body)
+                answer = client.request(method, f"{running.url}{path}", json=body)
                 said, sentence = answer.json(), ""
                 if not answer.is_success:
                     sentence = said["sentence"]
@@ -70,10 +69,12 @@ class PlantClient:
             ) from error
         if answer.is_success:
             return said
+        if answer.status_code == 503 and "retry-after" in answer.headers:
+            raise QueueFull(sentence)
         raise ERRORS.get(answer.status_code, ArboledaError)(sentence)
 
     def _login(self, running: Running) -> dict[str, str]:
         """The operator's token where the plant wants one: whoever may read it may operate."""
-        if not running.guarded_at:
+        if not running.guarded:
             return {}
         return {"authorization": f"Bearer {tokens.TokenFile(self._state)()[Role.OPERATOR]}"}

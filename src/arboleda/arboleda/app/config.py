@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, PlantModel, Retry, Timing
+from arboleda.core.model import Cell, ForeignCommands, PlantModel, Retry, Timing
 
+from . import user_file
 from .plant_file import rack
 from .plant_file.document import Document, Place, shown
 from .plant_file.names import check_names
-from .plant_file.paths import paths
+from .plant_file.paths import check_nodes_show, paths
 from .plant_file.poses import PoseReader
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
@@ -27,9 +28,13 @@ MQTT_PROTOCOL = {"3.1.1": 4, "5": 5}  # paho's numbers
 def load(path: Path | None = None) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem."""
     if path is None:
-        document = Document("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
-    else:
-        document = Document(str(path), _bytes(path))
+        return parse("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
+    return parse(str(path), user_file.read_bytes(path, LARGEST))
+
+
+def parse(name: str, content: bytes) -> PlantModel:
+    """The same for the content of a file that problems call `name`."""
+    document = Document(name, content)
     plant = _plant(document)
     document.finish()
     if plant is None:
@@ -49,10 +54,7 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 
 def broker_users(path: Path) -> dict[str, str]:
     """Passwords by user from lines `NAME:PASSWORD`; ConfigError with every problem, never with a password."""
-    try:
-        lines = _bytes(path).decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise ConfigError((f"{path}: is not UTF-8 text; save it as UTF-8",)) from None
+    lines = user_file.read_text(path, LARGEST).splitlines()
     users: dict[str, str] = {}
     problems = []
     for number, line in enumerate(lines, start=1):
@@ -69,22 +71,6 @@ def broker_users(path: Path) -> dict[str, str]:
     if problems:
         raise ConfigError(tuple(problems))
     return users
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        if path.is_dir():
-            raise ConfigError((f"{path}: is a directory; a file is wanted",))
-        if path.exists() and not path.is_file():
-            raise ConfigError((f"{path}: is not a regular file",))
-        with path.open("rb") as file:
-            return file.read(LARGEST + 1)
-    except FileNotFoundError:
-        raise ConfigError((f"{path}: there is no such file",)) from None
-    except ValueError:
-        raise ConfigError((f"{str(path)!a}: is not the name of a file",)) from None
-    except OSError as error:
-        raise ConfigError((f"{path}: cannot be read: {error.strerror}",)) from None
 
 
 def _plant(document: Document) -> PlantModel | None:
@@ -104,6 +90,7 @@ def _plant(document: Document) -> PlantModel | None:
         timing=Timing(**timing.model_dump()),
         mqtt_version=MQTT_PROTOCOL[shape.mqtt_version],
         zones=tuple(region.name for region in regions),
+        foreign_commands=ForeignCommands(shape.foreign_commands),
     )
 
 
@@ -114,6 +101,10 @@ def _timing(document: Document) -> TimingShape | None:
     if shape and shape.piece_debounce_s >= shape.piece_wait_s:
         rule = f"must be less than piece_wait_s, which is {shape.piece_wait_s:g}"
         document.problem(("timing", "piece_debounce_s"), f"{rule}; is {shape.piece_debounce_s:g}")
+    if shape and shape.effector_settle_s > shape.effector_timeout_s:
+        rule = f"must be at most effector_timeout_s, which is {shape.effector_timeout_s:g}"
+        why = "else an effector that reports nothing is given up before it counts as switched"
+        document.problem(("timing", "effector_settle_s"), f"{rule}, {why}; is {shape.effector_settle_s:g}")
     return shape
 
 
@@ -126,6 +117,8 @@ def _cell(document: Document, name: str) -> Cell | None:
     routes = paths(document, _section(document, place, "paths"))
     poses = _poses(document, place, kind)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
+    if the_mobile and routes:
+        check_nodes_show(document, (*place, "mobile"), routes, the_mobile)
     if not (shape and retry and the_arm and the_mobile and routes and poses):
         return None
     return Cell(

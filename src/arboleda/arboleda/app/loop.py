@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 import math
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, Protocol, TypeVar
+
+from arboleda.adapters.clock import seconds
 
 log = logging.getLogger(__name__)
 
@@ -51,7 +52,7 @@ class Loop(Generic[Event, Message]):
         machine: Machine[Event, Message],
         send: Callable[[Any], None],
         *,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = seconds,
         on_crash: Callable[[str, BaseException], None] = log_crash,
         on_send_error: Callable[[Any, Exception], None] = log_send_error,
         on_step: Callable[[float, Sequence[Any], Sequence[Any]], None] | None = None,

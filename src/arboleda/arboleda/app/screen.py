@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import math
+import os
+import stat
+import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -14,8 +19,12 @@ from rich.text import Text
 
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
+from arboleda.core.outside import plain
 
 REFRESH_HZ = 5
+LONGEST = 1000  # characters of one text
+OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
+STATE_WIDTH = 9  # letters of a task's state at the beginning of its line
 STYLES = {
     TaskState.QUEUED: "dim",
     TaskState.RUNNING: "cyan",
@@ -27,10 +36,12 @@ STYLES = {
 
 
 class Screen:
-    """Shows `snapshot()` while the `with` block runs, and every change of a task."""
+    """Shows `snapshot()` while the `with` block runs, and what is logged."""
 
-    def __init__(self, console: Console, snapshot: Callable[[], dict[str, Any]]) -> None:
+    def __init__(self, console: Console, snapshot: Callable[[], dict[str, Any]], log_file: Path) -> None:
         self.console = console
+        self._log_file = log_file
+        self._full = False
         self._live = Live(
             console=console,
             get_renderable=lambda: table(snapshot()),
@@ -48,36 +59,73 @@ class Screen:
         if self.console.is_terminal:
             self._live.stop()
 
-    def changed(self, change: TaskChanged) -> None:
-        """One line for one change of a task."""
-        line = Text(f"{change.state.value:<9} ", style=STYLES[change.state])
-        line.append(f"{change.text}", style="bold")
-        if change.sentence:
-            line.append(f"  {change.sentence}" + (f" ({change.reason.value})" if change.reason else ""))
+    def say(self, line: Text, at: float) -> None:
+        """Print a line of the log, of `at` in s since 1970; the time is said where no person looks on."""
+        if self._is_full():
+            return
+        if not self.console.is_terminal:
+            line = Text(time.strftime("%Y-%m-%d %H:%M:%S ", time.localtime(at))) + line
         self.console.print(line)
 
-    def stepped(self, snapshot: dict[str, Any]) -> None:
+    def _is_full(self) -> bool:
+        """Whether the output is a file that nobody cuts; a service may run for years. Said once."""
+        before, self._full = self._full, _size(self.console) >= OUTPUT_BYTES
+        if self._full and not before:
+            grown = f"this file has {OUTPUT_BYTES // 1_000_000} MB and gets no more lines"
+            self.console.print(Text(f"{grown}; they go on in {self._log_file}"))
+        return self._full
+
+    def stepped(self, snapshot: dict[str, Any], at: float) -> None:
         """Without a terminal the table's place is taken by one line per step of a tree."""
         if self.console.is_terminal:
             return
         for cell in snapshot["cells"]:
             if cell["step"] != self._steps.get(cell["name"]) and cell["step"] is not None:
-                self.console.print(Text(f"  {cell['name']}: {cell['step']}"))
+                self.say(_words(f"  {cell['name']}: {cell['step']}"), at)
             self._steps[cell["name"]] = cell["step"]
+
+
+def logged(line: logging.LogRecord) -> Text:
+    """A line of the log in its colours; the change of a task has those of its state."""
+    change = getattr(line, "change", None)
+    if change is None:
+        style = "dim" if line.levelno < logging.WARNING else "yellow"
+        return Text(line.getMessage(), style="red" if line.levelno >= logging.ERROR else style)
+    text = Text(line.getMessage())
+    text.stylize(STYLES[change.state], 0, STATE_WIDTH)
+    text.stylize("bold", STATE_WIDTH + 1, STATE_WIDTH + 1 + len(change.text))
+    return text
 
 
 def table(snapshot: dict[str, Any]) -> Group:
     """A row per cell: task, step, arm joints, mobile node, time; then the zones and what is in the way."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     drawn = Table(
-        title=f"plant {snapshot['plant']}", title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0)
+        title=_words(f"plant {snapshot['plant']}", "italic"),
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
     )
     for heading in ("cell", "task", "step", "arm, effector", "mobile", "elapsed"):
         drawn.add_column(heading, no_wrap=True)
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
-    return Group(drawn, *zones, *(Text(line, style="yellow") for line in _in_the_way(snapshot)))
+    return Group(drawn, *zones, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
+
+
+def _words(text: str, style: str = "") -> Text:
+    """Text of a snapshot, which may be that of another program: no markup, and nothing a terminal obeys."""
+    return Text(plain(text, LONGEST), style=style)
+
+
+def _size(console: Console) -> int:
+    """Bytes of the regular file that the console writes to; 0 where it is none."""
+    try:
+        status = os.fstat(console.file.fileno())
+    except (OSError, ValueError):  # closed, or no file at all
+        return 0
+    return status.st_size if stat.S_ISREG(status.st_mode) else 0
 
 
 def _zones(zones: list[dict[str, Any]]) -> Table:
@@ -88,7 +136,7 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
     for each in zones:
         style = {"free": "dim", "quarantined": "red"}.get(each["state"], "")
         words = (each["zone"], each["state"], each["robot"] or "", ", ".join(each["waiting"]))
-        drawn.add_row(*(Text(word, style=style) for word in words))
+        drawn.add_row(*(_words(word, style) for word in words))
     return drawn
 
 
@@ -98,7 +146,7 @@ def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> l
     queued = f" +{len(cell['queue'])}" if cell["queue"] else ""
     words = (cell["name"], (task["text"] if task else cell["state"]) + queued, cell["step"] or "")
     return [
-        *(Text(word, style=style) for word in words),
+        *(_words(word, style) for word in words),
         _of(arm, f"{joints(arm)}, {effector(arm)}"),
         _of(mobile, "?" if mobile["node"] is None else f"node {mobile['node']}"),
         Text(f"{task['elapsed_s']:.1f} s" if task else "", style=style),
@@ -158,5 +206,5 @@ def summary(results: dict[str, TaskChanged], seconds: dict[str, float]) -> Table
     for task, change in results.items():
         took = f"{seconds[task]:.1f} s" if task in seconds else ""
         outcome = Text(change.state.value, style=STYLES[change.state])
-        drawn.add_row(Text(change.text), outcome, took, Text(change.sentence))
+        drawn.add_row(_words(change.text), outcome, took, _words(change.sentence))
     return drawn

@@ -6,12 +6,11 @@ import logging
 import shutil
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from importlib.metadata import entry_points
-from logging.handlers import RotatingFileHandler
-from pathlib import Path
 from queue import SimpleQueue
 from types import FrameType
 from typing import Any
@@ -23,14 +22,14 @@ from arboleda.core.errors import StartError
 
 from .build import App
 from .errand import Errand
-from .parts.orchestrator import TASKS
-from .screen import Screen, parting, summary
+from .log_file import LogFile
+from .log_queue import LogQueue, log_to
+from .screen import Screen, logged, parting, summary
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
     "source a ROS 2 installation, or start with --no-ros"
 )
-LOG_BYTES = 1_000_000
 
 
 def ros_link(*, lan: bool) -> Any:
@@ -54,17 +53,17 @@ class Session:
         self._console = console
         self._stay = stay
         self._news: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-        self._errand = Errand(texts, lambda: self._news.put(self._finished))
-        self._screen = Screen(console, app.snapshot)
+        self._errand = Errand(texts, lambda: self._log.then(lambda: self._news.put(self._finished)))
+        self._screen = Screen(console, app.snapshot, app.log_file)
         self._stopping = False
 
     def run(self) -> int:
         """Run the plant, without `stay` until the tasks ended; 0, or 1 where one was not done."""
-        self._app.listen(lambda change: self._later(self._screen.changed, change), self._errand.changed)
-        self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot))
+        self._app.listen(self._errand.changed)
+        self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot, time.time()))
         self._app.watch(self._errand.seen)
         self._app.when_over(lambda: self._news.put(None))
-        with _interruptible(), _logging(self._say, self._app.log_file):
+        with _interruptible(), self._logging() as self._log:
             self._start()
             try:
                 self._errand.start(self._app.submit)
@@ -75,11 +74,23 @@ class Session:
                 self._stop()
         return 0 if self._stay or self._errand.ok else 1
 
-    def _later(self, show: Callable[[Any], None], what: Any) -> None:
-        self._news.put(partial(show, what))
+    @contextmanager
+    def _logging(self) -> Iterator[LogQueue]:
+        """What matters to the terminal; details, tracebacks among them, to a file for whoever has to look."""
+        tell = partial(self._later, self._console.print)
+        details = LogFile(self._app.log_file, tell)
+        try:
+            with log_to(details.handle, self._say, *self._app.log_outputs) as queue:
+                yield queue
+        finally:
+            details.close()
 
-    def _say(self, line: str, style: str = "") -> None:
-        self._later(self._console.print, Text(line, style=style))
+    def _say(self, line: logging.LogRecord) -> None:
+        if line.levelno >= logging.INFO:
+            self._later(self._screen.say, logged(line), line.created)
+
+    def _later(self, show: Callable[..., None], *what: Any) -> None:
+        self._news.put(partial(show, *what))
 
     def _show(self) -> None:
         for news in iter(self._news.get, None):
@@ -106,6 +117,7 @@ class Session:
         self._stopping = True
         self._console.print(Text("stopping: whatever moves is halted ...", style="dim"))
         self._app.stop()
+        self._log.flush()
         self._news.put(None)
         self._show()
         for line in parting(self._app.snapshot()):
@@ -132,35 +144,3 @@ def _interruptible() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-class _Teller(logging.Handler):
-    """Has every log line said."""
-
-    def __init__(self, say: Callable[[str, str], None]) -> None:
-        super().__init__(logging.INFO)
-        self._say = say
-
-    def emit(self, record: logging.LogRecord) -> None:
-        if record.name == TASKS.name:  # the screen says these itself
-            return
-        style = "dim" if record.levelno < logging.WARNING else "yellow"
-        self._say(record.getMessage(), "red" if record.levelno >= logging.ERROR else style)
-
-
-@contextmanager
-def _logging(say: Callable[[str, str], None], file: Path) -> Iterator[None]:
-    """What matters to the terminal; details, tracebacks among them, to a file for whoever has to look."""
-    details = RotatingFileHandler(file, maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8", delay=True)
-    details.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
-    handlers = (details, _Teller(say))
-    log = logging.getLogger("arboleda")
-    log.setLevel(logging.DEBUG)
-    for handler in handlers:
-        log.addHandler(handler)
-    try:
-        yield
-    finally:
-        for handler in handlers:
-            log.removeHandler(handler)
-            handler.close()

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import json
 import os
+import re
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
-from arboleda.core.errors import StartError
+from arboleda.core.errors import ConfigError, StartError
+
+from .user_file import read_bytes
 
 LOCK = "plant.lock"
 FACTS = "plant.json"
 EPOCH = "epoch"
+EPOCH_SAID, EPOCH_BYTES = re.compile(rb"[0-9]{1,10}\s*"), 64
+UINT32 = 2**32 - 1  # the highest epoch that a board takes
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
 
 
@@ -27,13 +36,18 @@ def default_state(plant: str) -> Path:
 
 @dataclass(frozen=True, kw_only=True)
 class Running:
-    """Who runs the plant; `port` is that of its HTTP API, None until it listens. `guarded_at` is the host
-    where it wants a token, "" where it listens to this machine only and wants none."""
+    """Who runs the plant, and where this machine reaches its HTTP API: `port` is None until it listens,
+    `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody."""
 
     pid: int
     started: str
     port: int | None = None
-    guarded_at: str = ""
+    host: str = "127.0.0.1"
+    guarded: bool = False
+
+    @property
+    def url(self) -> str:
+        return f"http://{self.host}:{self.port}"
 
 
 class StateDir:
@@ -48,33 +62,50 @@ class StateDir:
 
     def open(self) -> None:
         """Take the directory; StartError says who holds it, or why it cannot be used."""
-        try:
+        with self._explained():
             self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
             lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT, 0o600)
-        except OSError as error:
-            raise StartError(f"The state directory {self.path} cannot be used: {error.strerror}.") from error
         if not take(lock):
             os.close(lock)
             raise StartError(
                 f"{holder(self.path)} Stop it first, or give this plant its own --state directory."
             )
         self._lock = lock
-        (self.path / FACTS).unlink(missing_ok=True)
-        os.ftruncate(lock, 0)
-        os.pwrite(lock, json.dumps(asdict(self._running)).encode(), 0)
+        try:
+            with self._explained():
+                (self.path / FACTS).unlink(missing_ok=True)
+                os.ftruncate(lock, 0)
+                os.pwrite(lock, json.dumps(asdict(self._running)).encode(), 0)
+        except StartError:
+            self.close()
+            raise
 
     def next_epoch(self, unix_s: int) -> int:
-        """A number for this start, higher than that of any start before, though the clock was set back."""
-        file = self.path / EPOCH
-        last = int(file.read_text()) if file.exists() else 0
-        epoch = max(unix_s, last + 1)
-        replace_file(file, str(epoch))
+        """A number for this start, higher than that of any start before, though the clock was set back;
+        StartError where nobody knows what the last one was."""
+        epoch = max(unix_s, self._last_epoch() + 1)
+        with self._explained():
+            replace_file(self.path / EPOCH, str(epoch))
         return epoch
 
-    def announce(self, port: int, guarded_at: str = "") -> None:
-        """Say where the HTTP API listens, and whether it wants a token."""
-        known = replace(self._running, port=port, guarded_at=guarded_at)
-        replace_file(self.path / FACTS, json.dumps(asdict(known)))
+    def _last_epoch(self) -> int:
+        file = self.path / EPOCH
+        try:
+            said = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
+        except ConfigError:
+            said = b""
+        if not EPOCH_SAID.fullmatch(said) or int(said) >= UINT32:
+            raise StartError(
+                f"{file} does not say the number of the last start: delete it if this machine's clock is "
+                "right, or write a number into it that is higher than any before; robots obey no lower one."
+            )
+        return int(said)
+
+    def announce(self, port: int, *, host: str = "127.0.0.1", guarded: bool = False) -> None:
+        """Say where the HTTP API is reached (see `Running`), and whether it wants a token."""
+        known = replace(self._running, port=port, host=host, guarded=guarded)
+        with self._explained():
+            replace_file(self.path / FACTS, json.dumps(asdict(known)))
 
     def close(self) -> None:
         """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""
@@ -82,6 +113,16 @@ class StateDir:
             (self.path / FACTS).unlink(missing_ok=True)
             os.close(self._lock)
             self._lock = None
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        """Turn what the system raises into one sentence."""
+        try:
+            yield
+        except OSError as error:
+            advice = "; make room on the disk and start again" if error.errno in NO_ROOM else ""
+            sentence = f"The state directory {self.path} cannot be used: {error.strerror}{advice}."
+            raise StartError(sentence) from error
 
     def __enter__(self) -> StateDir:
         self.open()
@@ -92,11 +133,18 @@ class StateDir:
 
 
 def replace_file(file: Path, content: str) -> None:
-    """The file appears with all of its content, readable by its owner only."""
+    """The file appears with all of its content, readable by its owner only, also after a power cut; OSError,
+    and all is as before, where it cannot."""
     fresh = file.with_name(f".{file.name}.{os.getpid()}")
-    with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as opened:
-        opened.write(content)
-    os.replace(fresh, file)
+    try:
+        with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as opened:
+            opened.write(content)
+            opened.flush()
+            os.fsync(opened.fileno())
+        os.replace(fresh, file)
+    except OSError:
+        fresh.unlink(missing_ok=True)
+        raise
 
 
 def find_running(path: Path) -> Running | None:

@@ -7,8 +7,10 @@ from typing import Annotated
 import typer
 
 from arboleda.adapters.web.auth import Role
+from arboleda.core.errors import StartError
 
 from . import tokens
+from .state import LOCK
 from .where import PlantFile, StateFolder, folder
 
 New = Annotated[bool, typer.Option("--new", help="Make a new one first; the old one is void at once.")]
@@ -29,6 +31,8 @@ def token(
 ) -> None:
     """Show the token for viewers or operators of a plant that is open to a network (`up --host`)."""
     where = folder(plant, state)
+    if not (where / LOCK).exists():
+        raise StartError(f"No plant keeps its state in {where}; open one by `arboleda up --host ADDRESS`.")
     if new:
         tokens.renew(where, [role] if role else list(Role))
     known = tokens.read(where)

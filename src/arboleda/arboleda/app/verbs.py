@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from arboleda.core.messages import Verb
+from arboleda.core.outside import plain
 
 from .where import PlantFile, StateFolder, client
 
@@ -126,4 +127,4 @@ def _ask(
     verb: Verb, scope: str | None, plant: Path | None, state: Path | None, *, by_hand: bool = False
 ) -> None:
     client(plant, state).operate(verb, scope or "", by_hand=by_hand)
-    print(f"done: {WORDS[verb].label or verb.value}, {scope or 'the whole plant'}")
+    print(f"done: {WORDS[verb].label or verb.value}, {plain(scope or 'the whole plant')}")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.adapters.web.names import is_loopback
+from arboleda.adapters.web.names import LOCAL, is_loopback, listen_address, url_host
 
 
 @dataclass(frozen=True, kw_only=True)
 class WebOptions:
     """Where to listen; `port` None is 8080 or a free one. `public_url` is how a proxy is reached."""
 
-    host: str = "127.0.0.1"
+    host: str = LOCAL
     port: int | None = None
     public_url: str | None = None
 
@@ -21,7 +21,11 @@ class WebOptions:
         return not is_loopback(self.host) or self.public_url is not None
 
     @property
+    def address(self) -> str:
+        """The IP address to listen on; StartError for a host that is none."""
+        return listen_address(self.host)
+
+    @property
     def near(self) -> str:
         """The host part of a URL that reaches the server from this machine."""
-        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(self.host, self.host)
-        return f"[{host}]" if ":" in host else host
+        return url_host(self.address)

@@ -13,7 +13,7 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
+from arboleda.core.messages import Reason, TaskChanged, TaskState
 
 from ..asking import Asker
 from . import values
@@ -90,7 +90,7 @@ class ExecuteTaskAction:
         if goal.task is None:
             goal.cancelling = True
             return CancelResponse.ACCEPT
-        refusal = self._asker.refusal(Verb.CANCEL, goal.task)
+        refusal = self._asker.cancellation_refusal(goal.task)
         if refusal is not None:
             LOG.info("a client's cancel of #%s was refused: %s", goal.task, refusal)
         return CancelResponse.ACCEPT if refusal is None else CancelResponse.REJECT

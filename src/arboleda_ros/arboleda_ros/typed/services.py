@@ -10,6 +10,7 @@ from rclpy.node import Node
 
 from arboleda.core import view
 from arboleda.core.messages import TaskState, Verb
+from arboleda.core.outside import quoted
 
 from ..asking import Asker, NoAnswer
 from . import values
@@ -45,7 +46,7 @@ class Services:
     def _refusal(self, request: CellCommand.Request) -> str | None:
         verb = _VERBS.get(request.verb.strip().lower())
         if verb is None:
-            return f"{request.verb[:40]!a} is no verb; there are {', '.join(_VERBS)}"
+            return f"{quoted(request.verb)} is no verb; there are {', '.join(_VERBS)}"
         if request.by_hand and verb is not Verb.HOME:
             return f"by_hand is for home only, not for {verb.value}"
         return self._asker.refusal(verb, request.scope, by_hand=request.by_hand)

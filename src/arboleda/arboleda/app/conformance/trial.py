@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from uuid import uuid4
 
+from arboleda.adapters import clock
 from arboleda.adapters.mqtt import Address, Credentials, MqttClient, NotConnected
 from arboleda.core.errors import StartError
 from arboleda.core.model import Arm
@@ -35,7 +36,7 @@ class Trial:
         self._there = threading.Event()
         self._crashed: BaseException | None = None
         self._places: list[threading.Thread] = []
-        self.judge = Judge(arm, epoch=int(time.time()), now=time.monotonic())
+        self.judge = Judge(arm, epoch=int(time.time()), now=clock.seconds())
         self._loop: Loop[Delivery, Send | Jostle] = Loop(
             "conformance",
             self.judge,

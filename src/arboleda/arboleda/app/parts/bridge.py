@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import logging
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 from uuid import uuid4
 
+from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.core.messages import Command, Heartbeat, Notice, Report
 from arboleda.core.model import PlantModel
-from arboleda.wire.bridge import Bridge, FromPlant, Leaving
-from arboleda.wire.transport import Connection, Delivery, Publication
+from arboleda.wire.bridge import Bridge, Leaving, Message
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.rejections import ForeignCommand, Rejection
+from arboleda.wire.transport import Connection, Delivery
 
 from ..loop import Loop
+from ..seldom import Seldom
 from .part import BrokerAddress, Crash, not_sent
+
+LOG = logging.getLogger("arboleda.bridge")
 
 
 class BridgePart:
@@ -29,28 +35,35 @@ class BridgePart:
     ) -> None:
         self._broker = broker
         self._waits = waits
-        self._bridge = Bridge(model, epoch=epoch, now=time.monotonic())
+        self._bridge = Bridge(model, epoch=epoch, now=clock.seconds())
         self._version = model.mqtt_version
         self._client: MqttClient | None = None
         self._lock = threading.Lock()
         self._ended = False
         self._report: Callable[[Report], None] = lambda report: None
         self._tell_link: Callable[[bool, str], None] = _nobody
+        self._tell: Callable[[Rejection | ForeignCommand], None] = lambda news: None
+        self._seldom = Seldom()
         self.loop: Loop[Any, Any] = Loop(
             "bridge", self._bridge, self._send, on_crash=crash, on_send_error=not_sent
         )
 
     def connect(
-        self, report: Callable[[Report], None], tell_link: Callable[[bool, str], None] | None = None
+        self,
+        report: Callable[[Report], None],
+        tell_link: Callable[[bool, str], None] | None = None,
+        tell: Callable[[Rejection | ForeignCommand], None] | None = None,
     ) -> None:
-        """Who gets the reports, and who is told whether the broker is reached, and its address."""
+        """Who gets the reports; who is told whether the broker is reached, and its address; and who is told
+        of refused commands and of those of others."""
         self._report = report
         self._tell_link = tell_link or _nobody
+        self._tell = tell or self._tell
 
     def send(self, message: Command | Notice) -> None:
         """The plant's port where plant and bridge share a process."""
         if isinstance(message, Command | Heartbeat):
-            self.loop.post(FromPlant(at=time.monotonic(), message=message))
+            self.loop.post(FromPlant(at=clock.seconds(), message=message))
 
     def start(self) -> None:
         self.loop.start()
@@ -87,7 +100,7 @@ class BridgePart:
 
     def stop(self) -> None:
         """Halt what still moves, then leave; the plant may be another process that has ended already."""
-        self.loop.post(Leaving(at=time.monotonic()))
+        self.loop.post(Leaving(at=clock.seconds()))
         self.loop.stop()
         with self._lock:
             self._ended = True
@@ -99,9 +112,13 @@ class BridgePart:
             self._tell_link(event.up, str(self._broker.address))
         self.loop.post(event)
 
-    def _send(self, message: Publication | Report) -> None:
+    def _send(self, message: Message) -> None:
         if isinstance(message, Report):
             self._report(message)
+        elif isinstance(message, Rejection | ForeignCommand):
+            if self._seldom.is_due(message.sentence, message.at):
+                LOG.warning(message.sentence)
+            self._tell(message)
         elif self._client is not None:
             self._client.publish(message)
 

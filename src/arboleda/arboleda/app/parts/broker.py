@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
 
+from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.mqtt import Address, Credentials
 from arboleda.core.errors import StartError
-
-if TYPE_CHECKING:  # its library is needed only where this broker starts
-    from arboleda.adapters.broker import EmbeddedBroker
 
 MQTT_PORT = 1883
 USER, PASSWORD = "ARBOLEDA_MQTT_USER", "ARBOLEDA_MQTT_PASSWORD"  # anybody can read a command line
@@ -59,8 +56,6 @@ class OwnBroker:
             self._broker.stop()
 
     def _listen(self, port: int) -> None:
-        from arboleda.adapters.broker import EmbeddedBroker
-
         host = self.address.host
         broker = EmbeddedBroker(host, port, users=self._users, boards=self._boards)
         self.address = broker.start()

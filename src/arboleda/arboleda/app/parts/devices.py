@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from dataclasses import replace
 from itertools import count
 from typing import Any
 
+from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.core.model import PlantModel
 from arboleda.sim.devices import Devices, FromBoard, ToBoard
@@ -45,7 +45,7 @@ class DevicesPart:
         self._scout = scout
         self._version = model.mqtt_version
         boot_ids = count(first_boot).__next__
-        self._devices = Devices(model, now=time.monotonic(), boot_ids=boot_ids, elsewhere=elsewhere)
+        self._devices = Devices(model, now=clock.seconds(), boot_ids=boot_ids, elsewhere=elsewhere)
         self._clients: dict[str, MqttClient] = {}
         self._lock = threading.Lock()
         self._lookout: Lookout | None = None

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from arboleda.core.errors import StartError
 from arboleda.core.model import Arm, Evidence, Link, PlantModel
+from arboleda.core.outside import plain, quoted
 from arboleda.wire.units import to_wire
 
 from .lookout import Lookout
@@ -110,13 +111,14 @@ class LinuxBoards:
         assert process.stderr is not None
         for line in process.stderr:
             said = line.strip()
-            LOG.debug("%s says: %s", robot.mqtt, said)
+            LOG.debug("%s says: %s", robot.mqtt, plain(said))
         process.stderr.close()
         with self._lock:
             stopping = self._stopping
         if not stopping:
             self._crash(
-                "linux boards", StartError(f"the board of {robot.name} has ended; it said last: {said!r}")
+                "linux boards",
+                StartError(f"the board of {robot.name} has ended; it said last: {quoted(said, 200)}"),
             )
 
 

@@ -5,17 +5,20 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from typing import Any, Protocol
 from uuid import uuid4
 
+from arboleda.adapters import clock
 from arboleda.adapters.store import Store
 from arboleda.core import twin_view, view
+from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import (
+    Absence,
     Command,
     Event,
-    Fact,
+    InternalError,
     Journal,
     Notice,
     OperatorAnswer,
@@ -35,10 +38,15 @@ from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 
 from ..loop import Loop
+from ..memory import remembered
 from .part import Crash
+from .slices import PAUSE_S, Slices
 from .urgency import Urgency
 
+LOG = logging.getLogger(__name__)
 TASKS = logging.getLogger("arboleda.tasks")
+REQUESTS = logging.getLogger("arboleda.requests")  # those that were refused
+OPERATORS = logging.getLogger("arboleda.operators")
 VIEW_S = 1.0
 # A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
 SETTLE_S = 0.01
@@ -60,8 +68,12 @@ class RosPort(PlantPort, Protocol):
     @property
     def diagnosed(self) -> bool: ...
     def check_alone(self) -> None: ...
-    def publish_view(self, view: dict[str, Any]) -> None: ...
-    def publish_diagnostics(self, statuses: Sequence[view.Diagnostic]) -> None: ...
+    def publish_view(self, view: dict[str, Any]) -> Iterator[None]: ...
+    def publish_diagnostics(self, statuses: Iterable[view.Diagnostic]) -> Iterator[None]: ...
+
+
+class TooLate(ArboledaError):
+    """A command was not sent: it is older than a robot's silence may be."""
 
 
 class Orchestrator:
@@ -72,8 +84,8 @@ class Orchestrator:
     """
 
     def __init__(self, model: PlantModel, epoch: int, crash: Crash, store: Store | None = None) -> None:
-        memory = {fact: store.facts(fact) for fact in Fact} if store is not None else {}
-        self.plant = Plant(model, epoch=epoch, now=time.monotonic(), memory=memory)
+        memory = remembered(store) if store is not None else {}
+        self.plant = Plant(model, epoch=epoch, now=clock.seconds(), memory=memory)
         self.loop: Loop[Any, Any] = Loop(
             "orchestrator",
             self.plant,
@@ -91,7 +103,9 @@ class Orchestrator:
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
         self._show_after = 0.0
+        self._blind = ""  # the defect for which screens saw nothing last
         self._show_at: float | None = None  # while there is a change that nobody was shown
+        self._showing: Slices[None] | None = None  # a snapshot that is being made and shown
         self._urgency = Urgency(self.plant)
         self._waiting: dict[str, Future[Any]] = {}
         self._at_rest = threading.Event()
@@ -115,29 +129,33 @@ class Orchestrator:
     def submit(self, text: str) -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state."""
         answer, token = self._expect()
-        self.loop.post(TaskRequest(at=time.monotonic(), text=text, request=token))
+        self.loop.post(TaskRequest(at=clock.seconds(), text=text, request=token))
         return answer
 
     def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
         """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
         answer, token = self._expect()
-        now = time.monotonic()
+        now = clock.seconds()
         self.loop.post(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
         return answer
 
     def snapshot(self) -> dict[str, Any]:
-        return self.loop.read(view.snapshot)
+        """A snapshot now, made in slices between which the plant is stepped; not in the plant's thread."""
+        slices = Slices(view.in_parts(self.plant))
+        while not self.loop.read(lambda _plant: slices.cut(clock.seconds())):
+            time.sleep(PAUSE_S)
+        return slices.result
 
     def positions(self) -> dict[str, Any]:
         """What moves; `now` is on the plant's clock."""
-        return {"now": time.monotonic(), **self.loop.read(twin_view.positions)}
+        return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self.loop.read(lambda plant: view.task_by_id(plant, task))
 
     def stop(self) -> None:
         """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
-        self.loop.post(Shutdown(at=time.monotonic()))
+        self.loop.post(Shutdown(at=clock.seconds()))
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
@@ -146,18 +164,36 @@ class Orchestrator:
         if isinstance(message, Remember | Journal):
             self._keep(message)
             return
+        if isinstance(message, InternalError):
+            _log_defect(message.cell or "plant", message.error)
+            return
+        if isinstance(message, Absence):
+            LOG.warning(
+                "the plant was away for %.1f s; what was at work is held, see `arboleda status`",
+                message.seconds,
+            )
+            return
         if self._amnesia is not None and isinstance(message, Command) and not _ends_motion(message):
             raise self._amnesia
         if isinstance(message, TaskChanged | OperatorAnswer):
+            _log(message)
             self._answer(message)
         if isinstance(message, TaskChanged):
-            _log(message)
             for listener in self.listeners:
                 listener(message)
         if self._port is not None:
+            self._refuse_late(message)
             self._port.send(message)
 
+    def _refuse_late(self, message: Command | Notice) -> None:
+        """A process that was stopped in the middle of a step must not send what was right before."""
+        late_s = clock.seconds() - self.plant.now
+        if late_s > self.plant.away_after_s and isinstance(message, Command) and not _ends_motion(message):
+            raise TooLate(f"the plant was away for {late_s:.1f} s before it could send this")
+
     def _keep(self, message: Remember | Journal) -> None:
+        if isinstance(message, Journal):
+            OPERATORS.info("%s", message.sentence)
         if self._store is None or self._amnesia is not None:
             return
         if isinstance(message, Remember):
@@ -185,7 +221,7 @@ class Orchestrator:
             self._amnesia = error
             self._crash("orchestrator", error)
         elif isinstance(message, Command):
-            event = Undelivered(at=time.monotonic(), id=message.id, robot=message.robot, sentence=str(error))
+            event = Undelivered(at=clock.seconds(), id=message.id, robot=message.robot, sentence=str(error))
             self.loop.post(event)
         else:
             raise error
@@ -193,6 +229,10 @@ class Orchestrator:
     def _stepped(self, now: float, _events: Sequence[Any], _messages: Sequence[Any]) -> None:
         if self.plant.intake.closed and self.plant.at_rest:
             self._at_rest.set()
+        if self._showing is not None:
+            self._show_on(now)
+        if self._showing is not None:
+            return
         version, shown_at = self._shown
         if version == self.plant.version and (now - shown_at < VIEW_S or not self._watched):
             return
@@ -210,20 +250,72 @@ class Orchestrator:
 
     def _show(self, now: float) -> None:
         self._shown, self._show_at = (self.plant.version, now), None
-        began = time.thread_time()
-        snapshot = view.snapshot(self.plant)
+        self._showing = Slices(self._publication())
+        self._show_on(now)
+
+    def _show_on(self, now: float) -> None:
+        """Go on with what is shown: one slice, and all that is left once the plant ends."""
+        assert self._showing is not None
+        if now < self._showing.due and not self.plant.intake.closed:
+            self.loop.wake_by(self._showing.due)
+            return
+        try:
+            while not self._showing.cut(now) and self.plant.intake.closed:
+                pass
+        except Exception as error:  # noqa: BLE001 - a screen that cannot be drawn must not end the plant
+            if repr(error) != self._blind:
+                _log_defect("the screens", error)
+            self._blind = repr(error)
+        if self._showing.over:
+            _, begun = self._shown
+            self._show_after = begun + self._showing.spent_s / SHARE
+            self._showing = None
+        else:
+            self.loop.wake_by(self._showing.due)
+
+    def _publication(self) -> Generator[None, None, None]:
+        """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
+        snapshot = yield from view.in_parts(self.plant)
         for watcher in self.watchers:
             watcher(snapshot)
+            yield
         if self._ros is not None:
-            self._ros.publish_view(snapshot)
+            yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
-                self._ros.publish_diagnostics(view.diagnostics(snapshot))
-        self._show_after = now + (time.thread_time() - began) / SHARE
+                yield from self._ros.publish_diagnostics(view.diagnostics(snapshot))
+        rows = [*snapshot["cells"], *snapshot["robots"], *snapshot["tasks"]]
+        del snapshot
+        while rows:  # to give back the memory of them all at once takes as long as some slices
+            rows.pop()
+            yield
 
 
-def _log(change: TaskChanged) -> None:
-    if change.state is TaskState.FAILED and change.reason is not None:
-        TASKS.info("%s failed: %s (%s)", change.text, change.sentence, change.reason.value)
+def _log_defect(where: str, error: Exception) -> None:
+    """One line for people; the whole error, with its traceback, for the log file."""
+    LOG.error("internal error in %s (%s: %s)", where, type(error).__name__, error)
+    LOG.debug("the error in %s, whole", where, exc_info=error)
+
+
+def task_line(change: TaskChanged) -> str:
+    """One line on a change of a task."""
+    why = f"  {change.sentence}" if change.sentence else ""
+    return f"{change.state.value:<9} {change.text}{why}" + (
+        f" ({change.reason.value})" if change.reason else ""
+    )
+
+
+def _log(message: TaskChanged | OperatorAnswer) -> None:
+    """A line for each change of a task, and for what is refused; `change` is for who shows it in colours."""
+    if isinstance(message, OperatorAnswer):
+        if message.refusal is not None:
+            OPERATORS.info(
+                "%s %s was refused: %s", message.verb.value, message.scope or "plant", message.refusal
+            )
+    elif message.state is TaskState.REFUSED:
+        REQUESTS.warning("%s", task_line(message), extra={"change": message})
+    else:
+        level = logging.WARNING if message.state is TaskState.FAILED else logging.INFO
+        TASKS.log(level, "%s", task_line(message), extra={"change": message})
 
 
 def _ends_motion(command: Command) -> bool:

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from fastapi import FastAPI
 
+from arboleda.adapters.web import limits
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door
 from arboleda.adapters.web.guard import Guard
@@ -18,6 +19,7 @@ from arboleda.adapters.web.names import is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
 from arboleda.adapters.web.server import DEFAULT_PORT, Server
 from arboleda.core import view
+from arboleda.core.errors import QueueFull
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 
 from .. import tokens
@@ -34,6 +36,12 @@ class Asked(Protocol):
     def find(self, task: str) -> dict[str, Any] | None: ...
     def submit(self, text: str) -> Future[TaskChanged]: ...
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
+
+
+class Announce(Protocol):
+    """Tells other processes of this machine where the server is reached."""
+
+    def __call__(self, port: int, *, host: str, guarded: bool) -> None: ...
 
 
 class Side:
@@ -78,9 +86,11 @@ class WebPart:
         self,
         plant: Asked,
         state: Path,
-        announce: Callable[[int, str], None],
+        announce: Announce,
         options: WebOptions,
         mount: Callable[[FastAPI, Side], None] | None = None,
+        *,
+        connections: int = limits.CONNECTIONS,
     ) -> None:
         self.side = Side(plant)
         self._options = options
@@ -88,12 +98,13 @@ class WebPart:
         self._announce = announce
         self._port = 0
         self._shows_page = mount is not None
-        app = make_app(self.side)
+        app = make_app(self.side, streams=limits.lasting(limits.STREAMS, connections))
         if mount is not None:
             mount(app, self.side)
         door = Door(tokens.TokenFile(state) if options.guarded else None)
-        guarded = Guard(app, names_for(options.host, options.public_url), door)
-        self._server = Server(guarded, host=options.host, port=options.port)
+        sockets = limits.lasting(limits.SOCKETS, connections)
+        guarded = Guard(app, names_for(options.address, options.public_url), door, sockets=sockets)
+        self._server = Server(guarded, host=options.address, port=options.port, connections=connections)
 
     @property
     def notes(self) -> list[str]:
@@ -114,7 +125,7 @@ class WebPart:
         if self._options.guarded:
             tokens.read(self._state)
         self._port = self._server.start()
-        self._announce(self._port, self._options.near if self._options.guarded else "")
+        self._announce(self._port, host=self._options.near, guarded=self._options.guarded)
 
     def stop(self) -> None:
         self._server.stop()
@@ -124,5 +135,7 @@ def _pass_on(answer: Future[TaskChanged], plain: Future[dict[str, Any]]) -> None
     error = answer.exception()
     if error is not None:
         plain.set_exception(error)
+    elif answer.result().for_now:
+        plain.set_exception(QueueFull(answer.result().sentence))
     else:
         plain.set_result(view.change(answer.result()))

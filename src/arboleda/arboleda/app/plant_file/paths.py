@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from itertools import pairwise
 
-from arboleda.core.model import Grid, Path, Placement
+from arboleda.core.belief import APART_S
+from arboleda.core.model import Evidence, Grid, Mobile, Path, Placement
 
 from .document import Document, Place, choice
 from .shapes import MAPPING, NODES
 
 GRID = Grid(origin=Placement(x=0.0, y=0.0), pitch=1.0)
+ROUNDING_S = 1e-6
 CODE = re.compile(r"[0-9A-Za-z]{2}", re.ASCII)
 
 
@@ -29,6 +32,19 @@ def paths(document: Document, place: Place) -> tuple[Path, ...]:
             )
         found.append(_path(document, (*place, key)))
     return tuple(path for path in found if path) if all(found) else ()
+
+
+def check_nodes_show(document: Document, place: Place, routes: Iterable[Path], mobile: Mobile) -> None:
+    """Keeps a problem at the mobile robot's `place` for a path whose end could be taken for a way past it."""
+    edge_s = mobile.grid.pitch / mobile.speed
+    if mobile.evidence is not Evidence.JOINTS or edge_s > APART_S - ROUNDING_S:
+        return
+    for path in routes:
+        if path.nodes[-1] in path.nodes[:-1]:
+            what = f"path {path.code} comes by its last node before its end, and an edge takes {edge_s:.3g} s"
+            why = f"with evidence: joints, an edge must take {APART_S:g} s for each node to be seen"
+            longer = f"{mobile.speed * APART_S * 1000:g}"
+            document.problem(place, f"{what}; {why}: a pitch_mm of {longer} or more, or a lower speed_mm_s")
 
 
 def _path(document: Document, place: Place) -> Path | None:

@@ -55,6 +55,7 @@ class PlantShape(Shape):
     cells: Annotated[dict[str, Any], Field(min_length=1)]
     timing: Any = None
     mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
+    foreign_commands: Literal["refuse", "obey"] = "refuse"
     paths: Any = None
     stations: Any = None
     palletizing: Any = None

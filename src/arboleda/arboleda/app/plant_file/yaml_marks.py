@@ -14,6 +14,8 @@ from typing import Any
 
 import yaml
 
+from arboleda.core.outside import plain
+
 LARGEST = 256 * 1024  # bytes of a file
 MOST_VALUES = 50_000  # values after aliases are followed
 DEEPEST = 20  # levels
@@ -78,8 +80,7 @@ def scalar(text: str) -> bool | int | float | str | None:
 
 def clipped(text: str) -> str:
     """`text` as a sentence can show it: one line, at most 40 characters."""
-    line = "".join(letter if letter.isprintable() else "?" for letter in text[:41])
-    return line if len(line) <= 40 else line[:37] + "..."
+    return plain(text, 40)
 
 
 def _text(raw: bytes) -> str:

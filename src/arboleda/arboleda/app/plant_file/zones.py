@@ -9,6 +9,7 @@ from typing import TypeVar
 from arboleda.core.model import Cell, Crossing, Pose
 from arboleda.core.zone_plan import plan_problems
 
+from .alike import confusions, with_alike_crossings
 from .document import Document, Place, nearest, shown
 from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
 
@@ -31,6 +32,14 @@ class Zone:
     name: str
     poses: dict[Spot, int]
     moves: dict[frozenset[Spot], int]
+
+    def place(self, *spots: Spot) -> Place:
+        """Where the file names this pose, or the move between these two; it may not name that itself."""
+        if len(spots) > 1:
+            place: Place = (*SECTION, self.name, "moves")
+            number = self.moves.get(frozenset(spots))
+            return place if number is None else (*place, number)
+        return (*SECTION, self.name, "poses", self.poses[spots[0]])
 
 
 def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
@@ -62,8 +71,16 @@ def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cel
         palletizing=palletizing,
         crossings=_crossings(cell, all_zones),
     )
-    for pose, sentence in plan_problems(zoned).items():
-        document.problem(_place_of(Spot(cell=cell.name, pose=pose), all_zones), sentence)
+    zoned = with_alike_crossings(zoned) if zoned.zones else zoned
+    unplanned = plan_problems(zoned)
+    for pose, sentence in unplanned.items():
+        spot = Spot(cell=cell.name, pose=pose)
+        zone = next(zone for zone in all_zones if spot in zone.poses)
+        document.problem(zone.place(spot), sentence)
+    for found in confusions(zoned) if zoned.zones and not unplanned else ():
+        zone = next(zone for zone in all_zones if zone.name == found.zone)
+        spots = [Spot(cell=cell.name, pose=name) for name in found.named]
+        document.problem(zone.place(*spots), f"cell {cell.name}: {found.sentence}")
     return zoned
 
 
@@ -152,9 +169,3 @@ def _crossings(cell: Cell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:
             if all(end.cell == cell.name for end in move):
                 crossed.setdefault(tuple(sorted(end.pose for end in move)), set()).add(zone.name)
     return tuple(Crossing(a=a, b=b, zones=frozenset(names)) for (a, b), names in crossed.items())
-
-
-def _place_of(spot: Spot, all_zones: Sequence[Zone]) -> Place:
-    """Where the file puts this spot into a zone."""
-    zone = next(zone for zone in all_zones if spot in zone.poses)
-    return (*SECTION, zone.name, "poses", zone.poses[spot])

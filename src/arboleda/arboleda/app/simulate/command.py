@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from arboleda.core.errors import ConfigError
 from arboleda.simulator.climate import LEVELS
 
+from ..user_file import check_writable
 from . import one, screen
 from .many import Many
 from .request import CYCLES, LEVEL, SEED, SEEDS, Request
@@ -21,6 +21,7 @@ HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, a
 \b
 arboleda simulate                            {SEEDS} seeds on two plants
 arboleda simulate --plant my_plant.yaml      your plant
+arboleda simulate --drawn-plants             a plant of its own for each seed
 arboleda simulate --until-failure            seed after seed until something breaks
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
 arboleda simulate --seeds 500 --json out.json
@@ -34,6 +35,10 @@ Plant = Annotated[
         metavar="FILE",
         help="Plant file. [default: odd seeds the shipped plant, even seeds one with shared zones]",
     ),
+]
+DrawnPlants = Annotated[
+    bool,
+    typer.Option("--drawn-plants", help="Draw a plant file from each seed, any that `arboleda check` takes."),
 ]
 Seed = Annotated[int | None, typer.Option(metavar="N", min=0, help=f"The first seed. [default: {SEED}]")]
 Seeds = Annotated[
@@ -77,6 +82,7 @@ def add_to(cli: typer.Typer) -> None:
 
 def simulate(
     plant: Plant = None,
+    drawn_plants: DrawnPlants = False,
     seed: Seed = None,
     seeds: Seeds = None,
     cycles: Cycles = CYCLES,
@@ -90,8 +96,11 @@ def simulate(
     alone = trace or record is not None
     if alone and ((seeds or 1) > 1 or until_failure):
         raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
+    if drawn_plants and plant is not None:
+        raise typer.BadParameter("--drawn-plants and --plant exclude each other")
     request = Request(
         plant=plant,
+        drawn_plants=drawn_plants,
         seed=seed,
         seeds=1 if alone else seeds,
         cycles=cycles,
@@ -99,19 +108,11 @@ def simulate(
         until_failure=until_failure,
     )
     for file in (json, record):
-        _check_writable(file)
+        if file is not None:
+            check_writable(file)
     console = screen.console()
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
     if alone:
         raise typer.Exit(one.run(request, console, trace=trace, record=record, file=json))
     raise typer.Exit(Many(request, console, json).run(jobs or processors()))
-
-
-def _check_writable(file: Path | None) -> None:
-    """ConfigError now rather than an error after minutes."""
-    try:
-        if file is not None:
-            file.open("a").close()
-    except OSError as error:
-        raise ConfigError((f"{file}: cannot be written: {error.strerror}",)) from None

@@ -12,16 +12,24 @@ import yaml
 from arboleda.core.errors import ConfigError
 from arboleda.simulator.run import MINUTE_S
 
+from .. import user_file
+from ..plant_file.yaml_marks import LARGEST, MOST_VALUES
+
+LARGEST_SUMMARY = 16 * 1024 * 1024  # bytes of what --json wrote of many thousand seeds
 SUMMARY = "seeds"  # the key that a file of --json has, and no other
 
 
 @dataclass(frozen=True, kw_only=True)
 class Told:
-    """`climate` is what Climate.from_file takes; of a broken seed also which it is, and how long it ran."""
+    """`climate` is what Climate.from_file takes; of a broken seed also which it is, and how long it ran.
+
+    `plant_file` is the content of the plant's file, where it was drawn.
+    """
 
     climate: Any
     seed: int | None = None
     plant: str | None = None
+    plant_file: dict[str, Any] | None = None
     seconds: float | None = None
 
 
@@ -42,17 +50,33 @@ def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> Told:
         if seed in (None, row["seed"]):
             seconds = row["broken"]["minutes"] * MINUTE_S
             climate = {"faults": row["broken"]["faults"]}
-            return Told(climate=climate, seed=row["seed"], plant=row["plant"], seconds=seconds)
+            file = row["broken"].get("plant_file")
+            return Told(
+                climate=climate, seed=row["seed"], plant=row["plant"], plant_file=file, seconds=seconds
+            )
     there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""
     raise ConfigError((f"{path}: has no broken seed{'' if seed is None else f' {seed}'}{there}",))
 
 
 def _data(path: Path) -> Any:
+    written_by_us = path.suffix == ".json"
+    text = user_file.read_text(path, LARGEST_SUMMARY if written_by_us else LARGEST)
     try:
-        text = path.read_text(encoding="utf-8")
-        return json.loads(text) if path.suffix == ".json" else yaml.safe_load(text)
-    except OSError as error:
-        raise ConfigError((f"{path}: cannot be read: {error.strerror}",)) from None
+        data = json.loads(text) if written_by_us else yaml.safe_load(text)
     except (ValueError, yaml.YAMLError, RecursionError) as error:
         sentence = " ".join(str(error).split())
         raise ConfigError((f"{path}: cannot be read: {sentence}",)) from None
+    if not written_by_us and _values(data) > MOST_VALUES:
+        raise ConfigError((f"{path}: has more than {MOST_VALUES} values",))
+    return data
+
+
+def _values(data: Any) -> int:
+    """How many values there are, at most MOST_VALUES + 1: ten anchors in ten lines, each of which repeats the
+    one before nine times, are hundreds of millions."""
+    count, left = 0, [data]
+    while left and count <= MOST_VALUES:
+        value = left.pop()
+        count += 1
+        left += value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return count

@@ -14,6 +14,7 @@ from . import report, story, summary
 from .campaign import Campaign
 from .request import Request
 from .screen import progress
+from .search import Shrunk, shrunk
 from .setting import Tick
 from .tally import Tally
 from .words import counted, short
@@ -32,7 +33,7 @@ class Many:
         self._tally = Tally(setting=request.setting)
         self._began = time.monotonic()
         self._elapsed_s = 0.0
-        self._shrunk: Result | None = None
+        self._shrunk: Shrunk | None = None
         self._tick: Tick = lambda: None
 
     def run(self, jobs: int) -> int:
@@ -92,8 +93,10 @@ class Many:
         injected = len(lowest.faults)
         with progress(self._console, f"shrinking seed {lowest.seed}", None) as show:
             show(f"{counted(injected, 'fault')}", 0)
-            self._shrunk = self._request.setting.shrunk(
-                lowest, lambda runs, left: show(f"{left} of {injected} faults left after {runs} runs", runs)
+            self._shrunk = shrunk(
+                self._request.setting,
+                lowest,
+                lambda runs, left: show(f"{left} of {injected} faults left after {runs} runs", runs),
             )
 
     def _report(self) -> None:
@@ -102,17 +105,18 @@ class Many:
             self._console.print(report.tables(tally))
             self._say(f"{report.amount(tally)} {report.speed(tally, self._elapsed_s)}")
         for seed, result in sorted(tally.broken.items()):
-            told = self._shrunk if self._shrunk and self._shrunk.seed == seed else None
-            if told is None:
-                self._line(seed, result)
+            if self._shrunk is not None and self._shrunk.result.seed == seed:
+                self._story(self._shrunk, len(result.faults))
             else:
-                self._story(told, len(result.faults))
+                self._line(seed, result)
         self._console.print(report.verdict(tally), soft_wrap=True)
 
-    def _story(self, told: Result, injected: int) -> None:
+    def _story(self, shrunk: Shrunk, injected: int) -> None:
+        told = shrunk.result
         self._say("")
-        story.breach(self._console, told, self._tally.setting.plant(told.seed).name)
+        story.breach(self._console, told, shrunk.plant.name)
         story.faults(self._console, told, injected)
+        story.plant(self._console, shrunk.plant)
         story.timeline(self._console, told)
         self._say(f"  replay     {self._request.replay(told.seed)}", "bold")
         if self._file:

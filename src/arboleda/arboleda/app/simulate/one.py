@@ -19,6 +19,8 @@ from .told import Teller, Unheard
 
 def run(request: Request, console: Console, *, trace: bool, record: Path | None, file: Path | None) -> int:
     """Runs the first seed; the exit status."""
+    if trace:
+        story.plant(console, request.plants.of(request.first))
     try:
         result = _told(request, trace=trace, record=record)
     except KeyboardInterrupt:

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import as_file, files
 from itertools import count
 from pathlib import Path
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, Link, PlantModel
+from arboleda.core.model import PlantModel
 from arboleda.simulator.climate import LEVELS, BadFaults
 
 from .. import config
+from .drawn import Drawn, loaded
 from .faults_file import Told, read
+from .plants import InTurn, Plant, Plants, notes
 from .setting import Setting
 
 SEED, SEEDS, CYCLES, LEVEL = 1, 20, 50, "normal"
+OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +30,7 @@ class Request:
     """The options; None stands for one that was not given."""
 
     plant: Path | None = None
+    drawn_plants: bool = False
     seed: int | None = None
     seeds: int | None = None
     cycles: int = CYCLES
@@ -56,15 +61,22 @@ class Request:
         """What `faults` names where it is a file."""
         if self.faults in LEVELS:
             return None
-        if not Path(self.faults).exists():
+        if not os.path.exists(self.faults):  # unlike Path.exists, False for what can be no file's name
             known = ", ".join(LEVELS)
             raise ConfigError((f"--faults: '{self.faults}' is neither a file nor a level ({known})",))
         return read(Path(self.faults), self.seed)
 
     @cached_property
-    def plants(self) -> tuple[PlantModel, ...]:
-        """As their files describe them: seed n runs on number n modulo their count."""
-        plants = (config.load(self.plant),) if self.plant else (shared(), config.load())
+    def plants(self) -> Plants:
+        """What the seeds run on; a broken seed of a file runs on the plant that is in there."""
+        if self.told is not None and self.told.plant_file is not None:
+            return InTurn(plants=(loaded(self.told.plant_file),))
+        return Drawn() if self.drawn_plants else InTurn(plants=self._by_files)
+
+    @property
+    def _by_files(self) -> tuple[Plant, ...]:
+        models = (config.load(self.plant),) if self.plant else (shared(), config.load())
+        plants = tuple(Plant(declared=model) for model in models)
         wanted = self.told.plant if self.told else None
         if wanted is None:
             return plants
@@ -76,27 +88,34 @@ class Request:
     def setting(self) -> Setting:
         """What is to be simulated; ConfigError where the plant or the faults cannot be used."""
         setting = Setting(
-            plants=tuple(on_boards(plant) for plant in self.plants),
+            plants=self.plants,
             cycles=self.cycles,
             level=self.faults,
             told=self.told.climate if self.told else None,
             seconds=self.told.seconds if self.told else None,
         )
         try:
-            for seed in range(self.first, self.first + len(setting.plants)):
+            for seed in self._checked:
                 setting.climate(seed)
         except BadFaults as error:
             raise ConfigError((f"{self.faults}: {error} (plant {setting.plant(seed).name})",)) from None
         return setting
 
     @property
+    def _checked(self) -> Iterable[int]:
+        """Seeds that stand for all: faults that a file tells must be possible in each plant."""
+        if self.told is None:
+            return range(self.first, self.first + 1)
+        if isinstance(self.plants, InTurn):
+            return range(self.first, self.first + len(self.plants.plants))
+        return range(self.first, self.first + (self.count or 1))
+
+    @property
     def notes(self) -> list[str]:
         """What a person should know about what is simulated."""
-        robots = [robot for plant in self.plants for robot in plant.robots.values()]
-        names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
-        instead = "simulated as if each had a virtual board on MQTT"
-        others = [link for link in (Link.ROS, Link.NONE) if names[link]]
-        return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
+        if isinstance(self.plants, InTurn):
+            return notes(self.plants.plants)
+        return [OF_DRAWN]
 
     def replay(self, seed: int) -> str:
         """The command that runs one seed again, step by step."""
@@ -106,10 +125,11 @@ class Request:
 
     def replay_shrunk(self, file: Path, seed: int) -> str:
         """The same with the faults that `file` says are enough."""
-        return self._trace("--seed", str(seed), "--faults", str(file))
+        return self._trace("--seed", str(seed), "--faults", str(file), drawn=False)
 
-    def _trace(self, *words: str) -> str:
+    def _trace(self, *words: str, drawn: bool = True) -> str:
         plant = ["--plant", str(self.plant)] if self.plant else []
+        plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
         return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
 
 
@@ -117,12 +137,3 @@ def shared() -> PlantModel:
     """The second packaged plant: what the shipped one does not use."""
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as path:
         return config.load(path)
-
-
-def on_boards(model: PlantModel) -> PlantModel:
-    """The plant with every robot on MQTT, where the simulator has boards for them."""
-    return replace(model, cells=tuple(_on_boards(cell) for cell in model.cells))
-
-
-def _on_boards(cell: Cell) -> Cell:
-    return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))

@@ -11,8 +11,9 @@ from arboleda.core.model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import INVARIANTS
-from arboleda.simulator.run import MINUTE_S, NO_EXCEPTION, Broken, Plan, Result, Simulation
-from arboleda.simulator.shrink import Progress, explicit, shrink
+from arboleda.simulator.run import NO_EXCEPTION, Broken, Plan, Result, Simulation
+
+from .plants import Plant, Plants
 
 Tell = Callable[[str], None]
 Tick = Callable[[], None]
@@ -22,19 +23,20 @@ copyreg.pickle(Broken, lambda broken: (Broken, (broken.invariant, broken.sentenc
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """`plants` take turns by seed; faults are drawn at `level`, or are as `told`.
+    """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
 
     A run goes on until `cycles` tasks have ended, or for `seconds` where they are given.
     """
 
-    plants: tuple[PlantModel, ...]
+    plants: Plants
     cycles: int
     level: str
     told: Any = None  # what Climate.from_file takes
     seconds: float | None = None
 
     def plant(self, seed: int) -> PlantModel:
-        return self.plants[seed % len(self.plants)]
+        """The plant of a seed as it is simulated."""
+        return self.plants.of(seed).model
 
     def climate(self, seed: int) -> Climate:
         """The faults of a seed; BadFaults where those that are told cannot be."""
@@ -56,22 +58,17 @@ class Setting:
                 tick()
             return drawn(minute)
 
-        simulation = self._simulation(seed, plan, keep=keep, tell=tell)
+        simulation = self._simulation(self.plants.of(seed), seed, plan, keep=keep, tell=tell)
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
-    def shrunk(self, broken: Result, progress: Progress) -> Result:
-        """The same breach with as few faults as could be found, and the lines of its last seconds."""
-        seed = broken.seed
-        found = shrink(broken, lambda plan, s: self._simulation(seed, plan).run(seconds=s), progress)
-        again = self._simulation(seed, explicit(found.faults), keep=True).run(
-            seconds=found.minutes * MINUTE_S
-        )
-        return again if again.broken else self.run(seed, keep=True)
+    def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
+        """A seed on such a plant with these faults, for so long."""
+        return self._simulation(plant, seed, plan, keep=keep).run(seconds=seconds)
 
     def _simulation(
-        self, seed: int, plan: Plan, *, keep: bool = False, tell: Tell | None = None
+        self, plant: Plant, seed: int, plan: Plan, *, keep: bool = False, tell: Tell | None = None
     ) -> Simulation:
-        return Simulation(self.plant(seed), seed, plan, invariants=INVARIANTS, keep=keep, tell=tell)
+        return Simulation(plant.model, seed, plan, invariants=INVARIANTS, keep=keep, tell=tell)
 
 
 def rules() -> dict[str, str]:

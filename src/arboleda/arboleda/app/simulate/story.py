@@ -9,6 +9,8 @@ from rich.text import Text
 
 from arboleda.simulator.run import Result
 
+from .drawn import as_yaml
+from .plants import Plant, notes
 from .setting import rules
 from .words import counted, told
 
@@ -40,6 +42,17 @@ def faults(console: Console, result: Result, injected: int) -> None:
     )
     for fault in result.faults:
         _say(console, f"{fault.at:10.3f}  {told(fault)}", "yellow")
+
+
+def plant(console: Console, drawn: Plant) -> None:
+    """As much as is needed of a plant file that nobody has on disk."""
+    if drawn.file is None:
+        return
+    _say(console, "  plant      as much of its file as is enough:")
+    for line in as_yaml(drawn.file).splitlines():
+        _say(console, f"    {line}", "yellow")
+    for note in notes([drawn]):
+        _say(console, f"  note       {note}")
 
 
 def timeline(console: Console, result: Result) -> None:

@@ -9,15 +9,15 @@ from typing import Any
 
 from arboleda import __version__
 from arboleda.core.errors import ArboledaError
-from arboleda.simulator.run import Result
 
 from .request import Request
+from .search import Shrunk
 from .setting import rules
 from .tally import Tally
 
 
-def write(path: Path, request: Request, tally: Tally, shrunk: Result | None, *, complete: bool) -> None:
-    """Writes it; `shrunk` is the run of one of the broken seeds with the faults that are needed."""
+def write(path: Path, request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: bool) -> None:
+    """Writes it; `shrunk` is the run of one of the broken seeds with what is needed of faults and plant."""
     data = summary(request, tally, shrunk, complete=complete)
     try:
         path.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -25,13 +25,14 @@ def write(path: Path, request: Request, tally: Tally, shrunk: Result | None, *, 
         raise ArboledaError(f"{path}: cannot be written: {error.strerror}") from None
 
 
-def summary(request: Request, tally: Tally, shrunk: Result | None, *, complete: bool) -> dict[str, Any]:
+def summary(request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: bool) -> dict[str, Any]:
     rows = [
         {**row, "broken": _broken(request, tally, seed, shrunk)} for seed, row in sorted(tally.rows.items())
     ]
     return {
         "arboleda": __version__,
         "plant": str(request.plant) if request.plant else None,
+        "drawn_plants": request.drawn_plants,
         "cycles": request.cycles,
         "level": request.faults,
         "complete": complete,
@@ -48,11 +49,13 @@ def summary(request: Request, tally: Tally, shrunk: Result | None, *, complete: 
     }
 
 
-def _broken(request: Request, tally: Tally, seed: int, shrunk: Result | None) -> dict[str, Any] | None:
+def _broken(request: Request, tally: Tally, seed: int, shrunk: Shrunk | None) -> dict[str, Any] | None:
     found = tally.broken.get(seed)
     if found is None:
         return None
-    best = shrunk if shrunk and shrunk.seed == seed else found
+    fewest = shrunk if shrunk and shrunk.result.seed == seed else None
+    best = fewest.result if fewest else found
+    plant = fewest.plant if fewest else request.plants.of(seed)
     assert best.broken is not None
     return {
         "invariant": best.broken.invariant,
@@ -61,7 +64,8 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: Result | None) ->
         "seconds": round(best.seconds, 3),
         "minutes": best.minutes,
         "injected": len(found.faults),
-        "shrunk": best is shrunk,
+        "shrunk": fewest is not None,
         "faults": [asdict(fault) for fault in best.faults],
+        **({} if plant.file is None else {"plant_file": plant.file}),
         "replay": request.replay(seed),
     }

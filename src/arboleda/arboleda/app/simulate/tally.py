@@ -30,6 +30,7 @@ class Tally:
         return self.broken[min(self.broken)] if self.broken else None
 
     def add(self, result: Result) -> None:
+        plant = self.setting.plants.of(result.seed)
         faults = Counter(fault.kind for fault in result.faults)
         self.faults.update(faults)
         self.outcomes.update(result.outcomes)
@@ -38,12 +39,13 @@ class Tally:
         self.seconds += result.seconds
         self.rows[result.seed] = {
             "seed": result.seed,
-            "plant": self.setting.plant(result.seed).name,
+            "plant": plant.name,
             "digest": result.digest,
             "cycles": result.cycles,
             "seconds": round(result.seconds, 3),
             "faults": dict(sorted(faults.items())),
             "outcomes": dict(sorted(result.outcomes.items())),
+            **({} if plant.file is None else {"plant_file": plant.file}),
             "broken": None,
         }
         if result.broken:

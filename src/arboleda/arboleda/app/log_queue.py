@@ -1,0 +1,164 @@
+"""Log lines on their way out: whoever logs waits for no terminal, no file and no network."""
+
+from __future__ import annotations
+
+import copy
+import logging
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from queue import Empty, Full, Queue
+
+from arboleda.core.outside import plain
+
+OURS = "arboleda"
+RATE = (100, 5.0)  # lines of one place in the program: at once, and each second after that
+RATES = {"arboleda.tasks": (2000, 100.0)}  # what a large plant does; by the name of the logger
+WAITING = 10_000  # lines that an output may be behind
+LONGEST = 2_000  # letters of a line; the rest is cut off
+FLUSH_S = 1.0
+
+Output = Callable[[logging.LogRecord], None]  # it gets lines that are ready to be put out, in one thread
+Place = tuple[str, int, str]  # file and line number of the call that logs, and the name of its logger
+
+_traceback = logging.Formatter()
+
+
+class LogQueue(logging.Handler):
+    """Hands each line to `outputs`, in the order of the lines, in a thread of its own.
+
+    A line is left out where its place in the program logs more than the RATE allows, or where the outputs are
+    WAITING lines behind; the next line of that place says how many were.
+    What an output logs itself is left out too, since it would come back to that output.
+    Control characters are escaped, so that text from outside makes no lines and moves no cursor.
+    """
+
+    def __init__(self, *outputs: Output, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__(logging.DEBUG)
+        self._outputs = outputs
+        self._rate = LineRate(clock)
+        self._left_out: Counter[Place] = Counter()
+        self._queue: Queue[Callable[[], None] | None] = Queue(WAITING)
+        self._thread = threading.Thread(target=self._work, name="log", daemon=True)
+        self._thread.start()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Never blocks; logging calls it one thread at a time."""
+        if threading.current_thread() is self._thread:
+            return
+        place = (record.pathname, record.lineno, record.name)
+        try:
+            if self._rate.allows(place):
+                line = _ready(record, self._left_out[place])
+                self._queue.put_nowait(partial(self._put_out, line))
+                del self._left_out[place]
+            else:
+                self._left_out[place] += 1
+        except Full:
+            self._left_out[place] += 1
+        except Exception:  # noqa: BLE001 - whoever logs a line that cannot be formatted must not fail for it
+            self.handleError(record)
+
+    def add(self, output: Output) -> None:
+        """Hand what is logged from now on to this output too."""
+        self._outputs = (*self._outputs, output)
+
+    def then(self, job: Callable[[], None]) -> None:
+        """Have `job` done once what was logged so far is out; at once where an output is stuck."""
+        try:
+            self._queue.put_nowait(job)
+        except Full:
+            job()
+
+    def flush(self) -> None:
+        """Wait until what was logged is out, at most FLUSH_S."""
+        out = threading.Event()
+        with suppress(Full):
+            self._queue.put(out.set, timeout=FLUSH_S)
+            out.wait(FLUSH_S if self._thread.is_alive() else 0.0)
+
+    def close(self) -> None:
+        """Put out what waits; where an output is stuck, that is given up after FLUSH_S."""
+        if self._thread.is_alive():
+            self.flush()
+            _empty(self._queue)
+            self._queue.put(None)
+            self._thread.join(FLUSH_S)
+        super().close()
+
+    def _work(self) -> None:
+        for job in iter(self._queue.get, None):
+            job()
+
+    def _put_out(self, line: logging.LogRecord) -> None:
+        for output in self._outputs:
+            try:
+                output(line)
+            except Exception as error:  # noqa: BLE001 - one broken output must not silence the others
+                self._give_up(output, error)
+
+    def _give_up(self, broken: Output, error: Exception) -> None:
+        self._outputs = tuple(each for each in self._outputs if each is not broken)
+        what = getattr(broken, "__qualname__", type(broken).__qualname__)
+        text = f"{what} cannot put out log lines and gets no more of them: {error!r}"
+        where = ("", 0, text, (), None)
+        self._put_out(logging.LogRecord(__name__, logging.ERROR, *where))
+
+
+class LineRate:
+    """Whether one more line may leave a place: a bucket of as many lines as its rate allows at once."""
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._room: dict[Place, tuple[float, float]] = {}  # lines that were left, and when
+
+    def allows(self, place: Place) -> bool:
+        """Count a line of this place; False where it is one too many."""
+        now = self._clock()
+        at_once, per_s = RATES.get(place[2], RATE)
+        left, at = self._room.get(place, (float(at_once), now))
+        left = min(left + (now - at) * per_s, float(at_once))
+        allowed = left >= 1.0
+        self._room[place] = (left - 1.0 if allowed else left, now)
+        return allowed
+
+
+@contextmanager
+def log_to(*outputs: Output) -> Iterator[LogQueue]:
+    """Have every line of ours put out meanwhile, and of libraries those that warn."""
+    root, ours = logging.getLogger(), logging.getLogger(OURS)
+    queue, before = LogQueue(*outputs), ours.level
+    ours.setLevel(logging.DEBUG)
+    root.addHandler(queue)
+    try:
+        yield queue
+    finally:
+        root.removeHandler(queue)
+        ours.setLevel(before)
+        queue.close()
+
+
+def _ready(record: logging.LogRecord, left_out: int) -> logging.LogRecord:
+    """A copy that holds its text; the traceback, where there is one, as text of its own."""
+    line = copy.copy(record)
+    text = plain(record.getMessage(), LONGEST)
+    line.msg = f"{text} ({left_out} more lines like this one were left out)" if left_out else text
+    line.args = None
+    if record.exc_info:
+        line.exc_text = _indented(record.exc_text or _traceback.formatException(record.exc_info))
+    line.exc_info = None
+    return line
+
+
+def _indented(traceback: str) -> str:
+    """Lines that nobody takes for lines of the log, whatever an error quotes."""
+    return "\n".join(f"  {plain(line, LONGEST)}" for line in traceback.splitlines())
+
+
+def _empty(queue: Queue[Callable[[], None] | None]) -> None:
+    with suppress(Empty):
+        while True:
+            queue.get_nowait()

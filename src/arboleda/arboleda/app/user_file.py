@@ -1,0 +1,51 @@
+"""Files that a person names on the command line: read whole or refused, whatever they are."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from arboleda.core.errors import ConfigError
+from arboleda.core.outside import quoted
+
+
+def read_bytes(path: Path, largest: int) -> bytes:
+    """All of a regular file of at most `largest` bytes; ConfigError, at once, for anything else."""
+    try:
+        # Without O_NONBLOCK, opening a pipe waits until somebody writes into it.
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise ConfigError((f"{path}: is not a regular file",))
+            content = file.read(largest + 1)
+    except FileNotFoundError:
+        raise ConfigError((f"{path}: there is no such file",)) from None
+    except IsADirectoryError:
+        raise ConfigError((f"{path}: is a directory; a file is wanted",)) from None
+    except ValueError:
+        raise ConfigError((f"{quoted(str(path), 200)}: is not the name of a file",)) from None
+    except OSError as error:
+        raise ConfigError((f"{path}: cannot be read: {error.strerror}",)) from None
+    if len(content) > largest:
+        raise ConfigError((f"{path}: is larger than {largest // 1024} KiB; is it the file that you mean?",))
+    return content
+
+
+def read_text(path: Path, largest: int) -> str:
+    """The same as text in UTF-8, with or without a byte order mark."""
+    try:
+        return read_bytes(path, largest).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ConfigError((f"{path}: is not UTF-8 text; save it as UTF-8",)) from None
+
+
+def check_writable(path: Path) -> None:
+    """ConfigError now rather than after minutes of work; makes an empty file where there is none."""
+    try:
+        # Without O_NONBLOCK, opening a pipe waits until somebody reads from it.
+        flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NONBLOCK | os.O_CLOEXEC
+        os.close(os.open(path, flags, 0o666))
+    except ValueError:
+        raise ConfigError((f"{quoted(str(path), 200)}: is not the name of a file",)) from None
+    except OSError as error:
+        raise ConfigError((f"{path}: cannot be written: {error.strerror}",)) from None

@@ -1,0 +1,107 @@
+"""Whatever a person names as a file on the command line: read, or refused at once with a sentence."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from arboleda.app import user_file
+from arboleda.app.cli import cli
+from arboleda.core.errors import ConfigError
+
+READS = {
+    "check": lambda file: ["check", file],
+    "plant": lambda file: ["run", "sis_a 0B 7", "--no-ros", "--plant", file],
+    "users": lambda file: ["up", "--no-ros", "--broker-host", "127.0.0.1", "--broker-users", file],
+    "faults": lambda file: ["simulate", "--faults", file],
+}
+
+
+def sparse(path: Path) -> str:
+    with path.open("wb") as file:
+        file.truncate(30_000_000)
+    return str(path)
+
+
+def pipe(path: Path) -> str:
+    os.mkfifo(path)
+    return str(path)
+
+
+def directory(path: Path) -> str:
+    path.mkdir()
+    return str(path)
+
+
+def latin_1(path: Path) -> str:
+    path.write_bytes("contraseña: sí\n".encode("latin-1"))
+    return str(path)
+
+
+STRANGE = {
+    "pipe": (pipe, "is not a regular file"),
+    "device": (lambda path: "/dev/zero", "is not a regular file"),
+    "directory": (directory, "is a directory"),
+    "huge": (sparse, "is larger than"),
+    "latin-1": (latin_1, "is not UTF-8 text; save it as UTF-8"),
+}
+
+
+@pytest.mark.parametrize("words", READS.values(), ids=READS)
+@pytest.mark.parametrize(("make", "sentence"), STRANGE.values(), ids=STRANGE)
+def test_a_strange_file_is_refused_at_once(
+    tmp_path: Path, words: Callable[[str], list[str]], make: Callable[[Path], str], sentence: str
+) -> None:
+    answer = CliRunner().invoke(cli, words(make(tmp_path / "strange.json")))
+    assert isinstance(answer.exception, ConfigError), answer.output
+    assert sentence in str(answer.exception) and len(answer.exception.problems) == 1
+
+
+def test_anchors_do_not_make_hundreds_of_millions_of_faults(tmp_path: Path) -> None:
+    lines = ["faults:", "  - kind: reboot", "    at: 1", "    word:", "      a: &a [x]"]
+    for before, name in pairwise("abcdefghij"):
+        lines.append(f"      {name}: &{name} [{', '.join([f'*{before}'] * 9)}]")
+    file = tmp_path / "faults.yaml"
+    file.write_text("\n".join(lines))
+    answer = CliRunner().invoke(cli, ["simulate", "--faults", str(file)])
+    assert "has more than 50000 values" in str(answer.exception)
+
+
+@pytest.mark.parametrize("option", ["--json", "--record"])
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [(pipe, "No such device"), (directory, "Is a directory"), (lambda path: str(path / "x"), "No such file")],
+    ids=["pipe without reader", "directory", "no directory"],
+)
+def test_a_target_that_cannot_be_written_is_refused_before_the_work(
+    tmp_path: Path, option: str, make: Callable[[Path], str], sentence: str
+) -> None:
+    answer = CliRunner().invoke(cli, ["simulate", "--seed", "1", option, make(tmp_path / "target")])
+    assert isinstance(answer.exception, ConfigError), answer.output
+    assert f"cannot be written: {sentence}" in str(answer.exception)
+
+
+def test_a_name_that_no_file_can_have_is_refused(tmp_path: Path) -> None:
+    for name in ("x" * 300, "a\0b"):
+        with pytest.raises(ConfigError):
+            user_file.read_bytes(tmp_path / name, 10)
+        with pytest.raises(ConfigError):
+            user_file.check_writable(tmp_path / name)
+    answer = CliRunner().invoke(cli, ["simulate", "--faults", "x" * 300])
+    assert "is neither a file nor a level" in str(answer.exception)
+
+
+def test_the_largest_file_is_read_and_a_target_is_made(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    user_file.check_writable(file)
+    file.write_bytes(b"\xef\xbb\xbf1234")
+    user_file.check_writable(file)
+    assert user_file.read_bytes(file, 7) == b"\xef\xbb\xbf1234"
+    assert user_file.read_text(file, 7) == "1234"
+    with pytest.raises(ConfigError, match="is larger than 0 KiB"):
+        user_file.read_bytes(file, 6)
