@@ -1,12 +1,15 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test ros-test campaign firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
+.PHONY: run test ros-test campaign drawn-campaign mutants firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
 PYTEST_ARGS ?= -n 4 --dist worksteal
+SEEDS ?= 1000
 CYCLES ?= 36
+DRAWN_CYCLES ?= 4 # of each drawn plant; it ends at a full minute, so there are more
+MUTANTS ?= --sample 400
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
@@ -19,9 +22,18 @@ ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
 	@.colcon/venv/bin/python scripts/ros-test
 
-campaign: install  ## simulate 1000 seeds with every kind of fault; CYCLES=100 for a longer one
-	$(BIN)/arboleda simulate --seeds 1000 --cycles $(CYCLES) --json campaign.json
-	$(BIN)/python scripts/campaign campaign.json
+campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CYCLES=... for others
+	$(BIN)/arboleda simulate --seeds 100 --cycles 20 --faults none
+	$(BIN)/arboleda simulate --seeds $(SEEDS) --cycles $(CYCLES) --json campaign.json
+	$(BIN)/python scripts/campaign campaign.json $(SEEDS)
+
+drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault
+	$(BIN)/arboleda simulate --drawn-plants --seeds 500 --cycles $(DRAWN_CYCLES) --json drawn.json
+	$(BIN)/python scripts/campaign drawn.json
+
+mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
+	@scripts/install test
+	PYTHONPATH=mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
 
 firmware:  ## build the board for Linux, firmware/build/board
 	@$(MAKE) --no-print-directory -C firmware board

@@ -15,7 +15,7 @@ from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.app.build import PARTS, App, Options, build
+from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.app.session import ros_link
 from arboleda.core.model import MotionState
@@ -141,7 +141,7 @@ def main() -> None:
     address = broker.start()
     with TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
         options = Options(link=link, broker=str(address), rate=words.rate, state_dir=Path(folder))
-        app = build(load(PLANT), set(PARTS) - {"broker"}, options)
+        app = build(load(PLANT), {"devices", "bridge", "orchestrator"}, options)
         plant = Plant(app)
         app.start()
         stranger = Stranger(address.host, address.port)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import os
 import shutil
+import signal
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -24,6 +26,20 @@ settings.load_profile("arboleda")
 
 HERE = Path(__file__).parent
 SEARCH_PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])  # Debian keeps servers there
+
+
+def pytest_configure() -> None:
+    """Let Ctrl-C reach the programs that tests start.
+
+    A shell starts what runs in the background with SIGINT ignored, and programs hand that on.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+# Below those of outgoing connections (32768 and up on Linux); each worker begins elsewhere.
+PORTS = range(20_000, 32_000)
+_ports = itertools.cycle([*PORTS[os.getpid() * 37 % len(PORTS) :], *PORTS])
 
 
 def by_hand(item: pytest.Item) -> bool:
@@ -128,10 +144,17 @@ def no_thread_left(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture
 def free_port() -> int:
-    """A TCP port of 127.0.0.1 that nothing listens on."""
+    """A TCP port that nothing has, and that the system gives to no outgoing connection meanwhile."""
+    return next(port for port in _ports if _is_free(port))
+
+
+def _is_free(port: int) -> bool:
     with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
+        try:
+            probe.bind(("", port))
+        except OSError:
+            return False
+    return True
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from std_msgs.msg import String
 from arboleda.app.config import load
 from arboleda.core.messages import Command
 from arboleda.core.model import Cell, PlantModel
+from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.link import connect
 
@@ -38,7 +39,7 @@ def voices(node: Node, cell: Cell) -> dict[tuple[str, type[Command]], Publisher]
     """A publisher for every command of the cell's robots."""
     return {
         (robot.name, kind): node.create_publisher(
-            convert.message_type(kind), f"{robot.name}/{convert.COMMAND_TOPICS[kind]}", qos.COMMAND
+            convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", qos.COMMAND
         )
         for robot in cell.robots
         for kind in convert.commands_of(robot)

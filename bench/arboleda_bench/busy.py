@@ -10,14 +10,16 @@ import json
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from arboleda.app import view_text
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.core.view import Diagnostic
 
 from .played import Crew
 from .processes import own_memory
@@ -25,6 +27,24 @@ from .processes import own_memory
 MOVES = 5  # in a task: to the start, over the path, to the pick-up, to the station, home
 DWELL_S = 0.6
 LIMIT_S = 30.0
+
+
+class Topics:
+    """The plant's port on ROS 2 without ROS 2: each view is written as JSON, commands go to the crew."""
+
+    watched, diagnosed = True, False
+
+    def __init__(self, crew: Crew) -> None:
+        self.send = crew.send
+
+    def check_alone(self) -> None:
+        """There is no network."""
+
+    def publish_view(self, snapshot: dict[str, Any]) -> Iterator[None]:
+        yield from view_text.in_parts(snapshot)
+
+    def publish_diagnostics(self, statuses: Iterable[Diagnostic]) -> Iterator[None]:
+        yield from ()
 
 
 class Customers:
@@ -72,9 +92,8 @@ def main(plant: str, state: str, move_s: str, seconds: str) -> None:
     assert orchestrator is not None
     crew = Crew(model, orchestrator.hear, move_s=float(move_s))
     customers = Customers(app)
-    orchestrator.connect(crew)
+    orchestrator.connect_ros(Topics(crew))
     app.listen(customers.heard)
-    app.watch(json.dumps)  # as the node's topic /plant/view does
     app.start()
     try:
         crew.start()

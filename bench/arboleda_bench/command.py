@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.app.simulate.screen import console, progress
+from arboleda.app.user_file import check_writable
 from arboleda.core.errors import ArboledaError, ConfigError
 
 from . import catalog, report
@@ -77,7 +78,7 @@ def _check(names: Sequence[str], file: Path | None) -> None:
         meant = f" (did you mean {near[0]}?)" if near else ""
         raise ConfigError((f"there is no benchmark '{name}'{meant}; there are {', '.join(catalog.NAMES)}",))
     if file is not None:
-        _write(file, {})
+        check_writable(file)
 
 
 def _write(file: Path, content: dict[str, Any]) -> None:

@@ -11,10 +11,11 @@ from itertools import count
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from std_msgs.msg import UInt8, UInt32
+from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
 from arboleda.core.messages import SetEffector
 from arboleda.core.model import Arm, Cell, PlantModel
+from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -29,9 +30,12 @@ class Echo(Walker[Ready]):
     """One cell's robots, step by step; it takes tasks once the bridge hears it and its robots are there."""
 
     def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
-        self._voices = brain.voices(node, cell)
+        self._voices = {
+            robot.name: node.create_publisher(Float32MultiArray, f"{robot.name}/{COMMAND}", qos.COMMAND)
+            for robot in cell.robots
+        }
         ready = [
-            (self._voices[step.robot, type(step)], convert.command_message(step), _effector(step))
+            (self._voices[step.robot], convert.labelled_message(step, copied=False), _effector(step))
             for step in steps.storage(cell)
         ]
         super().__init__(ready, model.timing.dwell_s)
@@ -50,12 +54,9 @@ class Echo(Walker[Ready]):
 
     def publish(self, step: Ready) -> None:
         voice, message, effector = step
-        if effector is None:
-            label = f"{self._epoch}-{next(self._number)}"
-            message.layout.dim[0].label = f"id={label}"
-            self._awaited = ("done", label)
-        else:
-            self._awaited = ("effector", effector)
+        label = f"{self._epoch}-{next(self._number)}"
+        message.layout.dim[0].label = f"id={label}"
+        self._awaited = ("done", label) if effector is None else ("effector", effector)
         voice.publish(message)
 
     def _on_status(self, message: DiagnosticStatus) -> None:

@@ -11,6 +11,7 @@ from std_msgs.msg import UInt8
 
 from arboleda.core.messages import Command, FollowPath, MoveJoints, Report, Stop
 from arboleda.core.model import Arm, Cell, Mobile, MotionState, PlantModel, Robot
+from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.voice import JointsMessage
 
@@ -77,7 +78,7 @@ class Body:
         self._here = self._seen_at(_resting_place(cell, robot))
         self._commanded: list[str] = []
         for kind in convert.commands_of(robot):
-            topic = f"{robot.name}/{convert.COMMAND_TOPICS[kind]}"
+            topic = f"{robot.name}/{PLAIN[kind]}"
             self._commanded.append(topic)
             node.create_subscription(convert.message_type(kind), topic, self._hearing(kind), qos.COMMAND)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
@@ -20,6 +21,7 @@ def campaign() -> Any:
     spec = spec_from_loader(loader.name, loader)
     assert spec is not None
     module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # its dataclass looks there
     loader.exec_module(module)
     return module
 
@@ -57,3 +59,10 @@ def test_a_broken_seed_and_missing_seeds_are_named(campaign: Any) -> None:
     short["seeds"][1]["cycles"] = 1000
     short["seeds"][1]["faults"] = {"reboot": 1000}
     assert campaign.shortcomings(short) == ["seed 3 breaks stop_holds", "999 seeds, 1000 are needed"]
+
+
+def test_of_drawn_plants_less_is_needed(campaign: Any) -> None:
+    drawn = {**summary(loss=99), "drawn_plants": True}
+    assert campaign.shortcomings(drawn) == []
+    drawn["seeds"] = drawn["seeds"][:499]
+    assert campaign.shortcomings(drawn) == ["499 seeds, 500 are needed"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import signal
@@ -18,6 +19,9 @@ import yaml
 
 from arboleda.core.model import Evidence
 
+from ..conftest import need_tool
+
+ROOT = Path(__file__).parents[2]
 PATIENCE_S = 30.0
 
 
@@ -42,6 +46,10 @@ class Process:
     @property
     def output(self) -> str:
         return "\n".join(self.lines)
+
+    @property
+    def pid(self) -> int:
+        return self._child.pid
 
     def wait_for(self, text: str, *, times: int = 1, patience_s: float = PATIENCE_S) -> None:
         """Wait until a line holds `text`."""
@@ -116,9 +124,10 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
 def node(start: Callable[..., Process], ros_domain: int) -> Callable[..., Process]:
     """`node("mqtt_bridge", plant=..., broker=...)`: one ROS 2 node of ours in a process of its own."""
 
-    def go(name: str, **parameters: str) -> Process:
+    def go(name: str, *, namespace: str = "/", **parameters: str) -> Process:
         pairs = [word for key, value in parameters.items() for word in ("-p", f"{key}:={value}")]
-        command = (sys.executable, "-m", "arboleda_ros.nodes", name, "--ros-args", *pairs)
+        ros = ("--ros-args", "-r", f"__ns:={namespace}", *pairs)
+        command = (sys.executable, "-m", "arboleda_ros.nodes", name, *ros)
         return start(*command, env={"PYTHONPATH": paths()})
 
     return go
@@ -145,16 +154,35 @@ def mosquitto(
     return go
 
 
-def built_board() -> str | None:
-    """The firmware's board as a program; `make firmware` builds it."""
-    program = Path(__file__).parents[2] / "firmware" / "build" / "board"
-    return str(program) if os.access(program, os.X_OK) else None
+@pytest.fixture(scope="session")
+def compiled_board(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The firmware's board as a program, built once for all workers and outside the checkout.
+
+    A test that built it where users do would hide another that needs it without saying so.
+    """
+    need_tool("make")
+    need_tool("g++")
+    header = ["g++", "-fsyntax-only", "-include", "mosquitto.h", "-x", "c++", os.devnull]
+    if subprocess.run(header, capture_output=True, check=False).returncode != 0:
+        pytest.skip("libmosquitto-dev is not installed")
+    folder = shared_between_workers(tmp_path_factory) / "firmware"
+    with folder.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        subprocess.run(["make", "-C", str(ROOT / "firmware"), "board", f"B={folder}"], check=True)
+    return str(folder / "board")
+
+
+def shared_between_workers(factory: pytest.TempPathFactory) -> Path:
+    """A folder of this run; pytest-xdist gives each worker a folder of its own below it."""
+    own = factory.getbasetemp()
+    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
 
 
 @pytest.fixture
-def board() -> str:
-    """The same; where it is not there, the test is skipped."""
-    return built_board() or pytest.skip("firmware/build/board is not built")
+def board(compiled_board: str, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The same program, which `--boards linux` takes in this test."""
+    monkeypatch.setenv("ARBOLEDA_BOARD", compiled_board)
+    return compiled_board
 
 
 class Observer:
@@ -209,7 +237,7 @@ def observer(ros_domain: int, require: Callable[[str], str]) -> Iterator[Observe
 
 RATE = "4"
 SLOW_DEG_S = 4.5  # of ra1's first joint: its moves last seconds at that rate, so they can be interrupted
-SHIPPED = Path(__file__).parents[2] / "src/arboleda/arboleda/plants/plant.yaml"
+SHIPPED = ROOT / "src/arboleda/arboleda/plants/plant.yaml"
 
 
 @pytest.fixture

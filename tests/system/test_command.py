@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -24,15 +25,16 @@ def test_run_does_three_tasks_over_ros_2_and_mqtt(arboleda: Callable[..., Any], 
     assert run.wait() == 0, run.output
     for task in DEMO:
         assert f"done      {task}" in run.output
-    first_end = next(n for n, line in enumerate(run.lines) if line.startswith("done"))
-    assert sum(line.startswith("running") for line in run.lines[:first_end]) == 3
+    first_end = next(n for n, line in enumerate(run.lines) if " done      " in line)
+    assert sum(" running   " in line for line in run.lines[:first_end]) == 3
     assert "ra1: still, effector off" in run.output
 
 
 def test_run_without_ros_does_the_same(arboleda: Callable[..., Any]) -> None:
     run = arboleda("run", *DEMO, "sis_a 2C 0", "ra1 palletizing", "--rate", "10", "--no-ros")
     assert run.wait() == 0, run.output
-    assert sum(line.startswith("done") for line in run.lines) == 5
+    timed = re.compile(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d done      ")
+    assert sum(timed.match(line) is not None for line in run.lines) == 5
 
 
 def test_run_works_on_a_real_mosquitto(
@@ -90,6 +92,52 @@ def test_ctrl_c_in_the_middle_of_a_move_halts_it(arboleda: Callable[..., Any]) -
     assert up.interrupt() == 0
     assert "failed    sis_a 0B 7  the plant was asked to end (interrupted)" in up.output
     assert "ra1: still" in up.output
+
+
+def test_tasks_and_operators_are_lines_with_time_in_the_log_file(
+    arboleda: Callable[..., Any], tmp_path: Path
+) -> None:
+    up = arboleda("up", "sis_a 0B 7", "--no-ros", "--rate", "10")
+    up.wait_for("done      sis_a 0B 7")
+    assert arboleda("hold", "sis_a").wait() != 0
+    assert arboleda("stop", "sis_b").wait() == 0
+    up.wait_for("stop sis_b")
+    assert up.interrupt() == 0
+    lines = (tmp_path / "state" / "arboleda.log").read_text().splitlines()
+    told = [re.sub(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} ", "", line) for line in lines]
+    tasks = [line for line in told if " arboleda.tasks: " in line]
+    for line, state in zip(tasks, ("queued   ", "running  ", "done     "), strict=True):
+        assert line.startswith(f"INFO arboleda.tasks: {state} sis_a 0B 7")
+    refused, stopped = (line for line in told if " arboleda.operators: " in line)
+    assert refused.startswith("INFO arboleda.operators: hold sis_a was refused: ")
+    assert stopped == "INFO arboleda.operators: stop sis_b"
+
+
+BY_HAND = str(Path(__file__).parents[2] / "examples/plants/by_hand.yaml")
+
+
+@pytest.mark.requires("rclpy")
+def test_a_plant_without_boards_has_no_broker(arboleda: Callable[..., Any], ros_domain: int) -> None:
+    up = arboleda("up", "--plant", BY_HAND)
+    up.wait_for("http://127.0.0.1:")
+    assert len(listening(up.pid)) == 1, "page and API alone"
+    assert "MQTT" not in up.output
+    assert up.interrupt() == 0
+
+
+def test_a_plant_without_boards_needs_ros_2(arboleda: Callable[..., Any]) -> None:
+    run = arboleda("up", "--plant", BY_HAND, "--no-ros")
+    assert run.wait() == 1
+    assert "ra1, rm_sis_a: link ros needs ROS 2" in run.output
+
+
+def listening(process: int) -> set[str]:
+    """The TCP sockets of a process on which it waits for connections."""
+    held = {os.readlink(file) for file in Path(f"/proc/{process}/fd").iterdir() if file.is_symlink()}
+    tables = [Path(f"/proc/net/{name}").read_text().splitlines()[1:] for name in ("tcp", "tcp6")]
+    rows = [line.split() for table in tables for line in table]
+    waits = "0A"
+    return {row[9] for row in rows if row[3] == waits and f"socket:[{row[9]}]" in held}
 
 
 def test_submit_and_status_without_a_plant_say_so(arboleda: Callable[..., Any]) -> None:

@@ -11,39 +11,42 @@ import pytest
 from arboleda.app.build import Options, build
 from arboleda.testing import shipped
 
-from .conftest import built_board
-
 pytestmark = [pytest.mark.system, pytest.mark.timeout(150)]
 
 CHECKS = 24
 
 
 @pytest.fixture
-def virtual(mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path) -> Iterator[None]:
-    """The virtual board of ra_2, on a broker."""
-    mosquitto(free_port)
+def virtual(free_port: int, tmp_path: Path) -> Iterator[str]:
+    """The virtual board of ra_2, on the broker."""
     options = Options(broker=f"127.0.0.1:{free_port}", state_dir=tmp_path / "boards")
     boards = build(shipped("sis_b"), {"devices"}, options)
     boards.start()
-    yield
+    yield "ra_2"
     boards.stop()
 
 
-def test_the_virtual_board_and_the_firmwares_pass_at_the_top(
-    start: Callable[..., Any], arboleda: Callable[..., Any], virtual: None, free_port: int
+@pytest.fixture
+def firmware(start: Callable[..., Any], board: str, free_port: int) -> str:
+    """The firmware's board of ra_1, on the broker."""
+    start(board, "--robot", "ra_1", "--broker", f"127.0.0.1:{free_port}")
+    return "ra_1"
+
+
+@pytest.mark.parametrize("kind", ["virtual", "firmware"])
+def test_a_board_of_ours_passes_at_the_top(
+    kind: str,
+    request: pytest.FixtureRequest,
+    arboleda: Callable[..., Any],
+    mosquitto: Callable[[int], Any],
+    free_port: int,
 ) -> None:
-    broker = ("--broker", f"127.0.0.1:{free_port}")
-    robots = ["ra_2"]
-    if program := built_board():
-        start(program, "--robot", "ra_1", *broker)
-        robots.append("ra_1")
-    kits = {robot: arboleda("conformance", "--robot", robot, *broker, "--yes") for robot in robots}
-    for robot, kit in kits.items():
-        kit.wait_for(f"{robot} reaches the level ids", patience_s=120)
-        assert kit.wait() == 0, kit.output
-        assert kit.output.count("good ") == CHECKS, kit.output
-    if program is None:
-        pytest.skip("firmware/build/board is not built; the virtual board passes")
+    mosquitto(free_port)
+    robot = request.getfixturevalue(kind)
+    kit = arboleda("conformance", "--robot", robot, "--broker", f"127.0.0.1:{free_port}", "--yes")
+    kit.wait_for(f"{robot} reaches the level ids", patience_s=120)
+    assert kit.wait() == 0, kit.output
+    assert kit.output.count("good ") == CHECKS, kit.output
 
 
 def test_nobody_at_the_other_end_is_said(

@@ -23,6 +23,7 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 PATIENCE_MS = 20_000
 LAPTOP = {"viewport": {"width": 1366, "height": 768}, "locale": "en"}
 PHONE = {"viewport": {"width": 360, "height": 740}, "has_touch": True}
+WALL = {"viewport": {"width": 1920, "height": 1080}, "locale": "en"}
 PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
 EVERY_CELL = (
     "state => [...document.querySelectorAll('.scopes .pill')].every(pill => pill.dataset.s === state)"
@@ -391,6 +392,82 @@ def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> 
         page.click("#task-send")
         wait_for_answer(page, "Sending tasks needs an operator", "bad")
         wait_for_stop(page, "stopped")
+
+
+def by_mouse(page: Any) -> None:
+    page.click("#stop")
+
+
+def by_touch(page: Any) -> None:
+    page.tap("#stop")
+
+
+def by_keyboard(page: Any) -> None:
+    focus(page, "#stop")
+    page.keyboard.press("Enter")
+
+
+def by_held_key(page: Any) -> None:
+    page.keyboard.down("Escape")
+    wait_for_stop(page, "stopped")
+    page.keyboard.up("Escape")
+
+
+QUESTIONS = (("sis_a", "release"), ("sis_a", "home"), ("ra1", "home"), ("ra1", "home_by_hand"))
+
+
+@pytest.mark.parametrize(
+    ("press", "screen", "questions"),
+    [
+        (by_mouse, LAPTOP, QUESTIONS),
+        (by_touch, PHONE, QUESTIONS[:1]),
+        (by_keyboard, LAPTOP, QUESTIONS[:1]),
+        (by_held_key, WALL, QUESTIONS[:1]),
+    ],
+    ids=["mouse", "touch", "keyboard", "held key"],
+)
+def test_stop_works_over_every_open_question(
+    press: Callable[[Any], None],
+    screen: dict[str, Any],
+    questions: tuple[tuple[str, str], ...],
+    open_page: Open,
+) -> None:
+    page = open_page("panel", **screen)
+    for scope, verb in questions:
+        cell = "sis_a" if scope == "ra1" else scope
+        page.click(f"[data-scope={cell}]")
+        page.click(f"[data-scope={scope}]")
+        page.click(f".verb[data-verb={verb}] button")
+        page.wait_for_selector("dialog button:focus")
+        press(page)
+        wait_for_stop(page, "stopped")
+        assert page.locator("dialog").count() == 0, "the question is still open"
+        get_ready(page)
+
+
+def test_escape_says_no_and_gives_the_page_back(open_page: Open) -> None:
+    page = open_page("panel")
+    page.click("[data-scope=sis_a]")
+    page.click(".verb[data-verb=home] button")
+    page.wait_for_selector("dialog button:focus")
+    page.keyboard.press("Escape")
+    page.wait_for_selector("dialog", state="detached")
+    assert page.evaluate("document.activeElement.closest('.verb').dataset.verb") == "home"
+    show(page, "tasks")
+    assert page.inner_text(".stop-state") == "Stops every robot of the plant"
+
+
+def test_only_the_stop_can_be_reached_beside_a_question(open_page: Open) -> None:
+    page = open_page("panel")
+    page.click("[data-scope=sis_a]")
+    page.click(".verb[data-verb=home] button")
+    page.wait_for_selector("dialog button:focus")
+    reached = set()
+    for _ in range(8):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.closest('#stop, dialog, body')?.localName"))
+    assert reached <= {"button", "dialog", "body"} and "button" in reached
+    page.keyboard.press("Escape")
 
 
 def test_an_override_is_asked_twice(open_page: Open, tmp_path: Path) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -114,3 +116,54 @@ def test_a_bridge_that_is_ended_halts_what_moves(foreigner: Foreigner, bridge: A
     foreigner.wait_for_state("ra1", 1)
     bridge.interrupt()
     broker.wait_for("'ra_1/paro'")
+
+
+def test_what_is_refused_is_told_with_its_reason(foreigner: Foreigner, observer: Any, bridge: Any) -> None:
+    told = rejections(observer, "ra1", "rm_sis_a")
+    foreigner.say("/ra1/joint_goals_q", [9.0, 0.0, 0.0])
+    foreigner.say("/rm_sis_a/path_cmd", [7.0, 8.0])
+    observer.wait(lambda: len(told("ra1")) == len(told("rm_sis_a")) == 1, "no refusal was told")
+    (goal,), (path,) = told("ra1"), told("rm_sis_a")
+    assert (goal["command"], goal["id"], goal["reason"], goal["count"]) == ("joint_goals_q", "", "limite", 1)
+    assert (path["command"], path["reason"]) == ("path_cmd", "limite")
+    bridge.wait_for("a path begins at the robot's node or next to it")
+    bridge.wait_for("number 1 is 9; allowed: -2.618 to 2.618 rad")
+
+
+def test_a_robot_of_a_live_plant_takes_no_goal_but_a_stop(
+    observer: Any, bridge: Any, node: Callable[..., Any], free_port: int, tmp_path: Path
+) -> None:
+    from std_msgs.msg import String
+
+    told = rejections(observer, "ra1")
+    observer.listen(String, "/plant/view")
+    node("orchestrator", broker=f"127.0.0.1:{free_port}", state_dir=str(tmp_path / "state"))
+    observer.wait(lambda: observer.heard["/plant/view"], "the plant does not start")
+    foreigner = Foreigner(observer)
+    foreigner.wait_for_state("ra1", 0)
+    foreigner.say("/ra1/joint_goals_q", [0.5, 0.2, 0.03])
+    observer.wait(lambda: told("ra1"), "the goal was not refused")
+    assert told("ra1")[0]["reason"] == "foreign"
+    bridge.wait_for("joint_goals_q of /observer was refused (foreign)")
+    foreigner.say("/ra1/stop_cmd", 1)
+    foreigner.wait_for_state("ra1", 4)
+    bridge.wait_for("ra1: stop_cmd 1 of /observer was obeyed")
+
+    def seen() -> list[str]:
+        view = json.loads(observer.heard["/plant/view"][-1].data)
+        return [each["sentence"] for each in view["interference"]]
+
+    observer.wait(lambda: len(seen()) == 2, "the plant's view does not tell of it")
+    assert 1 not in foreigner.states("ra1"), "the arm moved"
+    assert foreigner.still("r1") == pytest.approx([0.0, 0.0, 0.0])
+
+
+def rejections(observer: Any, *robots: str) -> Callable[[str], list[dict[str, Any]]]:
+    """What `/{robot}/rejected` has told since."""
+    from std_msgs.msg import String
+
+    for robot in robots:
+        topic = f"/{robot}/rejected"
+        observer.listen(String, topic)
+        observer.wait(lambda topic=topic: observer.node.count_publishers(topic), f"nobody publishes {topic}")
+    return lambda robot: [json.loads(message.data) for message in observer.heard[f"/{robot}/rejected"]]

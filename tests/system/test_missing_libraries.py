@@ -50,14 +50,6 @@ def test_a_node_names_what_to_install(node: str, library: str, cure: str) -> Non
 
 
 @pytest.mark.usefixtures("ros_domain")
-def test_without_its_broker_virtual_devices_end_with_a_sentence(start: Callable[..., Any]) -> None:
-    devices = start(*program("virtual_devices", "amqtt", "broker:=embedded"), env={"PYTHONPATH": paths()})
-    assert devices.wait() == 1
-    assert "virtual_devices: the Python library amqtt cannot be used here" in devices.output
-    assert "pip install 'amqtt>=0.12.1'" in devices.output and "Traceback" not in devices.output
-
-
-@pytest.mark.usefixtures("ros_domain")
 def test_without_its_library_the_dashboard_is_off_and_the_plant_runs(
     start: Callable[..., Any], tmp_path: Path
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import logging
 import math
@@ -15,7 +16,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
 
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
@@ -42,7 +43,8 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Evidence, Link, MotionState, PlantModel
 from arboleda.testing import shipped
-from arboleda.wire.status import STALE
+from arboleda.wire.status import STALE, to_status
+from arboleda_ros import statuses
 from arboleda_ros.link import connect, limit_discovery
 from arboleda_ros.orchestrator import NoBridge
 
@@ -134,22 +136,69 @@ def pair(links) -> SimpleNamespace:
 
 
 @pytest.mark.parametrize(
-    ("sent", "heard"),
+    "sent",
     [
-        (MOVE, MOVE),
-        (DRIVE, DRIVE),
-        (SetEffector(id="7-3", robot="ra1", on=True), SetEffector(id="", robot="ra1", on=True)),
-        (HALT, replace(HALT, id="")),
-        (Home(id="7-6", robot="rm_sis_a"), Home(id="", robot="rm_sis_a")),
-        (Heartbeat(epoch=1_700_000_000), Heartbeat(epoch=1_700_000_000)),
+        MOVE,
+        DRIVE,
+        SetEffector(id="7-3", robot="ra1", on=True),
+        HALT,
+        Home(id="7-6", robot="rm_sis_a"),
+        Heartbeat(epoch=1_700_000_000),
     ],
     ids=lambda value: type(value).__name__,
 )
-def test_a_command_reaches_the_bridge_with_its_label(pair, sent, heard):
+def test_a_command_reaches_the_bridge_with_its_id(pair, sent):
     pair.orchestrator.port.send(sent)
     eventually(lambda: pair.bridge.events)
-    assert [event.message for event in pair.bridge.events] == [heard]
-    assert pair.bridge.events[0].at == pytest.approx(time.monotonic(), abs=1.0)
+    (event,) = pair.bridge.events
+    assert (event.message, event.copied, event.sender) == (sent, False, "")
+    assert event.at == pytest.approx(time.monotonic(), abs=1.0)
+
+
+def test_who_listens_beside_the_bridge_hears_copies(pair, links):
+    person = Stranger(links(), "person")
+    goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
+    grips = person.hear(UInt8, "/ra1/effector_cmd")
+    commands = pair.orchestrator.port._commands
+    eventually(lambda: commands["ra1", MoveJoints].get_subscription_count() == 2)
+    eventually(lambda: commands["ra1", SetEffector].get_subscription_count() == 2)
+    grip = SetEffector(id="7-3", robot="ra1", on=True)
+    pair.orchestrator.port.send(MOVE)
+    pair.orchestrator.port.send(grip)
+    eventually(lambda: goals and grips and len(pair.bridge.events) == 3)
+    assert [dim.label for dim in goals[0].layout.dim] == ["id=7-1", "copy"]
+    assert grips[0].data == 1
+    heard = [(event.message, event.copied) for event in pair.bridge.events]
+    assert sorted(heard, key=str) == sorted(
+        [(MOVE, False), (grip, True), (replace(grip, id=""), False)], key=str
+    )
+
+
+@pytest.mark.parametrize(
+    ("labels", "data"),
+    [
+        ([], [1.0]),
+        (["id=7-1"], [1.0]),
+        (["id=7-1", "path_cmd"], [1.0]),
+        (["7-1", "effector_cmd"], [1.0]),
+        (["id=7-1", "effector_cmd"], [1.5]),
+        (["id=7-1", "effector_cmd"], [7.0]),
+        (["id=7-1", "effector_cmd"], [math.nan]),
+        (["id=7-1", "effector_cmd"], []),
+    ],
+    ids=lambda value: " ".join(map(str, value)) or "none",
+)
+def test_a_broken_command_with_an_id_is_refused_and_told(links, labels, data):
+    side, tool = Side(links(), "bridge", PLANT), Stranger(links())
+    rejected = tool.hear(String, "/ra1/rejected")
+    eventually(lambda: side.node.count_subscribers("ra1/rejected"))
+    broken = Float32MultiArray(data=data)
+    broken.layout.dim = [MultiArrayDimension(label=label, size=len(data), stride=1) for label in labels]
+    tool.say("/ra1/command", broken)
+    (told,) = eventually(lambda: rejected)
+    assert json.loads(told.data)["reason"] == "formato"
+    assert json.loads(told.data)["count"] == 1
+    assert side.events == []
 
 
 @pytest.mark.parametrize(
@@ -296,6 +345,45 @@ def test_a_person_answers_by_hand_at_evidence_state(links):
     assert (goals[0].layout.dim[0].label, goals[0].layout.dim[0].size) == ("id=7-1", 3)
 
 
+@pytest.mark.parametrize("fallback", [False, True], ids=["EventsExecutor", "SingleThreadedExecutor"])
+def test_a_robot_that_speaks_best_effort_is_heard(links, monkeypatch, fallback):
+    if fallback:
+        monkeypatch.setitem(__import__("sys").modules, "rclpy.experimental", None)
+    side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.STATE))
+    robot = Stranger(links(), "robot")
+    publisher = robot.node.create_publisher(UInt8, "/ra1/motion_state", BEST_EFFORT)
+    until_heard(side, MotionState.MOVING, lambda: publisher.publish(UInt8(data=1)))
+    tell = functools.partial(robot.say, "/ra1/motion_state")
+    until_heard(side, MotionState.FAULT, lambda: tell(UInt8(data=2)))  # who is reliable is heard too
+    tell(UInt8(data=3))
+    eventually(lambda: side.events[-1].state is MotionState.NOT_HOMED)
+    publisher.publish(UInt8(data=0))
+    eventually(lambda: side.events[-1].state is MotionState.STOPPED)
+    assert sum(event.state is MotionState.NOT_HOMED for event in side.events) == 1
+    assert side.port.health().warnings == ()
+
+
+def until_heard(side: Side, state: MotionState, publish: Callable[[], None]) -> None:
+    """Publish again and again: what is best effort gets lost before both ends know one another."""
+
+    def heard() -> bool:
+        publish()
+        time.sleep(0.02)
+        return any(event.state is state for event in side.events)
+
+    eventually(heard)
+
+
+def test_a_status_that_comes_best_effort_is_heard(links):
+    side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.IDS))
+    robot = Stranger(links(), "robot")
+    publisher = robot.node.create_publisher(DiagnosticStatus, "/ra1/status", BEST_EFFORT)
+    said = to_status(shipped("sis_a").robots["ra1"], Report(at=0.0, robot="ra1", state=MotionState.MOVING))
+    message = statuses.diagnostic(said.name, said.hardware_id, said.level, said.message, said.values)
+    until_heard(side, MotionState.MOVING, lambda: publisher.publish(message))
+    assert side.port.health().warnings == ()
+
+
 def test_task_texts_and_triggers_become_requests(links):
     side, user = Side(links(), "orchestrator", PLANT), Stranger(links(), "user")
     user.say("/task_request", String(data="sis_a 0B 7"))
@@ -411,7 +499,7 @@ def test_a_late_listener_still_sees_the_task_status_and_the_view(links):
     for state in (TaskState.QUEUED, TaskState.RUNNING):
         side.port.send(TaskChanged(task="t-1", text="sis_a 0B 7", cell="sis_a", state=state))
     for n in (1, 2):
-        side.port.publish_view({"n": n})
+        assert list(side.port.publish_view({"n": n})) == []
     late = Stranger(links(), "late")
     lines = late.hear(String, "/task_status", LATE)
     views = late.hear(String, "/plant/view", LATE)
@@ -431,7 +519,7 @@ def test_notices_reach_other_nodes(links):
     side.port.send(Journal(verb=Verb.STOP, scope="", sentence="kept in the plant's own process"))
     side.port.send(SystemStart(cell="sis_a"))
     side.port.send(Heartbeat(epoch=7))
-    side.port.publish_diagnostics([silent])
+    assert len(list(side.port.publish_diagnostics([silent]))) == 1
     eventually(lambda: starts and beats and len(diagnostics) > 1)
     assert (starts[0].data, beats[0].data) == (1, 7)
     told = {message.status[0].name: message.status[0] for message in diagnostics}
@@ -462,7 +550,7 @@ def test_the_bridge_tells_of_its_broker_at_once_and_again(links):
 
 def test_a_command_that_no_bridge_hears_is_not_sent(links):
     side = Side(links(), "orchestrator", PLANT)
-    with pytest.raises(NoBridge, match="/ra1/joint_goals_q"):
+    with pytest.raises(NoBridge, match="/ra1/command"):
         side.port.send(MOVE)
 
 
@@ -483,6 +571,17 @@ def test_a_second_orchestrator_of_the_same_name_is_another_node(links):
     second = Side(links(), "orchestrator", PLANT)
     with pytest.raises(StartError, match="/orchestrator"):
         second.port.check_alone(WAIT_S)
+
+
+def test_a_heartbeat_of_the_far_future_is_refused_and_said(links, caplog):
+    side, stranger = Side(links(), "bridge", PLANT), Stranger(links())
+    stranger.say("/plant/heartbeat", UInt32(data=2**32 - 1))
+    eventually(lambda: "a heartbeat of plant 4294967295 is refused" in caplog.text)
+    assert side.port.health().refused == 1
+    epoch = int(time.time())
+    stranger.say("/plant/heartbeat", UInt32(data=epoch))
+    eventually(lambda: Heartbeat(epoch=epoch) in [event.message for event in side.events])
+    assert [event.message.epoch for event in side.events] == [epoch]
 
 
 def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
@@ -510,7 +609,9 @@ def test_an_incompatible_endpoint_is_one_warning_and_the_plant_goes_on(links, ca
     (warning,) = side.port.health().warnings
     assert (diagnostics[0].status[0].message, diagnostics[0].status[0].level) == (warning, b"\x01")
     assert "/ra1/effector_cmd" in warning and "RELIABILITY" in warning
-    assert [record.message for record in caplog.records if record.name == "arboleda.ros"] == [warning]
+    assert [record.message for record in caplog.records if record.name == "arboleda.ros.mqtt_bridge"] == [
+        warning
+    ]
 
 
 def test_a_handler_that_raises_does_not_end_the_thread(links, caplog):

@@ -79,7 +79,7 @@ def test_a_plant_in_a_namespace_of_its_own_works_there(plant: Callable[..., Any]
         ("my_mqtt_bridge", "/plant2"),
         ("my_virtual_devices", "/plant2"),
     }
-    assert {name for name in names(observer) if not name.startswith("/plant2/")} == set()
+    assert {name for name in names(observer) if not name.startswith("/plant2/")} == {"/diagnostics"}
     for process in nodes:
         assert process.interrupt() == 0, process.output
         assert "Traceback" not in process.output

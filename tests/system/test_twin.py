@@ -109,12 +109,13 @@ def same(one: Linked, other: Linked) -> bool:
 
 
 class Plant:
-    """A running plant: the address of its page, and of its broker."""
+    """A running plant: the address of its page, and of its broker where it has one."""
 
     def __init__(self, process: Process) -> None:
         process.wait_for("HTTP API")
         self.page = next(line.split()[-1] for line in process.lines if line.startswith("Page:"))
-        self.broker = next(line.split()[-1] for line in process.lines if line.startswith("MQTT broker:"))
+        brokers = [line.split()[-1] for line in process.lines if line.startswith("MQTT broker:")]
+        self.broker = brokers[0] if brokers else ""
 
 
 @contextmanager

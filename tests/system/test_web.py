@@ -6,17 +6,20 @@ import json
 import re
 import resource
 import socket
+import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing, suppress
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
-from arboleda.adapters.web import connections, server
+from arboleda.adapters import descriptors
+from arboleda.adapters.web.admission import Admission
 
-from .conftest import PATIENCE_S
+from .conftest import PATIENCE_S, Process, paths
 
 pytestmark = pytest.mark.system
 
@@ -86,11 +89,56 @@ def test_a_thousand_idle_sockets_and_readers_that_never_read_keep_nobody_from_th
             talk.sendall(stream if number % 20 == 0 else b"GET /api/plant HTTP/1.1\r\nX-A: ")
         assert arboleda("submit", "sis_a 0B 7").wait() == 0
         up.wait_for("done      sis_a 0B 7")
-        assert open_files(pid) - before <= connections.PER_PEER + server.BACKLOG
+        most = Admission(descriptors.divided(descriptors.SELECT_SEES, boards=6).http).per_peer
+        assert open_files(pid) - before <= most + descriptors.ON_THE_WAY
         assert arboleda("stop").wait() == 0
         assert arboleda("status").wait() == 0
     assert up.interrupt() == 0, up.output
     assert "Traceback" not in up.output
+
+
+@pytest.mark.parametrize("limit", [128, 1024])
+def test_idle_clients_of_the_broker_leave_a_way_in_for_stop(
+    limit: int, many_files: None, start: Callable[..., Process], tmp_path: Path
+) -> None:
+    up = few_files(start, limit, "up", "--no-ros", "--rate", "10", "--state", str(tmp_path / "state"))
+    up.wait_for("HTTP API")
+    web, mqtt = (
+        int(re.search(rf"{what}: [a-z:/]*127.0.0.1:(\d+)", up.output)[1])  # type: ignore[index]
+        for what in ("HTTP API", "MQTT broker")
+    )
+    with ExitStack() as opened:
+        for number in range(limit + 100):
+            talk = opened.enter_context(socket.create_connection(("127.0.0.1", mqtt), timeout=PATIENCE_S))
+            with suppress(ConnectionError):
+                talk.sendall(hello(number) if number % 2 else b"")
+        answers = []
+        for _ in range(20):
+            with closing(HTTPConnection("127.0.0.1", web, timeout=PATIENCE_S)) as person:
+                person.request("POST", "/api/plant/stop")
+                answers.append(person.getresponse().status)
+        assert answers == [200] * 20
+    assert up.interrupt() == 0, up.output
+    assert "Traceback" not in up.output
+
+
+def test_a_limit_of_open_files_that_is_too_low_is_said(start: Callable[..., Process], tmp_path: Path) -> None:
+    up = few_files(start, 64, "up", "--no-ros", "--state", str(tmp_path / "state"))
+    assert up.wait() == 1
+    assert "open files, and the system allows 64" in up.output and "Traceback" not in up.output
+
+
+def few_files(start: Callable[..., Process], limit: int, *args: str) -> Process:
+    """The command, in a process that may have only so many files open."""
+    main = "from arboleda.app.cli import main; main()"
+    words = ("sh", "-c", f'ulimit -n {limit} && exec "$@"', "sh", sys.executable, "-c", main)
+    return start(*words, *args, env={"PYTHONPATH": paths()})
+
+
+def hello(number: int) -> bytes:
+    """What a client of the broker says to come in: CONNECT of MQTT 3.1.1, no keep-alive, an id of its own."""
+    id = f"idle{number:08}".encode()
+    return b"\x10" + bytes([12 + len(id)]) + b"\x00\x04MQTT\x04\x02\x00\x00\x00" + bytes([len(id)]) + id
 
 
 def open_files(pid: int) -> int:

@@ -1,0 +1,44 @@
+"""A short run of scripts/fuzz-reports, and that it finds what it is for."""
+
+from __future__ import annotations
+
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.core import report_check
+from arboleda.core.model import Robot
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-reports"
+RUNS = 4000
+
+
+@pytest.fixture
+def fuzz() -> Any:
+    loader = SourceFileLoader("fuzz_reports", str(SCRIPT))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def test_no_mixture_of_fields_raises_anything(fuzz: Any) -> None:
+    seen = fuzz.run(RUNS, 1)
+    assert sum(seen.values()) == RUNS
+    ways = ("mqtt taken", "mqtt refused", "status taken", "status refused", "unchecked taken")
+    assert all(seen[way] > RUNS / 50 for way in (*ways, "unchecked ignored")), seen
+
+
+def test_a_field_that_a_kind_of_robot_cannot_say_would_be_found(
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def nothing_is_wrong(robot: Robot, report: object) -> None:
+        return None
+
+    monkeypatch.setattr(report_check, "objection", nothing_is_wrong)
+    with pytest.raises((KeyError, ValueError)):
+        fuzz.run(RUNS, 1)
