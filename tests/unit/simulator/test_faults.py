@@ -486,6 +486,18 @@ def test_a_frozen_plant_finds_that_a_day_has_passed_and_everything_else_comes_so
     assert came == [pytest.approx(began + 86_030.0)]
 
 
+def test_what_a_partition_holds_is_held_until_its_end_though_a_day_passes_meanwhile(world):
+    end = begin(world, fault("hop_partition", PLANT, word="to bridge, held", seconds=8.0))
+    thaw = begin(world, fault("plant_freeze", PLANT, seconds=3.0, amount=80_000.0))
+    world.advance(3.0)
+    thaw()
+    world.advance(4.9 - LOOK_S)
+    assert not happened(world, "taken")
+    world.advance(0.2)
+    end()
+    assert happened(world, "taken")
+
+
 @pytest.mark.parametrize(
     ("robot", "word"),
     [(robot, word) for robot in ("ra1", "rm_sis_a") for word in ("home", "clear")]

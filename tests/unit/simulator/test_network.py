@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.simulator.network import Broker, Client, Line
+from arboleda.simulator.network import Broker, Client, Hop, Line
 from arboleda.wire.transport import Publication
 
 TELEMETRY, COMMAND, PRESENCE = "ra_1/sensores", "ra_1/juntas", "ra_1/conexion"
@@ -55,6 +55,17 @@ def net():
 
 def late(seconds):
     return lambda message: (seconds,)
+
+
+def test_what_is_sent_after_a_day_in_which_nobody_did_anything_stays_behind_what_was_under_way():
+    line, hop = Line(), Hop()
+    for way in (line, hop):
+        way.troubles.append(late(8.0))
+    assert line.carry(1.0, "old") == hop.carry_on("ra1/command", 1.0, "old") == [9.0]
+    for way in (line, hop):
+        way.skip(80_000.0)
+        way.troubles.clear()
+    assert line.carry(80_002.0, "new") == hop.carry_on("ra1/command", 80_002.0, "new") == [80_009.0]
 
 
 def test_a_calm_line_brings_everything_at_once():

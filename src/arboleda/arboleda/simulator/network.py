@@ -33,6 +33,10 @@ class Line:
         earliest = now if self.reorders and not keeps_its_place(message) else self.busy_until
         return self._arrivals(now, message, earliest)
 
+    def skip(self, seconds: float) -> None:
+        """Whatever was under way arrives so much later."""
+        self.busy_until += seconds
+
     def _arrivals(self, now: float, message: Any, earliest: float) -> list[float]:
         delays = [0.0]
         for trouble in self.troubles:
@@ -48,6 +52,10 @@ class Hop(Line):
     def __init__(self) -> None:
         super().__init__()
         self._busy_until: dict[str, float] = {}  # by topic
+
+    def skip(self, seconds: float) -> None:
+        super().skip(seconds)
+        self._busy_until = {topic: until + seconds for topic, until in self._busy_until.items()}
 
     def carry_on(self, topic: str, now: float, message: Any) -> list[float]:
         """When each copy of a message of a topic arrives; empty where it is lost."""

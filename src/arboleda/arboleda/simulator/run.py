@@ -66,10 +66,9 @@ class Simulation:
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
         """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
-        end = math.inf if seconds is None else self.watched.start + seconds
         try:
             while not self._enough(cycles, seconds):
-                self._minute(self.result.minutes, end)
+                self._minute(self.result.minutes, math.inf if seconds is None else seconds)
             self._customers.go()
             self.watched.come_to_rest()
         except Broken as broken:
@@ -84,11 +83,11 @@ class Simulation:
         wanted = cycles or 0
         return self._customers.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
 
-    def _minute(self, minute: int, end: float) -> None:
+    def _minute(self, minute: int, seconds: float) -> None:
         self.result.minutes += 1
         for fault in self._plan(minute):
             self.watched.expect(fault)
-        self.world.advance(min(self.watched.start + (minute + 1) * MINUTE_S, end) - self.world.now)
+        self.world.advance(min((minute + 1) * MINUTE_S, seconds) - self.watched.seconds)
 
     def _finished(self) -> Result:
         result = self.result

@@ -32,7 +32,7 @@ from arboleda.wire.hop import HEARTBEAT, FromPlant, command_topic, loses_its_id,
 from arboleda.wire.payloads import Goal
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .network import Broker, Client, Hop
+from .network import Broker, Client, Hop, Line
 
 PLANT, BRIDGE = "plant", "bridge"
 BY_HAND_S = 1.0  # from a robot put right to the word that it is
@@ -194,6 +194,18 @@ class World:
         self.skipped_s += seconds
         self._agenda = [(at + seconds, *rest) for at, *rest in self._agenda]  # in the same order
         self._stalled = {process: until + seconds for process, until in self._stalled.items()}
+        for line in self._lines():
+            line.skip(seconds)
+
+    @property
+    def awake_s(self) -> float:
+        """`now`, less the time in which nobody did anything."""
+        return self.now - self.skipped_s
+
+    def _lines(self) -> Iterable[Line]:
+        yield from (self.to_bridge, self.to_plant)
+        for client in self.broker.clients.values():
+            yield from (client.up, client.down)
 
     def go_on(self, process: str) -> None:
         """A process that is stalled does something again."""
@@ -293,7 +305,7 @@ class World:
 
     def advance(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
         """Let time pass, at most `seconds`; whether `until` came true."""
-        end = self.now - self.skipped_s + seconds
+        end = self.awake_s + seconds
         if self._has_work():
             self.settle()
         while not until():

@@ -106,8 +106,8 @@ def _lose(_: Any) -> tuple[float, ...]:
 
 
 def _hold(world: World, fault: Fault) -> Trouble:
-    end = world.now + fault.seconds
-    return lambda _: (max(0.0, end - world.now),)
+    end = world.awake_s + fault.seconds
+    return lambda _: (max(0.0, end - world.awake_s),)
 
 
 def _sparing(makes: Callable[[Any], tuple[float, ...]]) -> Trouble:
