@@ -28,6 +28,7 @@ from .parts.orchestrator import Orchestrator
 from .parts.part import Part
 from .rate import at_rate
 from .state import StateDir, default_state
+from .waiting import until
 from .web_options import WebOptions
 
 if TYPE_CHECKING:  # its libraries are needed only where this part is
@@ -134,7 +135,7 @@ class App:
 
     def wait(self) -> None:
         """Block until `end`; ArboledaError where a part broke down."""
-        self._over.wait()
+        until(self._over)
         if self._trouble is not None:
             raise self._trouble
 

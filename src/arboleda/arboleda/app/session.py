@@ -25,6 +25,7 @@ from .errand import Errand
 from .log_file import LogFile
 from .log_queue import LogQueue, log_to
 from .screen import Screen, logged, parting, summary
+from .waiting import taken_from
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
@@ -93,7 +94,7 @@ class Session:
         self._news.put(partial(show, *what))
 
     def _show(self) -> None:
-        for news in iter(self._news.get, None):
+        for news in taken_from(self._news):
             news()
 
     def _start(self) -> None:

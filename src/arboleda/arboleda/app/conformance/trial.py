@@ -15,6 +15,7 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..loop import Loop
+from ..waiting import until
 from .bench import Jostle, Send
 from .judge import Judge
 
@@ -60,7 +61,7 @@ class Trial:
             if not self._there.wait(CONNECT_S):
                 raise StartError(f"the MQTT broker at {self._broker} was not reached within {CONNECT_S:g} s")
             self._loop.start()
-            self._over.wait()
+            until(self._over)
         finally:
             self._loop.stop()
             self._halt()

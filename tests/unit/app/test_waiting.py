@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from queue import SimpleQueue
+
+import pytest
+
+from arboleda.app import waiting
+
+WAITS: dict[str, Callable[[], object]] = {
+    "for an event": lambda: waiting.until(threading.Event()),
+    "for a queue": lambda: list(waiting.taken_from(SimpleQueue())),
+}
+
+
+@pytest.fixture(autouse=True)
+def ctrl_c_raises() -> Iterator[None]:
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("wait", WAITS.values(), ids=WAITS)
+def test_a_signal_that_does_not_wake_the_main_thread_ends_its_wait(wait: Callable[[], object]) -> None:
+    """Another thread takes the signal: the main thread's sleep goes on, as when it came just before that."""
+    sender = threading.Thread(target=_signal_once_asleep, args=(threading.get_ident(),))
+    sender.start()
+    with pytest.raises(KeyboardInterrupt):
+        wait()
+    sender.join()
+
+
+def test_an_event_that_is_set_ends_the_wait() -> None:
+    event = threading.Event()
+    setter = threading.Thread(target=event.set)
+    setter.start()
+    waiting.until(event)
+    setter.join()
+
+
+def test_what_is_put_is_taken_in_order_up_to_none() -> None:
+    queue: SimpleQueue[str | None] = SimpleQueue()
+    for word in ("one", "two", None, "three"):
+        queue.put(word)
+    assert list(waiting.taken_from(queue)) == ["one", "two"]
+
+
+def _signal_once_asleep(main: int) -> None:
+    here = None
+    while here is None or here != _place(main):
+        here = _place(main)
+        time.sleep(0.01)
+    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+
+def _place(thread: int) -> tuple[str, int]:
+    """Where the thread is, once that is in one of the waits."""
+    frame = sys._current_frames()[thread]
+    return frame.f_code.co_name, frame.f_lineno
