@@ -198,6 +198,19 @@ def look_flat(browsers: Callable[..., Any]) -> Iterator[Any]:
         yield go
 
 
+def keep(page: Any, what: str) -> Callable[[], list[Any]]:
+    """Have the page keep `what` at every frame that it draws; all that it kept, with the time of each."""
+    page.evaluate(f"""() => {{
+        const draw = arboledaTwin.frame;
+        window.kept = [];
+        arboledaTwin.frame = (...frame) => {{
+            draw(...frame);
+            kept.push([Date.now() / 1000, {what}]);
+        }};
+    }}""")
+    return lambda: page.evaluate("kept")
+
+
 def submit(page: Any, *texts: str) -> None:
     for text in texts:
         answer = page.request.post(f"{page.url.partition('#')[0]}api/tasks", data={"text": text})
@@ -233,23 +246,18 @@ def test_every_link_is_where_the_last_telemetry_puts_it(
 ) -> None:
     page = look(plant.page)
     wait_for(lambda: all(heard.poses.values()))
+    kept = keep(page, "arboledaTwin.links()")
     submit(page, "sis_a 0B 7", "sis_b 1C 3", "sis_c 2A 5")
-    seen: list[tuple[float, dict[str, Linked]]] = []
-
-    def watched() -> bool:
-        links = page.evaluate("arboledaTwin.links()")
-        seen.append((time.time(), links))
-        return ended(page, 3)
-
-    wait_for(watched, 40.0)
-    for name, place in places.items():
-        follow(place, heard.poses[name], [(at, robots[name]) for at, robots in seen])
+    wait_for(lambda: ended(page, 3), 40.0)
 
     def at_rest() -> bool:
         drawn_now = page.evaluate("arboledaTwin.links()")
         return all(same(drawn_now[name], places[name].links(heard.last(name))) for name in places)
 
     wait_for(at_rest)
+    seen = kept()
+    for name, place in places.items():
+        follow(place, heard.poses[name], [(at, robots[name]) for at, robots in seen])
 
 
 def test_nothing_is_sent_to_a_page_that_shows_something_else(plant: Plant, look: Any) -> None:
@@ -413,18 +421,13 @@ def test_what_is_drawn_solid_is_what_joint_states_say(
     from sensor_msgs.msg import JointState
 
     names = {"ra1": "/r1/joint_states", "ra3": "/r3/joint_states", "rm_sis_a": "/rm_sis_a/joint_states"}
-    observer.listen(JointState, *names.values(), qos=1000)  # looking at the page takes its time
-    seen: list[dict[str, Any]] = []
+    observer.listen(JointState, *names.values(), qos=1000)  # asking for the tasks takes its time
     with running(tmp_path) as plant:
         page = look(plant.page)
         observer.wait(lambda: all(observer.heard.values()), "no joint states")
+        kept = keep(page, "arboledaTwin.drawn()")
         submit(page, "sis_a 0B 7", "sis_c 2A 5")
-
-        def watched() -> bool:
-            seen.append(page.evaluate("arboledaTwin.drawn()"))
-            return ended(page, 2)
-
-        observer.wait(watched, "the tasks did not end", 40.0)
+        observer.wait(lambda: ended(page, 2), "the tasks did not end", 40.0)
         over = time.time()
 
         def heard_since() -> bool:
@@ -441,6 +444,7 @@ def test_what_is_drawn_solid_is_what_joint_states_say(
             return all(drawn_now[f"robot/{robot}"]["q"] == pytest.approx(said(robot)[-1]) for robot in names)
 
         observer.wait(at_rest, "what is drawn is not the last that was said")
+        seen = [frame for _, frame in kept()]
         for robot in names:
             known = {tuple(round(value, 9) for value in q) for q in said(robot)}
             poses = {tuple(round(value, 9) for value in frame[f"robot/{robot}"]["q"]) for frame in seen}
