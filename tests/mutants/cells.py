@@ -33,9 +33,9 @@ TASKS = (
         "ended_tasks_stay_ended",
         "To cancel a task that has ended is not refused.",
         edit(
-            Operator._cancel_task,
+            Operator._planned_cancel,
             'raise Refused(f"task {id} has ended already ({task.state.value})")',
-            "return",
+            "return lambda: None",
         ),
         weather={"operator_cancel": 30.0},
     ),

@@ -40,7 +40,7 @@ COMMANDS = (
     mutant(
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
-        edit(Dispatcher._obstacle_to, "if any(entry.is_motion for", "if any(False for"),
+        edit(Dispatcher._obstacle_to, "if self.motion_of(robot) is not None:", "if False:"),
         edit(recipes._settle, "not context.open_commands() and ", ""),
     ),
     mutant(

@@ -145,7 +145,10 @@ def test_a_verb_is_done_or_refused_and_changes_nothing(
     bring(rig)
     assert cell(rig).state is where
     before, sent, told = facts(rig), len(rig.sent), len(rig.to_boards)
+    foretold = rig.plant.refusal(OperatorRequest(at=rig.now, verb=verb, scope=scope))
+    assert facts(rig) == before
     refusal = rig.operate(verb, scope)
+    assert refusal == foretold
     news = [message for message in rig.sent[sent:] if isinstance(message, (Journal, Command))]
     if verb is Verb.STOP or verb in allowed:
         assert refusal is None
@@ -343,7 +346,9 @@ def test_a_fault_while_held_makes_resume_impossible(stage: Stage, evidence: Evid
     robbed = (
         evidence is Evidence.IDS and fault == "the arm's board reboots"
     )  # its effector went off, and says so
-    assert ("no part to go on with" if robbed else "retry") in str(rig.operate(Verb.RESUME, "sis_a"))
+    refusal = str(rig.operate(Verb.RESUME, "sis_a"))
+    assert (refusal == cell(rig).held_by and "abandon sis_a" in refusal) or "stop sis_a" in refusal
+    assert ("no part to go on with" in refusal) is robbed
     rig.wait(10.0)
     assert witness.motions_since(mark, rig.model.robots) == []
     assert rig.operate(Verb.ABANDON, "sis_a") is None

@@ -14,6 +14,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Fact, Journal, Reason, TaskState, Verb
 from arboleda.core.model import Evidence, PlantModel
 from arboleda.testing import Rig, Witness, faults, slowed
+from arboleda.testing.following import advised, follow, works
 
 ZONES = """
 zones:
@@ -386,3 +387,50 @@ def test_whatever_happens_no_two_arms_meet_and_nothing_is_dropped(zoned: Plants,
     states = {name: (cell.state, cell.held_by) for name, cell in rig.plant.cells.items()}
     assert all(state is CellState.IDLE for state, _ in states.values()), states
     assert all(row["state"] == "free" for row in rig.plant.zones.snapshot())
+
+
+def test_two_arms_that_wait_for_each_others_zones_to_be_homed_are_advised_out(zoned: Plants) -> None:
+    rig, witness = start(zoned(Evidence.IDS, 6.0))
+    rig.submit("sis_a 0B 7")
+    rig.submit("sis_b 0B 4")
+    rig.wait_for("sis_a", "main/move to home", 200.0)
+    rig.wait_for("sis_b", "main/move to pick-up")
+    rig.wait(0.1)
+    for board in ("ra_1", "ra_2"):
+        rig.crash(board)
+    rig.wait(20.0)
+    assert zone(rig, "aisle") == ("quarantined", "ra1") and zone(rig, "centre") == ("quarantined", "ra2")
+    assert "which ra2 holds" in str(rig.operate(Verb.HOME, "ra1"))
+    ways = ["see that nobody is in aisle", "override aisle", "home ra2", "home ra1"]
+    assert advised(rig, "sis_a")[:4] == ways
+    follow(rig, "sis_a")
+    follow(rig, "sis_b")
+    assert works(rig, "sis_a") and works(rig, "sis_b")
+    assert witness.collisions == []
+
+
+def test_an_arm_whose_way_home_a_silent_one_blocks_waits_until_that_is_back(zoned: Plants) -> None:
+    rig, witness = start(zoned(Evidence.IDS))
+    meet(rig)
+    rig.power_off("ra_1")
+    rig.crash("ra_2")
+    rig.wait(WAIT_S + 20.0)
+    answered = [
+        f"{act} {name}" for name in ("aisle", "centre") for act in ("see that nobody is in", "override")
+    ]
+    assert advised(rig, "sis_b")[:6] == ["bring ra1 back", *answered, "home ra2"]
+    (blocked,) = [each for each in rig.plant.advice("sis_b") if each.scope == "ra2"]
+    assert blocked.refusal == "ra2 may cross zone aisle, which ra1 holds; home it once the zone is free"
+    assert follow(rig, "sis_b")[:3] == ["bring ra1 back", "home ra1", "home ra2"]
+    honest(witness)
+
+
+def test_an_arm_whose_way_home_a_held_one_blocks_waits_for_what_that_cell_needs(zoned: Plants) -> None:
+    rig, witness = start(zoned(Evidence.IDS))
+    meet(rig)
+    rig.operate(Verb.HOLD, "sis_a")
+    rig.crash("ra_2")
+    rig.wait(WAIT_S + 20.0)
+    assert advised(rig, "sis_b")[:2] == ["resume sis_a", "home ra2"]
+    assert follow(rig, "sis_b")[:2] == ["resume sis_a", "home ra2"]
+    honest(witness)

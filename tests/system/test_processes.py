@@ -107,7 +107,7 @@ def test_a_bridge_back_too_late_leaves_the_cell_held_until_it_is_retried(
     change = parts.outcome("sis_a palletizing")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
     parts.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
-    assert "ra1 is offline" in parts.cell("sis_a")["held_by"]
+    assert "ra1 was lost" in parts.cell("sis_a")["held_by"]
     parts.start("mqtt_bridge")
     parts.wait_until_ready("ra1")
     arm = parts.robot("ra1")

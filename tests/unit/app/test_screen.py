@@ -50,7 +50,7 @@ def test_a_held_cell_says_why_and_what_to_do(rig: Rig) -> None:
     rig.lost = lambda publication: publication.topic == "ra_1/sensores"
     rig.wait(9.0)
     text = " ".join(drawn(rig.snapshot(), 80).split())
-    assert "sis_a is held (ra1 is offline); retry sis_a recovers" in text
+    assert "sis_a is held (ra1 was lost); bring ra1 back, then retry sis_a or abandon sis_a" in text
 
 
 def test_latched_robots_are_told_in_one_line(rig: Rig) -> None:

@@ -238,7 +238,7 @@ def test_nothing_is_found_with_stalls_and_a_slow_line(process):
 
 
 def test_no_command_to_unfit(monkeypatch, bites):
-    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self, was=False: None)
     watch = Watch()
     watch.world.crash("rm_sis_a")
     watch.wait(0.5)
@@ -249,7 +249,7 @@ def test_no_command_to_unfit(monkeypatch, bites):
 
 @pytest.mark.parametrize(("code", "word"), [(2, "faulted"), (4, "latched")])
 def test_no_command_to_unfit__by_its_code(monkeypatch, bites, code, word):
-    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self, was=False: None)
     watch = Watch()
     board = watch.world.boards["rm_sis_a"]
     board.faulted, board.latched = code == 2, code == 4
@@ -260,7 +260,7 @@ def test_no_command_to_unfit__by_its_code(monkeypatch, bites, code, word):
 
 
 def test_no_command_to_unfit__offline(monkeypatch, bites):
-    monkeypatch.setattr(belief.Belief, "obstacle", lambda self: None)
+    monkeypatch.setattr(belief.Belief, "obstacle", lambda self, was=False: None)
     watch = Watch()
     cut(watch, "rm_sis_a")
     watch.wait(3)
@@ -269,7 +269,7 @@ def test_no_command_to_unfit__offline(monkeypatch, bites):
 
 
 def test_no_command_to_unfit__after_a_stop(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "obstacle", lambda self, robot: None)
+    monkeypatch.setattr(dispatcher.Dispatcher, "obstacle", lambda self, robot, was=False: None)
     monkeypatch.setattr(cell.CellRun, "stop", lambda self: None)
     watch = Watch()
     watch.task(wait_s=1)
@@ -286,7 +286,7 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
 
 
 def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "_obstacle_to", lambda self, command, by_hand: None)
+    monkeypatch.setattr(dispatcher.Dispatcher, "motion_of", lambda self, robot: None)
     watch = Watch()
     watch.world.request_verb(Verb.HOME, "ra1")
     watch.verb(Verb.HOME, "ra1")
@@ -397,7 +397,7 @@ def test_each_task_ends_once(monkeypatch, bites):
 
 
 def test_ended_tasks_stay_ended(monkeypatch, bites):
-    monkeypatch.setattr(operator.Operator, "_cancel_task", lambda self, id, failure: None)
+    monkeypatch.setattr(operator.Operator, "_planned_cancel", lambda self, id, failure: lambda: None)
     watch = Watch()
     watch.task(f"{TASK} #one", wait_s=20)
     watch.verb(Verb.CANCEL, "#one")

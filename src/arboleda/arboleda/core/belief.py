@@ -188,30 +188,40 @@ class Belief:
     @property
     def unhomed(self) -> bool:
         """Whether its position means nothing: it says so, or it must have rebooted."""
-        return self.homed is False or self.displaced or self.state is MotionState.NOT_HOMED
+        return self.displaced or self.says_unhomed
 
-    def obstacle(self) -> Failure | None:
-        """Why no command may go to this robot; None where it is ready."""
-        return self._failure(self.trouble)
+    @property
+    def says_unhomed(self) -> bool:
+        """Whether the board itself says that it is not homed."""
+        return self.homed is False or self.state is MotionState.NOT_HOMED
 
-    def obstacle_besides_stop(self) -> Failure | None:
+    def obstacle(self, *, was: bool = False) -> Failure | None:
+        """Why no command may go to this robot, None where it is ready; `was`: in words that stay true."""
+        return self._failure(self.trouble, was=was)
+
+    def stopped(self, *, was: bool = False) -> Failure | None:
+        """What keeps a robot from every command that an operator of this plant stopped."""
+        return self._failure(STOPPED, was=was)
+
+    def obstacle_besides_stop(self, *, was: bool = False) -> Failure | None:
         """The same for what a stop does not forbid; being stopped hides that a robot is not homed."""
         trouble = self.trouble
         if trouble is STOPPED:
             trouble = UNHOMED if self.unhomed else None
-        return self._failure(trouble)
+        return self._failure(trouble, was=was)
 
-    def _failure(self, trouble: Trouble | None) -> Failure | None:
+    def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
         if trouble is None:
             return None
-        reason, said = trouble
-        return Failure(reason=reason, sentence=f"{self.robot.name} {said}")
+        said = trouble.was if was else trouble.said
+        return Failure(reason=trouble.reason, sentence=f"{self.robot.name} {said}")
 
     def _unanswered(self) -> Trouble:
         """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""
         if self.plant is None or self.plant < self.plant_epoch:
             return UNANSWERED
-        return (Reason.LINK_LOST, FENCED.format(self.plant, self.plant_epoch))
+        said, was = (each.format(self.plant, self.plant_epoch) for each in (FENCED, WAS_FENCED))
+        return Trouble(Reason.LINK_LOST, said, was)
 
     @property
     def trouble(self) -> Trouble | None:
@@ -226,20 +236,32 @@ class Belief:
         return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
 
 
-Trouble = tuple[Reason, str]
+class Trouble(NamedTuple):
+    """What is said of a robot while it is so, and of what it was the cause afterwards."""
+
+    reason: Reason
+    said: str
+    was: str
+
+
 FENCED = (
     "is fenced off: its bridge obeys plant {}, which started after this one ({}); "
     "end that plant, then start the bridge anew, or this plant where it brings the bridge"
 )
-DRAWN = (Reason.LINK_LOST, "is only drawn (link: none)")
-OFFLINE = (Reason.LINK_LOST, "is offline")
-UNHEARD = (Reason.LINK_LOST, "was not heard yet")
-UNANSWERED = (Reason.LINK_LOST, "has a bridge that does not hear this plant yet")
-UNHOMED = (Reason.NOT_HOMED, "is not homed")
-MOVING = (Reason.REJECTED, "is still moving")
-STOPPED = (Reason.STOPPED, "is stopped (latched)")
+WAS_FENCED = "was fenced off: its bridge obeyed plant {}, which started after this one ({})"
+DRAWN = Trouble(Reason.LINK_LOST, "is only drawn (link: none)", "is only drawn (link: none)")
+OFFLINE = Trouble(Reason.LINK_LOST, "is offline", "was lost")
+UNHEARD = Trouble(Reason.LINK_LOST, "was not heard yet", "had not been heard yet")
+UNANSWERED = Trouble(
+    Reason.LINK_LOST,
+    "has a bridge that does not hear this plant yet",
+    "had a bridge that did not hear this plant yet",
+)
+UNHOMED = Trouble(Reason.NOT_HOMED, "is not homed", "was not homed")
+MOVING = Trouble(Reason.REJECTED, "is still moving", "was still moving")
+STOPPED = Trouble(Reason.STOPPED, "is stopped (latched)", "was stopped (latched)")
 TROUBLES: dict[MotionState | None, Trouble] = {
     MotionState.MOVING: MOVING,
-    MotionState.FAULT: (Reason.DEVICE_FAULT, "is in fault"),
+    MotionState.FAULT: Trouble(Reason.DEVICE_FAULT, "is in fault", "was in fault"),
     MotionState.STOP_LATCHED: STOPPED,
 }

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import recipes, tree_view
+from . import advice, recipes, tree_view
+from .advice import Advice
 from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
 from .context import Context
@@ -29,6 +30,7 @@ class CellRun:
         context: Context,
         changed: Callable[[Task], None],
         build: Callable[[Order, Context], Behaviour] = recipes.build,
+        ways_out: Callable[[str], Sequence[Advice]] = lambda cell: (),
     ) -> None:
         self.cell = cell
         self.context = context
@@ -43,6 +45,7 @@ class CellRun:
         self.closed = False
         self._changed = changed
         self._build = build
+        self._ways_out = ways_out
         self._cancelling = False
         self._stopped_after: dict[str, Moment] = {}
         self._stop_by = 0.0
@@ -66,28 +69,45 @@ class CellRun:
             return "the plant is ending"
         if self.state is CellState.EXECUTE:
             return f"{name} is busy"
+        if self.state is CellState.IDLE:
+            return self.not_ready
+        why = f" ({self.trouble.sentence})" if self.trouble else ""
+        return self.held_by or f"{name} is {self.state.value}{why}; {self._next()}"
+
+    @property
+    def not_ready(self) -> str | None:
+        """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
-            why = f" ({self.trouble.sentence})" if self.trouble else ""
-            return self.held_by or f"{name} is {self.state.value}{why}; {NEXT[self.state].format(name)}"
-        if self.queue_paused:
-            return f"the queue of {name} is paused; resume {name} starts it"
-        return self._unready()
+            return None
+        return self._unready() or (self.why_paused if self.queue_paused else None)
 
     @property
     def held_by(self) -> str | None:
         """What holds the cell and what can be done about it; None where it is not held."""
         if self.state is not CellState.HELD:
             return None
-        name, arm = self.cell.name, self.cell.arm.name
-        why = self.trouble.sentence if self.trouble else "by the operator"
-        if self.stranded:
-            ways = f"{self.stranded}: abandon {name}"
-        elif self.task is not None:
-            ways = f"retry {name} or abandon {name}" if self.trouble else f"resume {name} or abandon {name}"
-        else:
-            release = f"release {arm} opens the effector; " if self.context.holding() else ""
-            ways = f"{release}retry {name} recovers, abandon {name} leaves it as it is"
-        return f"{name} is held ({why}); {ways}"
+        stranded = f"{self.stranded}: " if self.stranded else ""
+        return f"{self.cell.name} is held ({self.why_held}); {stranded}{self._next()}"
+
+    @property
+    def why_held(self) -> str:
+        """The cause of a hold."""
+        return self.trouble.sentence if self.trouble else "by the operator"
+
+    @property
+    def why_stopped(self) -> str:
+        """The cause of a stop, or that it was not confirmed."""
+        return self.trouble.sentence if self.trouble else f"{self.cell.name} was stopped by the operator"
+
+    @property
+    def why_paused(self) -> str:
+        name = self.cell.name
+        return f"the queue of {name} is paused; resume {name} starts it"
+
+    def _next(self) -> str:
+        """What leads out of the present state, in words."""
+        ways = NEXT.get(self.state) or advice.sentence(self._ways_out(self.cell.name))
+        return ways or self._busy() or "wait"
 
     def advance(self, *, woken: bool) -> bool:
         """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
@@ -280,11 +300,18 @@ class CellRun:
         return only_grip and not self.context.holding()
 
     def _unready(self) -> str | None:
-        if busy := self.context.open_commands():
-            return f"{busy[0].command.robot} is still {busy[0].doing}"
+        if busy := self._busy():
+            return busy
         found = [self.context.obstacle(robot.name) for robot in self.cell.reached]
         found += [self.context.astray(), self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)
+
+    def _busy(self) -> str | None:
+        """What a robot of the cell is still doing."""
+        open_commands = self.context.open_commands()
+        return (
+            f"{open_commands[0].command.robot} is still {open_commands[0].doing}" if open_commands else None
+        )
 
     def _grip_unsettled(self) -> Failure | None:
         if not self.context.holding():
@@ -298,7 +325,7 @@ class CellRun:
             entry = act.entry
             if entry is not None and entry.state is State.FAILED and not entry.too_early:
                 return entry.failure
-        found = (self.context.obstacle(robot.name) for robot in self.cell.reached)
+        found = (self.context.obstacle(robot.name, was=True) for robot in self.cell.reached)
         return next((failure for failure in found if failure), None)
 
     def _again(self, cause: Cause) -> None:
@@ -373,11 +400,8 @@ class CellRun:
 
 NEXT = {
     CellState.HOLDING: "wait until it stands still",
-    CellState.HELD: "resume {0} or abandon {0}",
     CellState.ABORTING: "wait until it stands still",
-    CellState.ABORTED: "clear {0}, then reset {0}",
     CellState.CLEARING: "wait until its robots have left their stop",
-    CellState.STOPPED: "reset {0}",
     CellState.RESETTING: "wait",
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from py_trees.behaviour import Behaviour
 
@@ -13,7 +13,7 @@ from .dispatcher import Dispatcher, Make
 from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
-from .model import Cell, MotionState, Pose, Timing
+from .model import Cell, Evidence, MotionState, Pose, Timing
 from .zones import Zones
 
 __all__ = ["Context", "Make"]
@@ -112,9 +112,26 @@ class Context:
         """Where the cell's mobile robot is known to stand."""
         return self._dispatcher.beliefs[self.cell.mobile.name].known_node
 
-    def obstacle(self, robot: str) -> Failure | None:
-        """Why a robot takes no command now."""
-        return self._dispatcher.obstacle(robot)
+    def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
+        """Why a robot takes no command now; `was`: in words that stay true."""
+        return self._dispatcher.obstacle(robot, was=was)
+
+    def obstacle_besides_stop(self, robot: str) -> Failure | None:
+        """The same, were it not stopped."""
+        return self._dispatcher.beliefs[robot].obstacle_besides_stop()
+
+    def says_unhomed(self, robot: str) -> bool:
+        """Whether a robot's board says that it is not homed."""
+        return self._dispatcher.beliefs[robot].says_unhomed
+
+    def is_displaced(self, robot: str) -> bool:
+        """Whether a robot must have rebooted and cannot say so, until somebody says that it is homed."""
+        return self._dispatcher.beliefs[robot].displaced
+
+    def homes_by_routine(self, robot: str) -> bool:
+        """Whether a robot finds its reference by itself; else somebody puts it there and says so."""
+        belief = self._dispatcher.beliefs[robot]
+        return belief.robot.evidence is Evidence.IDS and (belief.robot.says_homed or belief.says_unhomed)
 
     def moves(self, robot: str) -> bool:
         """Whether a robot says that it is still moving."""
@@ -207,6 +224,22 @@ class Context:
             return False
         self._keep_zones()
         return True
+
+    def awaited_zones(self, zones: Iterable[str]) -> dict[str, str]:
+        """Those of the zones that somebody else holds, and who."""
+        holders = {zone: self._zones.holder(zone) for zone in zones}
+        return {zone: arm for zone, arm in holders.items() if arm is not None and arm != self.cell.arm.name}
+
+    def awaited_by_recovery(self) -> dict[str, str]:
+        """The zones that a recovery would wait for, and who holds them; inside its zones it needs no more."""
+        arm = self.cell.arm.name
+        if self._zones.held_by(arm) and arm not in self._zones.robbed:
+            return {}
+        return self.awaited_zones(self.recovery_zones())
+
+    def is_quarantined(self, zone: str) -> bool:
+        """Whether a silent robot may be in a zone."""
+        return self._zones.is_quarantined(zone)
 
     def claim_zones(self) -> None:
         """Take every zone the arm may get into, for a way that begins where nobody knows; it must be free."""

@@ -89,7 +89,7 @@ class Dispatcher:
         command = make(id=self._new_id())
         deadline = now + self._allowed_s(command)
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
-        obstacle = self._obstacle_to(command, by_hand=by_hand)
+        obstacle = self._obstacle_to(command, by_hand=by_hand, was=True)
         if obstacle is not None:
             failure = replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}")
             entry.refuse(failure, too_early=self._may_be_the_end_of_its_last_move(command.robot))
@@ -123,11 +123,15 @@ class Dispatcher:
         for entry in self.ledger.of_cell(cell):
             self.cancel(entry, now)
 
-    def obstacle(self, robot: str) -> Failure | None:
-        """Why a robot takes no command now."""
+    def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
+        """Why a robot takes no command now; `was`: in words that stay true."""
         if robot in self.latched:
-            return Failure(reason=Reason.STOPPED, sentence=f"{robot} is stopped (latched)")
-        return self.beliefs[robot].obstacle()
+            return self.beliefs[robot].stopped(was=was)
+        return self.beliefs[robot].obstacle(was=was)
+
+    def motion_of(self, robot: str) -> Entry | None:
+        """The motion of a robot that has not ended."""
+        return next((entry for entry in self.ledger.of_robot(robot) if entry.is_motion), None)
 
     def obstacle_to_opening(self, arm: str) -> Failure | None:
         """Why an arm's effector cannot be opened by hand now."""
@@ -317,18 +321,19 @@ class Dispatcher:
         """What of a belief trees and screens react to: everything but positions."""
         return (belief.trouble, belief.piece, belief.effector)
 
-    def _obstacle_to(self, command: Command, *, by_hand: bool) -> Failure | None:
+    def _obstacle_to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
         robot = command.robot
-        if any(entry.is_motion for entry in self.ledger.of_robot(robot)):
-            return Failure(reason=Reason.REJECTED, sentence=f"{robot} has an open motion command")
-        obstacle = self.obstacle(robot)
+        if self.motion_of(robot) is not None:
+            sentence = f"{robot} {'had' if was else 'has'} an open motion command"
+            return Failure(reason=Reason.REJECTED, sentence=sentence)
+        obstacle = self.obstacle(robot, was=was)
         if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
             return None
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command):
             return None  # its last code may be older than the end of its last move, which was proven
         if by_hand and obstacle and obstacle.reason is Reason.STOPPED:
-            return self.beliefs[robot].obstacle_besides_stop()
+            return self.beliefs[robot].obstacle_besides_stop(was=was)
         return obstacle
 
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:

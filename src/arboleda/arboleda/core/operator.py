@@ -57,35 +57,48 @@ class Operator:
 
     def act(self, request: OperatorRequest) -> None:
         """Do it and journal it; Refused says why nothing was done."""
-        scope = request.scope.strip().lower() if request.verb is not Verb.CANCEL else request.scope.strip()
-        if request.verb is Verb.OVERRIDE:
-            self._override(scope)
-        elif request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
-            self._cancel_task(scope.lstrip("#"), _cancelled_by(request))
-        else:
-            self._on_robots(request, scope)
+        scope = _scope(request)
+        self._planned(request, scope)()
         how = " by hand" if request.by_hand else " by its client" if request.client else ""
         sentence = f"{request.verb.value} {scope or 'plant'}{how}"
         self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=sentence))
         number = self.acts[-1].number + 1 if self.acts else 1
         self.acts.append(OperatorAct(number=number, at=self._clock(), scope=scope, sentence=sentence))
 
-    def _on_robots(self, request: OperatorRequest, scope: str) -> None:
+    def refusal(self, request: OperatorRequest) -> str | None:
+        """Why a request would be refused now; None where it would be done."""
+        try:
+            self._planned(request, _scope(request))
+        except Refused as refused:
+            return str(refused)
+        return None
+
+    def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
+        """What does the request, everything that speaks against it looked at; Refused says what does."""
+        if request.verb is Verb.OVERRIDE:
+            return self._planned_override(scope)
+        if request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
+            return self._planned_cancel(scope.lstrip("#"), _cancelled_by(request))
         robots = self._robots(scope)
         if request.verb is Verb.HOME:
-            self._home(robots, by_hand=request.by_hand)
-            return
-        check, act = ACTS[request.verb]
+            return self._planned_homing(robots, by_hand=request.by_hand)
+        return self._planned_in_cells(request.verb, robots)
+
+    def _planned_in_cells(self, verb: Verb, robots: set[str]) -> Callable[[], None]:
+        check, act = ACTS[verb]
         names = {self._dispatcher.model.cell_of[robot].name for robot in robots}
         cells = [cell for name, cell in self._cells.items() if name in names]
         refusals = {cell.cell.name: why for cell in cells if (why := check(self, cell, robots))}
-        must = MUST_ALL.get(request.verb, ())
+        must = MUST_ALL.get(verb, ())
         firm = [cell.cell.name for cell in cells if cell.state in must and cell.cell.name in refusals]
         if firm or len(refusals) == len(cells):
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
+        able = [cell for cell in cells if cell.cell.name not in refusals]
+        return partial(self._do_in, able, act, robots)
+
+    def _do_in(self, cells: list[CellRun], act: Do, robots: set[str]) -> None:
         for cell in cells:
-            if cell.cell.name not in refusals:
-                self._do(act, cell, robots)
+            self._do(act, cell, robots)
 
     def _do(self, act: Do, cell: CellRun, robots: set[str]) -> None:
         """Do it in one cell; what that raises must not keep the others from a stop."""
@@ -108,15 +121,19 @@ class Operator:
         known = ", ".join([*self._cells, *names])
         raise Refused(f"{quoted(scope)} is neither a cell nor a robot of this plant; there are {known}")
 
-    def _override(self, zone: str) -> None:
+    def _planned_override(self, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
         if holder is not None and self._zones.is_quarantined(zone) and self._works(holder):
             name = self._dispatcher.model.cell_of[holder].name  # what it does there counts on the zone
             raise Refused(f"{holder} has not given up its work in {zone}; stop {name}, then override {zone}")
         try:
-            granted = self._zones.override(zone)
+            self._zones.require_quarantined(zone)
         except IllegalTransition as error:
             raise Refused(str(error)) from error
+        return partial(self._override, zone)
+
+    def _override(self, zone: str) -> None:
+        granted = self._zones.override(zone)
         self._dispatcher.forget_zone(zone)
         self._dispatcher.wake({*granted, *self._zones.robbed})
 
@@ -126,32 +143,33 @@ class Operator:
         moves = any(entry.is_motion for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
 
-    def _cancel_task(self, id: str, failure: Failure) -> None:
+    def _planned_cancel(self, id: str, failure: Failure) -> Callable[[], None]:
         task = self._intake.tasks[id]
         cell = self._cells[task.order.cell]
         if task.state is TaskState.QUEUED:
-            cell.drop(task, failure)
-        elif task is cell.task:
-            if why := _not_cancellable(self, cell, set()):
-                raise Refused(why)
-            cell.cancel(failure)
-        else:
+            return partial(cell.drop, task, failure)
+        if task is not cell.task:
             raise Refused(f"task {id} has ended already ({task.state.value})")
+        if why := _not_cancellable(self, cell, set()):
+            raise Refused(why)
+        return partial(cell.cancel, failure)
 
-    def _home(self, robots: set[str], *, by_hand: bool) -> None:
+    def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
         for name in sorted(robots):
             obstacle = self._not_homeable(name, by_hand=by_hand)
             if obstacle:
                 raise Refused(obstacle)
-        if by_hand:
-            for name in sorted(robots):
+        if not by_hand and (occupied := self.not_free_for_homing(robots)):
+            raise Refused(occupied)
+        return partial(self._home, robots, by_hand=by_hand)
+
+    def _home(self, robots: set[str], *, by_hand: bool) -> None:
+        for name in sorted(robots):
+            if by_hand:
                 self._dispatcher.declare_homed(name)
                 self._uproot(name)
-            return
-        if occupied := self.not_free_for_homing(robots):
-            raise Refused(occupied)
-        for name in sorted(robots):
-            self.home(name)
+            else:
+                self.home(name)
 
     def home(self, name: str) -> None:
         """Have a robot run its homing routine; an arm keeps everybody out of its zones meanwhile."""
@@ -183,13 +201,17 @@ class Operator:
         belief = self._dispatcher.beliefs[name]
         if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
             return refusal
+        if motion := self._dispatcher.motion_of(name):
+            return f"{name} is still {motion.doing}"
+        robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
+        if by_hand and robot.says_homed:
+            return f"{name} says itself whether it is homed; home {name} runs its routine"
+        if belief.says_unhomed and (by_hand or not has_routine):
+            way = f"home {name} runs its routine" if has_routine else f"home {name} at its own controls first"
+            return f"{name} says that it is not homed; {way}"
         if by_hand:
-            return (
-                f"{name} says itself whether it is homed; home {name} runs its routine"
-                if belief.robot.says_homed
-                else None
-            )
-        if belief.robot.evidence is not Evidence.IDS:
+            return None
+        if not has_routine:
             return f"{name} cannot report a homing; put it at its reference and say: home {name} --by-hand"
         obstacle = self._dispatcher.obstacle(name)
         return obstacle.sentence if obstacle and obstacle.reason is not Reason.NOT_HOMED else None
@@ -244,6 +266,12 @@ class Operator:
         cell.let_go()
         make = partial(SetEffector, robot=cell.cell.arm.name, on=False)
         self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock(), by_hand=True)
+
+
+def _scope(request: OperatorRequest) -> str:
+    """Whom or what a request names; only task ids tell capitals apart."""
+    scope = request.scope.strip()
+    return scope if request.verb is Verb.CANCEL else scope.lower()
 
 
 def _always(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:

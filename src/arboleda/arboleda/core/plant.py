@@ -9,6 +9,8 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
+from .advice import Advice
+from .advisor import Advisor
 from .cell import CellRun
 from .cell_states import CellState
 from .context import Context
@@ -79,6 +81,7 @@ class Plant:
         self._operator = Operator(
             self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now, self._break_down
         )
+        self._advisor = Advisor(self.cells, self._operator.refusal)
         self._to_home = {name for name, robot in model.robots.items() if robot.home_at_start}
         self._runs = {robot.name: run for run in self.cells.values() for robot in run.cell.robots}
         self._order = {name: number for number, name in enumerate(self.cells)}
@@ -125,6 +128,14 @@ class Plant:
         """What operators did last, oldest first."""
         return self._operator.acts
 
+    def advice(self, cell: str) -> tuple[Advice, ...]:
+        """What leads a cell out of its present state, in the order to do it; nothing where it works."""
+        return self._advisor.advice(cell)
+
+    def refusal(self, request: OperatorRequest) -> str | None:
+        """Why a request of an operator would be refused now; None where it would be done."""
+        return self._operator.refusal(request)
+
     @property
     def at_rest(self) -> bool:
         """Whether no task runs and no command is open."""
@@ -139,12 +150,15 @@ class Plant:
 
     def _run(self, cell: Cell) -> CellRun:
         context = Context(cell, self.dispatcher, self.zones, lambda: self.now)
-        run = CellRun(cell, context, self._task_changed, self._build)
+        run = CellRun(cell, context, self._task_changed, self._build, self._ways_out)
         if any(robot.name in self.dispatcher.latched for robot in cell.robots):
             run.start_in(CellState.ABORTED)
         elif any(robot.name in self.dispatcher.cleared for robot in cell.robots):
             run.start_in(CellState.STOPPED)
         return run
+
+    def _ways_out(self, cell: str) -> tuple[Advice, ...]:
+        return self._advisor.ways_out(cell)
 
     def _build(self, order: Order, context: Context) -> Behaviour:
         return self._recipes[order.recipe](order, context)

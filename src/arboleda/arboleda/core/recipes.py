@@ -110,8 +110,8 @@ def _settle(context: Context) -> Behaviour:
         return not context.open_commands() and context.obstacle(arm) is None
 
     def unsettled() -> Failure:
-        failure = context.obstacle(arm)
-        sentence = f"{arm} has commands that do not end"
+        failure = context.obstacle(arm, was=True)
+        sentence = f"{arm} had commands that did not end"
         return failure or Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
 
     return Await("settle", context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)

@@ -118,13 +118,17 @@ class Zones:
 
         IllegalTransition where there is nothing to override.
         """
+        self.require_quarantined(zone)
+        self._robbed.add(self._holders[zone])
+        return self._free(frozenset({zone}))
+
+    def require_quarantined(self, zone: str) -> None:
+        """IllegalTransition where there is nothing to override."""
         self._require_known(zone)
         if zone not in self._quarantined:
             holder = self.holder(zone)
             now = f"held by {holder}, which still reports" if holder else "free"
             raise IllegalTransition(f"zone {zone} is {now}; only a quarantined zone can be overridden")
-        self._robbed.add(self._holders[zone])
-        return self._free(frozenset({zone}))
 
     def _free(self, zones: frozenset[str]) -> tuple[str, ...]:
         self._quarantined -= zones

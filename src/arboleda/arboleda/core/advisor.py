@@ -1,0 +1,194 @@
+"""Which ways lead a cell out of its present state: by the cell, its robots and the zones, nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from .advice import Advice, Hand
+from .cell import CellRun
+from .cell_states import CellState
+from .messages import OperatorRequest, Reason, Verb
+
+Refusal = Callable[[OperatorRequest], "str | None"]
+
+
+class Advisor:
+    """Knows the ways out of every cell, from nothing but the present state."""
+
+    def __init__(self, cells: Mapping[str, CellRun], refusal: Refusal) -> None:
+        self._cells = cells
+        self._refusal = refusal
+        self._cell_of = {robot.name: run for run in cells.values() for robot in run.cell.robots}
+
+    def advice(self, cell: str) -> tuple[Advice, ...]:
+        """The ways out of a cell, each with why it would be refused now."""
+        return tuple(replace(each, refusal=self._refused(each)) for each in self.ways_out(cell))
+
+    def ways_out(self, cell: str, asked: frozenset[str] = frozenset()) -> tuple[Advice, ...]:
+        """What to do, in order; nothing where the cell works or only time is needed.
+
+        `asked`: the cells that wait for this one to give its zones back.
+        """
+        run = self._cells[cell]
+        lead = LEADS.get(run.state)
+        if lead is None or run.closed:
+            return ()
+        found: dict[Advice, None] = dict.fromkeys(lead(self, run, asked | {cell}))
+        return tuple(found)
+
+    def _refused(self, advice: Advice) -> str | None:
+        if isinstance(advice.do, Hand):
+            return None
+        return self._refusal(_request(advice.do, advice.scope, by_hand=advice.by_hand))
+
+    def _idle(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        if run.context.open_commands():
+            return
+        readying = [*self._readying(run, asked)]
+        yield from readying
+        if not (readying and readying[0].do is Verb.STOP):
+            yield from _running_again(run)
+
+    def _held(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        if run.context.open_commands():
+            return
+        readying = [*self._readying(run, asked)]
+        yield from readying
+        if readying and readying[0].do is Verb.STOP:
+            return
+        arm = run.cell.arm.name
+        uproots = any(each.do is Verb.HOME and each.scope == arm for each in readying)
+        if run.task is None:
+            yield from self._recovering(run, asked)
+        elif run.stranded or uproots:
+            yield _abandon(run, f"{arm} will have been homed" if uproots else run.stranded or "")
+        else:
+            verb = Verb.RETRY if run.trouble else Verb.RESUME
+            yield Advice(do=verb, scope=run.cell.name, why=run.why_held, moves=_movers(run))
+            yield replace(_abandon(run, run.why_held), instead=True)
+
+    def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        name, arm, holding = run.cell.name, run.cell.arm.name, run.context.holding()
+        yield from self._freeing(run, run.context.awaited_by_recovery(), asked)
+        yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=(arm,))
+        if holding:
+            yield Advice(do=Verb.RELEASE, scope=arm, why=run.why_held, drops=(arm,), instead=True)
+        yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding)
+
+    def _aborted(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        name = run.cell.name
+        readying = [*self._readying(run, asked)]
+        yield from (each for each in readying if each.do is Hand.REPAIR)  # what is in fault is not still
+        yield Advice(do=Verb.CLEAR, scope=name, why=run.why_stopped)
+        yield from self._stopped(run, asked)
+
+    def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
+        yield from self._readying(run, asked)
+        if run.context.holding():
+            yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=(run.cell.arm.name,))
+        yield from _running_again(run)
+
+    def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
+        """What the robots of a cell need before they can work: a stop first, as it ends what is under way."""
+        by_reason: list[Advice] = []
+        seen = run.context.obstacle if run.state in AT_HAND else run.context.obstacle_besides_stop
+        for robot in run.cell.reached:
+            obstacle = seen(robot.name)
+            if obstacle is None:
+                continue
+            if obstacle.reason is Reason.STOPPED:
+                yield from _stopping(run, obstacle.sentence)
+                return
+            if obstacle.reason in HANDS:
+                by_reason.append(Advice(do=HANDS[obstacle.reason], scope=robot.name, why=obstacle.sentence))
+            elif obstacle.reason is Reason.NOT_HOMED:
+                by_reason += self._homing(run, robot.name, obstacle.sentence, asked)
+        astray = run.context.astray() if run.state is CellState.IDLE else None
+        arm = run.cell.arm.name
+        if astray is not None and not any(each.scope == arm for each in by_reason):
+            by_reason += self._homing(run, arm, astray.sentence, asked)
+        yield from by_reason
+
+    def _homing(self, run: CellRun, robot: str, why: str, asked: frozenset[str]) -> Iterator[Advice]:
+        by_routine = run.context.homes_by_routine(robot)
+        if by_routine:
+            if robot == run.cell.arm.name:
+                yield from self._freeing(run, run.context.awaited_zones(run.cell.zones), asked)
+            yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,))
+            return
+        if run.context.says_unhomed(robot):
+            yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
+            if not run.context.is_displaced(robot):
+                return
+        yield Advice(do=Verb.HOME, scope=robot, why=why, by_hand=True)
+
+    def _freeing(self, run: CellRun, zones: Mapping[str, str], asked: frozenset[str]) -> Iterator[Advice]:
+        """What has others give zones back: what their cells need first; between two that wait for each other,
+        and for an arm that is not heard, somebody may answer for a zone being empty.
+        """
+        for holder in sorted(set(zones.values())):
+            other = self._cell_of[holder]
+            waits_too = other.cell.name in asked
+            leads = () if waits_too else self.ways_out(other.cell.name, asked)
+            by_hand = bool(leads) and leads[0].do in HANDS.values()
+            yield from leads[:1] if by_hand else _until_it_moves(leads)
+            if waits_too or by_hand:
+                its = [zone for zone in sorted(zones) if zones[zone] == holder]
+                silent = [zone for zone in its if run.context.is_quarantined(zone)]
+                yield from self._overriding(silent, other, instead=by_hand)
+
+    def _overriding(self, zones: Sequence[str], other: CellRun, *, instead: bool) -> Iterator[Advice]:
+        holder = other.cell.arm.name
+        for zone in zones:
+            why = f"{holder} may still be in {zone}, which is quarantined"
+            yield Advice(do=Hand.CHECK, scope=zone, why=why, instead=instead)
+            if self._refusal(_request(Verb.OVERRIDE, zone)) is not None:
+                yield Advice(do=Verb.STOP, scope=other.cell.name, why=why)
+            yield Advice(do=Verb.OVERRIDE, scope=zone, why=why)
+            instead = False
+
+
+def _request(verb: Verb, scope: str, *, by_hand: bool = False) -> OperatorRequest:
+    return OperatorRequest(at=0.0, verb=verb, scope=scope, by_hand=by_hand)
+
+
+def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:
+    """Up to and including the first verb that is for a robot or its cell, not for a zone."""
+    for each in ways:
+        yield each
+        if isinstance(each.do, Verb) and each.do is not Verb.OVERRIDE:
+            return
+
+
+def _stopping(run: CellRun, why: str) -> Iterator[Advice]:
+    """Somebody else stopped a robot: our own stop, which can be cleared."""
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        yield Advice(do=verb, scope=run.cell.name, why=why)
+
+
+def _abandon(run: CellRun, why: str) -> Advice:
+    return Advice(do=Verb.ABANDON, scope=run.cell.name, why=why, moves=(run.cell.arm.name,))
+
+
+def _running_again(run: CellRun) -> Iterator[Advice]:
+    if run.queue_paused:
+        moves = _movers(run) if run.queue else ()
+        yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.why_paused, moves=moves)
+
+
+def _movers(run: CellRun) -> tuple[str, ...]:
+    return tuple(robot.name for robot in run.cell.reached)
+
+
+AT_HAND = (CellState.IDLE, CellState.HELD)  # where a robot that is stopped was stopped by somebody else
+HANDS: dict[Reason, Hand] = {Reason.LINK_LOST: Hand.BRING_BACK, Reason.DEVICE_FAULT: Hand.REPAIR}
+Lead = Callable[[Advisor, CellRun, "frozenset[str]"], Iterator[Advice]]
+LEADS: dict[CellState, Lead] = {
+    CellState.IDLE: Advisor._idle,
+    CellState.HELD: Advisor._held,
+    CellState.ABORTED: Advisor._aborted,
+    CellState.CLEARING: Advisor._aborted,
+    CellState.STOPPED: Advisor._stopped,
+}

@@ -1,0 +1,46 @@
+"""What somebody does who follows an advice: says a verb, or goes to the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.core.advice import Advice, Hand
+
+from .world import World
+
+
+def do(world: World, advice: Advice) -> None:
+    """Do what is advised; who says that a robot is homed by hand has put it at its reference before."""
+    if isinstance(advice.do, Hand):
+        HANDS[advice.do](world, advice.scope)
+    elif advice.by_hand:
+        world.home_by_hand(advice.scope)
+    else:
+        world.request_verb(advice.do, advice.scope)
+
+
+def _bring_back(world: World, robot: str) -> None:
+    world.power_on(world.model.robots[robot].mqtt)
+
+
+def _repair(world: World, robot: str) -> None:
+    world.boards[world.model.robots[robot].mqtt].repair(round(world.now * 1e6))
+
+
+def _reference(world: World, robot: str) -> None:
+    world.put_at_reference(robot)
+
+
+def _check(world: World, zone: str) -> None:
+    """Whoever may be in the zone is moved out of it: the reference lies outside all zones."""
+    holder = world.plant.zones.holder(zone)
+    if holder is not None:
+        world.put_at_reference(holder)
+
+
+HANDS: dict[Hand, Callable[[World, str], None]] = {
+    Hand.BRING_BACK: _bring_back,
+    Hand.REPAIR: _repair,
+    Hand.REFERENCE: _reference,
+    Hand.CHECK: _check,
+}

@@ -1,0 +1,50 @@
+"""Somebody who does nothing but the first of the advice, until a cell works."""
+
+from __future__ import annotations
+
+from arboleda.core.advice import Advice, Hand, in_words
+from arboleda.core.cell_states import CellState
+from arboleda.simulator.hands import do
+
+from .rig import Rig
+
+ENOUGH = 6  # acts that lead out of any state
+SOON_S, PATIENCE_S = 2.0, 60.0
+
+
+def works(rig: Rig, cell: str) -> bool:
+    """Whether a cell would start a task, or has started the next one."""
+    run = rig.plant.cells[cell]
+    return run.state is CellState.IDLE and run.not_ready is None
+
+
+def advised(rig: Rig, cell: str) -> list[str]:
+    """The advice in words, in order."""
+    return [in_words(each) for each in rig.plant.advice(cell)]
+
+
+def follow(rig: Rig, cell: str) -> list[str]:
+    """Do the first of the advice again and again until the cell works; what was done, in words."""
+    done: list[str] = []
+    while not _comes_to_work(rig, cell):
+        ways = rig.plant.advice(cell)
+        assert ways, f"after {done} nothing is advised: {rig.plant.cells[cell].waiting_for()}"
+        assert len(done) < ENOUGH, f"{done} lead nowhere: {rig.plant.cells[cell].waiting_for()}"
+        for each in _until_seen(ways):
+            done.append(in_words(each))
+            assert each.refusal is None, f"{done[-1]} is advised first and refused: {each.refusal}"
+            answers = len(rig.answers)
+            do(rig, each)
+            rig.wait(SOON_S)
+            assert all(answer.refusal is None for answer in rig.answers[answers:]), rig.answers[-1]
+    return done
+
+
+def _until_seen(ways: tuple[Advice, ...]) -> tuple[Advice, ...]:
+    """The first; who has seen that a zone is empty also says so, as the plant cannot know."""
+    return ways[:2] if ways[0].do is Hand.CHECK else ways[:1]
+
+
+def _comes_to_work(rig: Rig, cell: str) -> bool:
+    rig.wait(PATIENCE_S, until=lambda: bool(rig.plant.advice(cell)) or works(rig, cell))
+    return works(rig, cell)
