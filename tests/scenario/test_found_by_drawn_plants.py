@@ -23,6 +23,18 @@ class Found:
     faults: tuple[Fault, ...]
 
 
+ASSUMES_HOMED = """
+    name: drawn_45
+    cells:
+      cell_1:
+        arm: {name: arm_1, model: scara, link: mqtt, evidence: ids, assume_homed: true}
+        mobile: {name: mobile_1, link: mqtt, evidence: ids}
+        home: {deg: [36.9, 18.9], mm: 46.1}
+        pickup: {deg: [-9.0, 100.9], mm: 89.6}
+        paths: {2Z: [2, 1, 2]}
+        stations: {columns_q1_deg: [-126.5, 70.2, -45.4], rows_q2_deg: [72.5, 132.9], mm: 92.6}
+"""
+
 FOUND = {
     "nobody could put a board right that reports joints and says that it is not homed": Found(
         seed=10,
@@ -58,17 +70,7 @@ FOUND = {
         seed=45,
         seconds=120.0,
         faults=(Fault(kind="reboot", at=87.865, target="arm_1", word="will"),),
-        file="""
-            name: drawn_45
-            cells:
-              cell_1:
-                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids, assume_homed: true}
-                mobile: {name: mobile_1, link: mqtt, evidence: ids}
-                home: {deg: [36.9, 18.9], mm: 46.1}
-                pickup: {deg: [-9.0, 100.9], mm: 89.6}
-                paths: {2Z: [2, 1, 2]}
-                stations: {columns_q1_deg: [-126.5, 70.2, -45.4], rows_q2_deg: [72.5, 132.9], mm: 92.6}
-        """,
+        file=ASSUMES_HOMED,
     ),
     "an arm that assumes to be homed was not known to have been homed by its routine": Found(
         seed=45,
@@ -76,17 +78,7 @@ FOUND = {
             Fault(kind="reboot", at=5.0, target="arm_1", word="will"),
             *(Fault(kind="operator_home", at=5.0 + wait, target="arm_1") for wait in range(1, 20)),
         ),
-        file="""
-            name: homed_by_its_routine
-            cells:
-              cell_1:
-                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids, assume_homed: true}
-                mobile: {name: mobile_1, link: mqtt, evidence: ids}
-                home: {deg: [36.9, 18.9], mm: 46.1}
-                pickup: {deg: [-9.0, 100.9], mm: 89.6}
-                paths: {2Z: [2, 1, 2]}
-                stations: {0: {deg: [10, 10], mm: 50}}
-        """,
+        file=ASSUMES_HOMED,
     ),
     "an arm whose poses all look the same was blamed for what late commands made it pick": Found(
         seed=28,
@@ -112,6 +104,184 @@ FOUND = {
                 paths: {b7: [3, 0, 1, 0, 3]}
                 stations: {0: {deg: [110.071, 88.231], mm: 17.325}}
                 retry: {times: 1, backoff_s: 0.3}
+        """,
+    ),
+    "an arm that says it stands where it cannot was given more time than its longest way takes": Found(
+        seed=411,
+        faults=(
+            Fault(
+                kind="lying_telemetry", at=7.605, seconds=4.477, target="arm_2", amount=27.542, word="q2_mov"
+            ),
+        ),
+        file="""
+            name: drawn_411
+            cells:
+              cell_2:
+                arm:
+                  name: arm_2
+                  model: scara
+                  link: mqtt
+                  evidence: state
+                  tolerance: {deg: [0.512, 22.552], mm: 1.87}
+                mobile: {name: mobile_2, link: mqtt, evidence: joints}
+                home: {deg: [95.0, 78.0], mm: 33.9}
+                pickup: {deg: [132.9, 41.7], mm: 20.3}
+                paths: {5X: [5]}
+                stations: {0: {deg: [0, 0], mm: 0}}
+        """,
+    ),
+    "an arm that tells no position was put at its reference, and the plant did not take note": Found(
+        seed=237,
+        faults=(
+            Fault(kind="plant_freeze", at=32.4, seconds=1.682, target="plant", amount=0.06, word="plant"),
+        ),
+        file="""
+            name: drawn_237
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: none, evidence: state}
+                mobile: {name: mobile_1, link: ros, evidence: joints}
+                home: {deg: [4.0, 84.5], mm: 39.8}
+                pickup: {deg: [29.3, -60.0], mm: 63.3}
+                paths: {C5: [0, 1]}
+                stations: {0: {deg: [-97.1, -87.4], mm: 10.2}}
+            zones:
+              zone_1: {poses: [cell_1 pickup]}
+        """,
+    ),
+    "a task was expected to wait for a zone longer than its plant file lets it": Found(
+        seed=207,
+        faults=(),
+        file="""
+            name: drawn_207
+            stations: {columns_q1_deg: [-17.7, -5.6], rows_q2_deg: [14.1]}
+            cells:
+              cell_2:
+                arm: {name: arm_2, model: cr10a, link: mqtt, evidence: ids}
+                mobile: {name: mobile_2, link: mqtt, evidence: ids}
+                home: {deg: [-92.8, -5.2, 123.8, -50.1, 164.0, -73.1]}
+                pickup: {deg: [-28.6, 44.3, 114.9, -73.6, 3.9, -2.2]}
+                paths: {x7: [4]}
+              cell_3:
+                arm: {name: arm_3, model: scara, link: mqtt, evidence: state}
+                mobile: {name: mobile_3, link: mqtt, evidence: joints}
+                home: {deg: [-109.9, 117.2], mm: 39.9}
+                pickup: {deg: [76.2, 60.8], mm: 90.0}
+                paths: {4c: [5, 2, 5]}
+                zone_wait_s: 0.5
+            zones:
+              zone_1:
+                poses: [cell_3 pickup]
+                moves: [[cell_2 station 1, cell_2 home]]
+        """,
+    ),
+    "a drive to the start of a path of one node was taken for that path": Found(
+        seed=208,
+        faults=(
+            Fault(kind="operator_hold", at=2.137, target="arm_1"),
+            Fault(kind="hop_delay", at=8.51, seconds=10.995, target="plant", amount=4.201, word="to plant"),
+            Fault(kind="plant_freeze", at=53.87, seconds=3.491, target="plant", amount=6.608, word="machine"),
+        ),
+        file="""
+            name: drawn_208
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: joints}
+                mobile: {name: mobile_1, link: ros, evidence: state}
+                home: {deg: [-27.0, -39.3], mm: 79.2}
+                pickup: {deg: [2.5, -68.4], mm: 46.9, approach_mm: 46.9}
+                paths: {81: [2]}
+                stations:
+                  0: {deg: [-98.1, 79.2], mm: 87.6}
+                  1: {deg: [81.7, -123.6], mm: 9.6, approach_mm: 9.5}
+              cell_2:
+                arm: {name: arm_2, model: scara, link: none, evidence: joints}
+                mobile: {name: mobile_2, link: mqtt, evidence: joints}
+                home: {deg: [-97.9, 8.6], mm: 44.0}
+                pickup: {deg: [-99.5, 19.3], mm: 21.5, approach_mm: 21.4}
+                paths: {c5: [5], b7: [6], 4z: [5, 4]}
+                stations:
+                  0: {deg: [-6.6, 5.7], mm: 34.0, approach_mm: 34.0}
+                  1: {deg: [-131.7, 25.0], mm: 17.4, approach_mm: 1.7}
+                  2: {deg: [-12.5, 11.4], mm: 14.9}
+                  3: {deg: [-35.6, 3.7], mm: 15.0}
+                  4: {deg: [-16.0, 21.1], mm: 59.3, approach_mm: 29.6}
+        """,
+    ),
+    "a step sent as an operator declared a robot homed was taken for the operator's": Found(
+        seed=211,
+        faults=(Fault(kind="brown_out", at=20.853, seconds=10.534, target="mobile_1_board", amount=8.921),),
+        file="""
+            name: drawn_211
+            timing: {dwell_s: 0}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: none, evidence: state}
+                mobile: {name: mobile_1, link: mqtt, evidence: joints, mqtt: mobile_1_board}
+                home: {deg: [-4.3, -93.7], mm: 78.1}
+                pickup: {deg: [-4.3, -93.7], mm: 78.1}
+                paths: {ay: [0]}
+                stations: {0: {deg: [-145.0, -10.1], mm: 60.7}}
+        """,
+    ),
+    "a grip that was tried again, where the place looks like the pick-up, was taken for putting down": Found(
+        seed=358,
+        faults=(
+            Fault(kind="no_part", at=21.335, seconds=27.832, target="arm_3"),
+            Fault(kind="piece_false", at=21.341, seconds=11.786, target="arm_3", word="a piece"),
+            Fault(
+                kind="piece_flicker", at=35.696, seconds=0.62, target="arm_3", amount=0.497, seed=3712501228
+            ),
+        ),
+        file="""
+            name: drawn_358
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: state}
+                mobile: {name: mobile_1, link: none, evidence: joints}
+                home: {deg: [-95.8, 5.1], mm: 83.3}
+                pickup: {deg: [-95.801, 5.235], mm: 83.323}
+                paths: {Z2: [6]}
+                stations: {columns_q1_deg: [-0.3], rows_q2_deg: [-93.4]}
+                piece_check: true
+              cell_3:
+                arm: {name: arm_3, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_3, link: mqtt, evidence: ids}
+                home: {deg: [-110.7, -86.6], mm: 1.9}
+                pickup: {deg: [-110.707, -86.873], mm: 2.176}
+                paths: {2Z: [3]}
+                stations:
+                  0: {deg: [-74.3, -116.0], mm: 10.2}
+                  1: {deg: [-74.296, -115.928], mm: 10.159}
+                palletizing: {pick: station 0, place: station 1}
+                retry: {times: 3}
+                piece_check: true
+              cell_4:
+                arm: {name: arm_4, model: scara, link: none, evidence: joints}
+                mobile: {name: mobile_4, link: none, evidence: joints}
+                home: {deg: [73.2, 37.1], mm: 50.6}
+                pickup: {deg: [-5.3, 30.1], mm: 86.7}
+                paths: {y2: [0]}
+                stations: {0: {deg: [73.206, 36.78], mm: 50.72}}
+        """,
+    ),
+    "a cancel that came when the plant had just held its cells was expected to find them at work": Found(
+        seed=1,
+        faults=(
+            Fault(kind="hop_partition", at=19.7, seconds=6.0, target="plant", word="to plant, lost"),
+            Fault(kind="plant_freeze", at=20.0, seconds=2.9, target="plant", amount=0.001, word="plant"),
+            Fault(kind="operator_cancel", at=22.5, target="cell_1"),
+        ),
+        file="""
+            name: cancelled_after_an_absence
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [0, 0], mm: 0}
+                pickup: {deg: [5, 5], mm: 10}
+                paths: {c5: [5], 4z: [5, 4]}
+                stations: {0: {deg: [10, 10], mm: 20}}
         """,
     ),
 }

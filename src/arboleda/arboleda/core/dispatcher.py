@@ -168,8 +168,13 @@ class Dispatcher:
         self.send(partial(Home, robot=robot), cell, "homing", now)
 
     def declare_homed(self, robot: str) -> None:
-        """An operator has put a robot that cannot say so at its reference."""
-        self.beliefs[robot].displaced = False
+        """An operator has put a robot that cannot say so at its reference, wherever it stood before."""
+        belief = self.beliefs[robot]
+        belief.displaced = False
+        self._forget_place(robot)
+        stands = belief.state in (None, MotionState.STOPPED)
+        if isinstance(belief.robot, Arm) and not belief.supervised and stands:
+            self.reached[robot] = belief.robot.reference
         self.wake([robot])
 
     def forget_zone(self, zone: str) -> None:

@@ -174,11 +174,12 @@ class Arm(Robot):
         return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
 
     def travel_s(self, start: tuple[float, ...] | None, goal: tuple[float, ...]) -> float:
-        """Time of a joint move; from an unknown start the longest possible one."""
+        """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
+        longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
         if start is None:
-            return max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
+            return longest_s
         rows = zip(self.joints, start, goal, strict=True)
-        return max(joint.travel_s(there - here) for joint, here, there in rows)
+        return min(longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
 
 
 @dataclass(frozen=True, kw_only=True)

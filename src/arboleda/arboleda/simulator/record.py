@@ -74,7 +74,7 @@ class Record:
         self.commands = Commands()
         self.proofs = Proofs()
         self.bridges = Bridges(model)
-        self.works = Works(self.cells, model.timing.dwell_s)
+        self.works = Works(self.cells, self.robots, model.timing.dwell_s)
         self.asked = Before()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world.plant))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step

@@ -213,7 +213,10 @@ def no_internal_failure(look: Look) -> Iterable[str]:
 
 @invariant(When.TOLD)
 def no_task_fails_without_a_fault(look: Look) -> Iterable[str]:
-    """As long as nothing has gone wrong and no operator has acted, no task of a shipped recipe fails."""
+    """As long as nothing has gone wrong and no operator has acted, no task of a shipped recipe fails, but for
+    what its plant file asks for and robots cannot do, and for a zone in which another arm works for longer
+    than `zone_wait_s`.
+    """
     world, record = look.world, look.record
     if world.last_fault_at > -math.inf or world.recipes or not record.undisturbed:
         return
@@ -231,12 +234,21 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     order = look.world.plant.intake.tasks[said.task].order
     cell = look.world.model.cell(order.cell)
     mobile = look.truth.robot(cell.mobile.name)
+    if said.reason is Reason.ZONE_UNAVAILABLE:
+        return _others_work_in_its_zones(look, order.cell)
     if said.reason in PIECES and cell.arm.evidence is not Evidence.IDS:
         return True
     led_there = cell.drive_to_start and cell.mobile.evidence is not Evidence.STATE
     if led_there or order.path is None or not isinstance(mobile, MobileTruth):
         return False
     return mobile.node != order.path.nodes[0]
+
+
+def _others_work_in_its_zones(look: Look, name: str) -> bool:
+    """Whether another arm has one of the zones that this cell waited for, and is heard in it."""
+    zones, cell = look.world.plant.zones, look.record.cells[name]
+    held = (zone for zone in cell.wanted if zones.holder(zone) not in (None, cell.cell.arm.name))
+    return any(not zones.is_quarantined(zone) for zone in held)
 
 
 @invariant(When.TOLD)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import State
@@ -61,16 +62,28 @@ def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
         expected = _refused(look, request)
         if expected is not None and expected is not (answer.refusal is not None):
             what = f"{request.verb.value} {request.scope!r}"
-            states = {cell.name: cell.state.value for cell in look.record.asked.cells}
+            states = {cell.name: cell.state.value for cell in _found(look)}
             yield f"{what} was {'not ' if expected else ''}refused ({answer.refusal}); before it {states}"
 
 
 def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
-    """The one verb of a step, before which nothing else happened in it."""
+    """The one verb of a step, before which nothing else happened in it but that the plant had been away."""
     asked, answers = look.moment.asked, look.record.answers
     alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.born
     if alone and isinstance(asked[0], OperatorRequest):
         yield asked[0], answers[0]
+
+
+def _found(look: Look) -> list[Asked]:
+    """The cells as the verb found them: a plant that was away first holds what was at work."""
+    cells = look.record.asked.cells
+    return [_held_after_absence(cell) for cell in cells] if look.record.away else cells
+
+
+def _held_after_absence(cell: Asked) -> Asked:
+    worked = cell.state is S.EXECUTE
+    state, paused = S.HOLDING if worked else cell.state, cell.paused or worked or cell.queued > 0
+    return replace(cell, state=state, paused=paused, troubled=cell.troubled or worked)
 
 
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
@@ -85,7 +98,7 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
     if scope not in record.scopes:
         return True
     names = record.scopes.cells(scope)
-    cells = [cell for cell in record.asked.cells if cell.name in names]
+    cells = [cell for cell in _found(look) if cell.name in names]
     if verb is Verb.HOME:
         return True if any(map(CANNOT[verb], cells)) or _not_so(look, request) else None
     if verb is Verb.CLEAR and any(cell.state is S.ABORTING for cell in cells):
@@ -124,7 +137,7 @@ def _is_task(look: Look, request: OperatorRequest) -> bool:
 def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[Asked, KnownCell]]:
     """Those of its scope in which the verb could be done."""
     names = look.record.scopes.cells(request.scope)
-    asked = [cell for cell in look.record.asked.cells if cell.name in names and can(cell)]
+    asked = [cell for cell in _found(look) if cell.name in names and can(cell)]
     return [(cell, look.record.cells[cell.name]) for cell in asked]
 
 

@@ -97,6 +97,11 @@ class KnownCell:
         elif self.state not in PAUSED:
             self.waited_s += seconds
 
+    @property
+    def wanted(self) -> frozenset[str]:
+        """The zones that its arm waits for, or waited for last."""
+        return self._waiter.zones if isinstance(self._waiter, TakeZones) else frozenset()
+
     def watch_time(self, now: float, *, away: bool = False) -> None:
         """Compare the cell's own time with the plant's: it may fall behind only while the cell is held.
 

@@ -11,11 +11,13 @@ from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector,
 from arboleda.core.model import Cell, Pose
 
 from .commands import SentCommand
+from .robots import KnownRobot
 from .tasks import Tasks
 
 ROUNDING_S = 1e-6
 OPTIONAL, TO_START = "maybe", "to the start"
-Step = tuple[str, Any]  # what is commanded, and where to; OPTIONAL: an attempt to grip that may be needed
+# what is commanded, and where to; OPTIONAL: an attempt to grip that may be needed; TO_START: some way there
+Step = tuple[str, Any]
 
 
 @dataclass
@@ -33,9 +35,10 @@ class Work:
 class Works:
     """Follows the work of every cell; `wrong` is what was commanded otherwise in this step."""
 
-    def __init__(self, cells: dict[str, Any], dwell_s: float) -> None:
+    def __init__(self, cells: dict[str, Any], robots: dict[str, KnownRobot], dwell_s: float) -> None:
         self.wrong: list[str] = []
         self._cells = cells
+        self._robots = robots
         self._dwell_s = dwell_s
         self._works: dict[str, Work] = {}
 
@@ -52,7 +55,8 @@ class Works:
             said = change.said
             if said.state is TaskState.RUNNING and not change.answer and said.cell is not None:
                 cell = self._cells[said.cell].cell
-                self._works[said.cell] = Work(said.task, list(_steps(cell, said.text.split())), now)
+                steps = list(_steps(cell, said.text.split(), self._robots[cell.mobile.name], now))
+                self._works[said.cell] = Work(said.task, steps, now)
         for sent in new:
             if sent.entry is not None and sent.entry.cell in self._works and not _by_operator(sent):
                 self._take(sent.entry.cell, sent)
@@ -79,7 +83,7 @@ class Works:
         if again:
             self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
         while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
-            if work.steps[work.at][0] not in (OPTIONAL, TO_START):
+            if work.steps[work.at][0] != OPTIONAL:
                 expected = work.steps[work.at]
                 self.wrong.append(f"{name}: {sent} is {step}, by the recipe it is {expected}'s turn")
                 return
@@ -99,7 +103,7 @@ class Works:
             self.wrong.append(f"{name}: {sent} leaves {sent.at - since:.3f} s after what it has to wait for")
 
     def _finished(self, name: str, work: Work) -> None:
-        left = [step for step in work.steps[work.at :] if step[0] not in (OPTIONAL, TO_START)]
+        left = [step for step in work.steps[work.at :] if step[0] != OPTIONAL]
         if left:
             self.wrong.append(f"{name}: {work.task} is done, and {left} were never commanded")
         if work.last is not None and work.last.state is not State.DONE:
@@ -107,7 +111,9 @@ class Works:
 
 
 def _by_operator(sent: SentCommand) -> bool:
-    return Verb.RELEASE in sent.verbs or Verb.HOME in sent.verbs or _step_of(sent.command) is None
+    """Homing is no step of a recipe; to release is to open the effector."""
+    step = _step_of(sent.command)
+    return step is None or (Verb.RELEASE in sent.verbs and step == ("effector", False))
 
 
 def _step_of(command: Command) -> Step | None:
@@ -125,29 +131,36 @@ def _fits(step: Step | None, expected: Step) -> bool:
     if expected[0] == OPTIONAL:
         return step == expected[1]
     if expected[0] == TO_START:
-        return step[0] == "path" and step[1] != expected[1] and step[1][-1] == expected[1][0]
+        return step[0] == "path" and step[1][-1] == expected[1]
     if step[0] == expected[0] == "path":
         return expected[1][-len(step[1]) :] == step[1] and bool(step[1])
     return step == expected
 
 
 def _is_again(step: Step | None, expected: Step) -> bool:
+    """What was not done may be given anew, a path from wherever the robot is by then."""
     return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
 
 
-def _steps(cell: Cell, words: list[str]) -> Iterator[Step]:
-    """What a task of this text commands, in order."""
+def _steps(cell: Cell, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
+    """What a task of this text that begins now commands, in order."""
     if words[1] == "palletizing":
         yield "move", cell.home.q
         yield from _at(cell.palletizing.pick, list(_grip(cell)))
         yield from _at(cell.palletizing.place, [("effector", False)])
         return
     nodes = next(path.nodes for path in cell.paths if path.code == words[1])
-    yield TO_START, nodes
+    if cell.drive_to_start and _stands_on(mobile, now) not in (None, nodes[0]):
+        yield TO_START, nodes[0]
     yield "path", nodes
     yield from _at(cell.pickup, list(_grip(cell)))
     yield from _at(cell.stations[int(words[2])], [("effector", False)])
     yield from _at(cell.home, [])
+
+
+def _stands_on(mobile: KnownRobot, now: float) -> int | None:
+    """The node on which it has said that it stands, where that can be believed."""
+    return None if mobile.offline(now) or mobile.unhomed else mobile.node
 
 
 def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:

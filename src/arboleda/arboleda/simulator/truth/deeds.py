@@ -59,7 +59,8 @@ class Ended:
 class CellTruth:
     """What was done since the cell's last task began; `task` is None once it has ended.
 
-    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong.
+    `picks`: parts that left a pick-up in the effector; `places`: parts put down where they belong, of which
+    `puts_down` says that its effector was opened for one in this step.
     """
 
     def __init__(self, cell: Cell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
@@ -73,10 +74,12 @@ class CellTruth:
         self.switch: Switch | None = None  # of this step
         self.picks = self.places = 0
         self.robbed = False  # somebody else opened the effector on the way
+        self.puts_down = False
         self.let_go = False  # the effector was opened where the part belongs
         self.blind = False  # nobody could know for some time what its arm does
         self._switches: list[Switch] = []
         self._heading = self._arrived = False
+        self._carries = False  # the arm was told to move since its effector went on
 
     @property
     def pick(self) -> Pose:
@@ -122,14 +125,22 @@ class CellTruth:
     def look(self) -> None:
         """Take in what arm and mobile did in this step."""
         self._follow_mobile()
-        arm, self.switch = self.arm, None
-        if arm is not None and arm.on != arm.was_on:
+        arm, self.switch, self.puts_down = self.arm, None, False
+        if arm is None:
+            return
+        before, after = _moves_around_switch(arm)
+        self._carries = self._carries or before
+        if arm.on != arm.was_on:
             self.switch = self._switch(arm)
             self.released = self.released and arm.on
             at_place = self.place is not None and self._at(arm, self.place)
-            self.let_go = self.let_go or (not arm.on and at_place)
+            # where it stands the same for both, a pick that is tried again opens the effector, too
+            self.puts_down = not arm.on and at_place and (self._carries or not self._at(arm, self.pick))
+            self.let_go = self.let_go or self.puts_down
             self.robbed = self.robbed or (arm.opened and arm.was_holding and not at_place)
             self._switches = [*self._switches[-KEPT:], self.switch]
+            self._carries = False
+        self._carries = self._carries or after
 
     @property
     def _proves_no_way(self) -> bool:
@@ -190,6 +201,13 @@ class CellTruth:
         self._heading = self._heading or any(goal.nodes[-1] == self.order.path.nodes[-1] for goal in goals)
         here = mobile.stands_at(self.order.path.nodes[-1])
         self._arrived = self._arrived or (self._heading and here)
+
+
+def _moves_around_switch(arm: ArmTruth) -> tuple[bool, bool]:
+    """Whether it was told to move before, and after, its effector was switched in this step."""
+    switches = [number for number, act in enumerate(arm.acts) if isinstance(act.goal, EffectorGoal)]
+    at = switches[-1] if switches else len(arm.acts)
+    return any(act.moves for act in arm.acts[:at]), any(act.moves for act in arm.acts[at:])
 
 
 def named(poses: frozenset[str]) -> str:

@@ -90,7 +90,7 @@ class Parts:
         cause, place = _cause(cell, arm), FLOOR
         if cause in (PUT, RELEASED):
             place = self._put(part, cell, arm)
-        if cause == PUT and place != FLOOR and cell.place and arm.stood & arm.poses_like(cell.place.q):
+        if cause == PUT and place != FLOOR and cell.puts_down:
             cell.places += 1
         self.passages.append(Passage(part=part, arm=arm.robot.name, cause=cause, place=place))
 
