@@ -15,6 +15,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
+from arboleda.app.seldom import Seldom
 from arboleda.core.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
 
@@ -22,8 +23,6 @@ from . import qos, statuses
 from .alone import DISCOVERY_S, Alone
 
 NAMED = "arboleda: "  # how the names of all our statuses begin
-_REPEAT_S = 5.0  # the same sentence about the same topic is logged at most this often
-_REMEMBERED = 200  # sentences; a stranger must not fill the memory
 _DIAGNOSTICS_S = 1.0
 
 
@@ -48,7 +47,8 @@ class Port:
         self._refused = 0
         self._failures = 0
         self._warnings: dict[str, None] = {}
-        self._logged: dict[tuple[str, str], float] = {}
+        self._seldom = Seldom()
+        self._logged: set[str] = set()
         self._diagnostics = self._speak(DiagnosticArray, "/diagnostics", qos.COMMAND)
         node.create_timer(_DIAGNOSTICS_S, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -158,16 +158,12 @@ class Port:
         return guarded
 
     def _log_seldom(self, topic: str, sentence: str) -> None:
-        now = self._clock()
-        if now - self._logged.get((topic, sentence), -_REPEAT_S) >= _REPEAT_S:
-            if len(self._logged) >= _REMEMBERED:
-                self._logged.clear()
-            self._logged[topic, sentence] = now
+        if self._seldom.is_due((topic, sentence), self._clock()):
             self._log.warning("refused a message on %s: %s", self._absolute(topic), sentence)
 
     def _log_once(self, sentence: str, level: int) -> None:
-        if ("", sentence) not in self._logged:
-            self._logged["", sentence] = self._clock()
+        if sentence not in self._logged:
+            self._logged.add(sentence)
             self._log.log(level, sentence)
 
     def _incompatible(self, topic: str, what: str, policy: str) -> None:
