@@ -148,6 +148,29 @@ def test_a_copy_that_overtakes_is_told_of_by_nobody(beaten) -> None:
     assert copy(beaten, GRIP) != [] or news(list(beaten.wait(1.0))) != []
 
 
+def copy_before_its_original(bench: Bench) -> None:
+    copy(bench, LATCH)
+    copied(bench, replace(LATCH, id="7-3"))
+
+
+def test_a_stop_of_another_node_is_obeyed_after_a_copy_that_came_before_its_original(beaten, sent) -> None:
+    copied(beaten, replace(CLEAR, id="7-1"))
+    copy(beaten, CLEAR)
+    beaten.order(replace(MOVE, id="7-2"))
+    copy_before_its_original(beaten)
+    assert [address for address, _ in sent(others(beaten, LATCH))] == ["ra_1/paro"]
+    assert news(list(beaten.wait(UNSURE_S))) == ["ra1: stop_cmd 1 of /teleop was obeyed"]
+
+
+def test_neither_a_lost_link_nor_a_bridge_that_has_just_started_takes_that_stop_for_a_copy(
+    beaten, sent
+) -> None:
+    beaten.presence(False)
+    copy_before_its_original(beaten)
+    link(beaten)
+    assert [address for address, _ in sent(others(beaten, LATCH))] == ["ra_1/paro"]
+
+
 def test_a_stop_is_obeyed_at_once_though_it_may_be_a_copy(beaten, sent) -> None:
     copied(beaten, replace(GRIP, id="7-1"))
     copy(beaten, GRIP)

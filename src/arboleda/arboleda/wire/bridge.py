@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, Heartbeat, Report, Stop
@@ -18,7 +18,7 @@ from arboleda.core.outside import quoted
 
 from . import epochs, rejections, topics
 from .board import Board, Counters, Message
-from .hop import FromPlant, is_stop, without_id
+from .hop import FromPlant, is_stop, loses_its_id, without_id
 from .rejections import FOREIGN, Rejection
 from .topics import Channel
 from .transport import Connection, Delivery
@@ -38,12 +38,16 @@ class Leaving:
 
 @dataclass(frozen=True, kw_only=True)
 class Unsure:
-    """A command without an id that is told of at `due`, if it has not turned out to be a copy by then."""
+    """A command without an id that is told of at `due`, if it has not turned out to be a copy by then.
+
+    `told`: there is nothing to tell, or it was told at once.
+    """
 
     due: float
     board: Board
     event: FromPlant
     refused: bool
+    told: bool
 
 
 Event = FromPlant | Delivery | Connection | Leaving
@@ -92,7 +96,7 @@ class Bridge:
         """When `step` must be called even without events; None: never."""
         due = min(self._started_at, self._beat_at, *self._stale_at.values())
         if self._unsure:
-            due = min(due, self._unsure[0].due)
+            due = min(due, *(each.due for each in self._unsure if not each.told), math.inf)
         return due if due < math.inf else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
@@ -160,7 +164,8 @@ class Bridge:
 
     def _expect_copy(self, event: FromPlant, command: Command, board: Board) -> None:
         """The plant says whether it copies; a copy that came before its original is nobody else's."""
-        board.copies.flow = event.copied
+        if loses_its_id(command):
+            board.copies.flow = event.copied
         if not event.copied:
             return
         plain = without_id(command)
@@ -177,15 +182,14 @@ class Bridge:
             return []
         if (late := self._late(at, command)) is not None:
             return board.refuse(at, command, late, sender)
-        if not self._is_commanded(at):
-            return board.command(at, command, sender)
-        refused = self._refuses_others and not is_stop(command)
+        commanded = self._is_commanded(at)
+        refused = commanded and self._refuses_others and not is_stop(command)
         out = [] if refused else board.command(at, command, sender)
-        if any(isinstance(each, Rejection) for each in out):
-            return out
-        unsure = Unsure(due=at + UNSURE_S, board=board, event=event, refused=refused)
-        if not board.copies.flow:
-            return [*out, *self._told_of(unsure)]
+        told = not commanded or any(isinstance(each, Rejection) for each in out)
+        unsure = Unsure(due=at + UNSURE_S, board=board, event=event, refused=refused, told=told)
+        if not told and not board.copies.flow:
+            out += self._told_of(unsure)
+            unsure = replace(unsure, told=True)
         self._unsure.append(unsure)
         return out
 
@@ -199,6 +203,8 @@ class Bridge:
         return [message for each in due for message in self._told_of(each)]
 
     def _told_of(self, unsure: Unsure) -> list[Message]:
+        if unsure.told:
+            return []
         board, event = unsure.board, unsure.event
         assert not isinstance(event.message, Heartbeat)
         if unsure.refused:

@@ -32,7 +32,6 @@ from ..world import Passed
 
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
-STALLED_S = 0.1
 COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
 SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
 FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
@@ -84,7 +83,6 @@ class _Bridge:
             for channel in ("sensores", "conexion")
         }
         self._plant: int | None = None  # whose heartbeat it hears
-        self.is_followed = True  # until it was stalled: what it makes of old news hangs on their age
 
     def take_over(self, now: float, beliefs: Mapping[str, Belief]) -> None:
         for name, board in self._boards.items():
@@ -102,10 +100,6 @@ class _Bridge:
         for event in passed.events:
             self._event(event)
         late = any(event.at < passed.now for event in passed.events)
-        if any(event.at + STALLED_S <= passed.now for event in passed.events):
-            self.is_followed = False
-        if not self.is_followed:
-            return
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
@@ -327,9 +321,6 @@ class _Board:
                 continue
             publication = orders.pop(0) if orders else None
             is_it = publication is not None and publication.topic.endswith("/" + CHANNELS[type(command)])
-            if not command.id and not is_it:
-                orders[:0] = [publication] if publication else []
-                continue  # whether a stop without an id is a copy of the plant's shows only later
             if publication is None or not is_it:
                 self._say(COMMANDS, f"{command} should have left; what left is {publication}")
                 return
