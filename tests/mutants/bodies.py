@@ -72,6 +72,7 @@ MOTION = (
         edit(Arm.reached, "return all(", "return any("),
         seeds=SHARED,
         weather={"plant_stall": 20.0},
+        likely=38,
     ),
     mutant(
         "tiny_moves_succeed",
@@ -105,6 +106,7 @@ GRIP = (
         "no_part_dropped",
         "A board that stops switches all its outputs off.",
         edit(ArmBody.stop, "self._plan(now_us)", "self._plan(now_us); self.switch_effector(False)"),
+        likely=10,
     ),
     mutant(
         "parts_conserved",
@@ -169,6 +171,7 @@ STOP = (
         "speed_never_rises_after_stop",
         "A stop leaves out the first axis.",
         edit(ArmBody.stop, "for axis in self._axes:", "for axis in self._axes[1:]:"),
+        likely=14,
     ),
 )
 

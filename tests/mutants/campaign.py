@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -61,6 +61,23 @@ WEATHERS: dict[str, tuple[range, str | dict[str, Any]]] = {
     "restarts": (range(1, 3), {"rates": {"plant_crash": 3.0, "operator_stop": 3.0}}),
 }
 
+# Runs that reach what few others do. While everything is as it was, no others are needed.
+FIRST: tuple[tuple[str, int], ...] = (
+    *(("all kinds", seed) for seed in (2, 6, 5, 11, 9)),
+    *(("stops", seed) for seed in (1, 5)),
+    *(("latches", seed) for seed in (2, 3)),
+    ("power", 5),
+    ("lies", 7),
+    ("parts", 4),
+    ("restarts", 1),
+    ("overridden", 4),
+    ("in the dark", 10),
+    ("no end of a halt", 13),
+    ("twice", 1),
+    ("garbage", 1),
+    ("flood", 1),
+)
+
 
 class Fired:
     """What the runs of a campaign went through, by family."""
@@ -72,25 +89,33 @@ class Fired:
         self.commands = Rows(ledger.TABLE)
 
 
-def run(patch: pytest.MonkeyPatch) -> Fired:
-    """All weathers."""
+def run(patch: pytest.MonkeyPatch, enough: Callable[[Fired], bool]) -> Fired:
+    """All weathers, those of FIRST first, until it is enough."""
     fired = Fired()
     patch.setattr(cell_states, "TABLE", fired.cells)
     patch.setattr(ledger, "TABLE", fired.commands)
-    for simulation in _simulations():
+    for weather, seed in _runs():
+        simulation = _simulation(weather, seed)
         probes = Probes(simulation.world)
         result = simulation.run(seconds=60.0)
         fired.kinds.update(fault.kind for fault in result.faults)
         fired.probes.update(probes.fired)
+        if enough(fired):
+            break
     return fired
 
 
-def _simulations() -> Iterator[Simulation]:
-    for seeds, weather in WEATHERS.values():
-        for seed in seeds:
-            model = plants()[seed % 2]
-            if isinstance(weather, str):
-                climate = Climate.draw(model, seed, weather)
-            else:
-                climate = Climate.from_file(model, seed, weather)
-            yield Simulation(model, seed, climate.faults, invariants=())
+def _runs() -> Iterator[tuple[str, int]]:
+    yield from FIRST
+    yield from (
+        run for name, (seeds, _) in WEATHERS.items() for seed in seeds if (run := (name, seed)) not in FIRST
+    )
+
+
+def _simulation(name: str, seed: int) -> Simulation:
+    model, weather = plants()[seed % 2], WEATHERS[name][1]
+    if isinstance(weather, str):
+        climate = Climate.draw(model, seed, weather)
+    else:
+        climate = Climate.from_file(model, seed, weather)
+    return Simulation(model, seed, climate.faults, invariants=())

@@ -55,6 +55,7 @@ def _codes(code: CodeType) -> list[CodeType]:
 class Mutant:
     """`invariant` finds `bug` at one of `seeds`, at a level of faults or with these rates, within `cycles`.
 
+    `likely` is the one that is tried first: it found the bug last, where those before it take long.
     `rest_s`: how long to wait for everything to come to rest, where that is what it does not do.
     """
 
@@ -62,6 +63,7 @@ class Mutant:
     bug: str
     edits: tuple[Edit, ...]
     seeds: range = ALL
+    likely: int | None = None
     weather: str | Mapping[str, float] = "normal"
     cycles: int = 6
     rest_s: float = 600.0

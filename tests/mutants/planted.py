@@ -19,6 +19,7 @@ PLANTED = (
             "if report.state is MotionState.FAULT and entry.is_motion:",
         ),
         weather={"driver_alarm": 60.0},
+        likely=28,
     ),
     mutant(
         "verbs_do_what_they_say",

@@ -27,6 +27,7 @@ COMMANDS = (
         "no_command_to_unfit",
         "A robot that is not homed takes any command, not only to home.",
         edit(Dispatcher._obstacle_to, "isinstance(command, Home) and obstacle", "obstacle"),
+        likely=6,
     ),
     mutant(
         "stops_are_cleared_by_operators",
@@ -42,6 +43,7 @@ COMMANDS = (
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
         edit(Dispatcher._obstacle_to, "if self.motion_of(robot) is not None:", "if False:"),
         edit(recipes._settle, "not context.open_commands() and ", ""),
+        likely=6,
     ),
     mutant(
         "only_legal_command_states",

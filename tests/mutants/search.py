@@ -30,7 +30,8 @@ def found_at(mutant: Mutant) -> int | None:
     """The first of its seeds at which its invariant, the only one that looks, finds the bug."""
     with pytest.MonkeyPatch.context() as patch:
         mutant.plant(patch)
-        return next((seed for seed in mutant.seeds if _alone(mutant, seed) == mutant.invariant), None)
+        seeds = sorted(mutant.seeds, key=lambda seed: seed != mutant.likely)
+        return next((seed for seed in seeds if _alone(mutant, seed) == mutant.invariant), None)
 
 
 def breaks_unplanted(mutant: Mutant, seed: int) -> bool:

@@ -19,6 +19,7 @@ PROOFS = (
         "A bridge's restart does not fail open commands.",
         edit(evidence._broken_link, "report.epoch != before.epoch", "False"),
         weather={"bridge_restart": 30.0, "hop_partition": 40.0},
+        likely=9,
     ),
     mutant(
         "ends_are_proven",
@@ -79,12 +80,14 @@ PEOPLE = (
         ),
         seeds=SHARED,
         weather={"brown_out": 10.0, "operator_override": 20.0, "operator_retry": 20.0, "lost_steps": 10.0},
+        likely=70,
     ),
     mutant(
         "verbs_are_refused_rightly",
         "A cell whose queue runs can be resumed.",
         edit(Operator._not_resumable, "None if cell.queue_paused else", "None if True else"),
         weather={"operator_resume": 40.0},
+        likely=12,
     ),
     mutant(
         "verbs_do_what_they_say",
