@@ -51,7 +51,7 @@ for name in ("time", "monotonic", "perf_counter"):
 def setting(tmp_path: Path) -> Path:
     """The shipped and the shared plant with many faults, as any interpreter can read it."""
     file = tmp_path / "setting"
-    file.write_bytes(pickle.dumps(Request(cycles=10, faults="many").setting, protocol=4))
+    file.write_bytes(pickle.dumps(Request(cycles=4, faults="many").setting, protocol=4))
     return file
 
 
@@ -126,7 +126,7 @@ def test_workers_find_what_one_process_finds(simulate: Callable[..., Any], tmp_p
     rows = []
     for jobs in ("1", "3"):
         file = tmp_path / f"{jobs}.json"
-        words = ("--seeds", "4", "--cycles", "5", "--faults", "few", "--jobs", jobs, "--json", str(file))
+        words = ("--seeds", "4", "--cycles", "2", "--faults", "few", "--jobs", jobs, "--json", str(file))
         run = simulate(*words)
         assert run.wait() in (0, 1), run.output
         assert "4 seeds (1 to 4)" in run.output and "\x1b" not in run.output
