@@ -85,9 +85,9 @@ TASKS = (
         "An operator's verb is in the journal before anybody knows whether it can be done.",
         edit(
             Operator.act,
-            "if request.verb is Verb.OVERRIDE:",
+            "self._planned(request, scope)()",
             'self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=""))\n'
-            "    if request.verb is Verb.OVERRIDE:",
+            "    self._planned(request, scope)()",
         ),
     ),
     mutant(
