@@ -294,3 +294,27 @@ def test_every_invariant_holds(found: Found) -> None:
     assert result.broken is None, str(result.broken)
     assert len(result.faults) == len(found.faults), "each of them happened"
     assert result.outcomes.get("done", 0) > 0
+
+
+@pytest.mark.parametrize(
+    ("evidence", "least_s", "patience_s"), [("ids", 0.1, 0.05), ("state", 0.3, 0.3), ("joints", 0.5, 0.05)]
+)
+def test_the_least_times_that_check_takes_are_enough_where_nothing_goes_wrong(
+    evidence: str, least_s: float, patience_s: float
+) -> None:
+    file = f"""
+        name: hasty
+        timing: {{deadline_factor: 1, deadline_floor_s: {least_s}, stop_timeout_s: {patience_s}}}
+        cells:
+          cell_1:
+            arm: {{name: arm_1, model: scara, link: mqtt, evidence: {evidence}, timeout_s: 0.05}}
+            mobile: {{name: mobile_1, link: mqtt, evidence: {evidence}, timeout_s: 0.05}}
+            home: {{deg: [0, 0], mm: 0}}
+            pickup: {{deg: [0, 0.3], mm: 0}}
+            paths: {{c5: [5], 4z: [5, 4]}}
+            stations: {{0: {{deg: [0, 0.3], mm: 0}}, 1: {{deg: [50, 10], mm: 20}}}}
+    """
+    for seed in range(1, 5):
+        result = Simulation(loaded(yaml.safe_load(file)).model, seed, explicit(())).run(seconds=30.0)
+        assert result.broken is None, str(result.broken)
+        assert result.outcomes.keys() == {"done"}

@@ -220,3 +220,40 @@ def test_at_joints_a_round_trip_needs_edges_that_are_seen(tmp_path: Path) -> Non
 )
 def test_elsewhere_edges_may_be_short(tmp_path: Path, old: str, new: str) -> None:
     load(tmp_path, FAST.replace(old, new) + "    stations: {0: {deg: [1, 1], mm: 1}}\n")
+
+
+HASTY = ONE_CELL.replace("evidence: ids}", "evidence: joints, timeout_s: 0.4}", 1)
+TIMES = "timing: {deadline_factor: 1, deadline_floor_s: 0.1}\n"
+STATIONS = "    stations: {0: {deg: [1, 1], mm: 1}}\n"
+
+
+def test_a_robot_is_given_the_time_in_which_an_arrival_shows(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, TIMES + HASTY + STATIONS)
+    assert ": cells.sis_a.arm: a move may take only 0.1 s longer than computed (timeout_s 0.4," in found
+    assert (
+        "with evidence: joints, an arrival may show 0.5 s later: a deadline_floor_s of 0.5 or more" in found
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("floor_s: 0.1", "floor_s: 0.5"),
+        ("evidence: joints", "evidence: ids"),
+        ("timeout_s: 0.4", "timeout_s: 10"),  # which is more than the longest move takes
+        ("timeout_s: 0.4", "timeout_s: 0.7"),
+    ],
+)
+def test_what_gives_a_robot_that_time_is_taken(tmp_path: Path, old: str, new: str) -> None:
+    factor = "3" if new.endswith("0.7") else "1"
+    times = TIMES.replace("factor: 1", f"factor: {factor}")
+    load(tmp_path, (times + HASTY + STATIONS).replace(old, new))
+
+
+def test_at_state_a_move_of_no_length_is_given_time_for_a_word(tmp_path: Path) -> None:
+    silent = ONE_CELL.replace("evidence: ids", "evidence: state") + STATIONS
+    of_arm, of_mobile = problems(tmp_path, "timing: {stop_timeout_s: 0.2}\n" + silent)
+    rule = "1:26: timing.stop_timeout_s: must be at least 0.3 for {}, which has evidence: state"
+    assert of_arm.startswith(rule.format("ra1")) and of_mobile.startswith(rule.format("rm_sis_a"))
+    load(tmp_path, "timing: {stop_timeout_s: 0.3}\n" + silent)
+    load(tmp_path, "timing: {stop_timeout_s: 0.2}\n" + ONE_CELL + STATIONS)

@@ -48,7 +48,13 @@ def test_a_seed_draws_the_same_and_another_something_else() -> None:
 
 def test_a_drawn_file_is_refused_only_for_what_its_parts_mean_together() -> None:
     found = [_problems(drawn(seed)) for seed in SEEDS]
-    expected = (": zones.", "comes by its last node", "timing.effector_settle_s", "timing.piece_debounce_s")
+    times = ("effector_settle_s", "piece_debounce_s", "stop_timeout_s")
+    expected = (
+        ": zones.",
+        "comes by its last node",
+        "longer than computed",
+        *(f"timing.{key}" for key in times),
+    )
     assert all(any(words in each for words in expected) for problems in found for each in problems), found
     assert found.count(()) > len(SEEDS) / 2
 
@@ -114,6 +120,9 @@ def test_odd_plants_are_drawn(plants: list[PlantModel]) -> None:
     assert any(cell.piece_check and cell.arm.piece_on_change for cell in cells)
     assert not all(robot.has_stop for plant in plants for robot in plant.robots.values())
     assert any(plant.timing.dwell_s == 0 for plant in plants)
+    assert any(plant.timing.stop_timeout_s < 0.1 and plant.timing.deadline_floor_s < 0.3 for plant in plants)
+    assert any(cell.zone_wait_s < 0.1 for cell in cells)
+    assert any(robot.timeout_s < 0.1 for cell in cells for robot in cell.robots)
     assert any(len(_sharing(plant, zone)) > 1 for plant in plants for zone in plant.zones)
     assert any(pose.zones for cell in cells if cell.crossings for pose in cell.poses)
 

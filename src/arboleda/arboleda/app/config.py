@@ -11,6 +11,7 @@ from arboleda.core.model import Cell, ForeignCommands, PlantModel, Retry, Timing
 
 from . import user_file
 from .plant_file import rack
+from .plant_file.deadlines import check_arrivals_show
 from .plant_file.document import Document, Place, shown
 from .plant_file.names import check_names
 from .plant_file.paths import check_nodes_show, paths
@@ -82,12 +83,16 @@ def _plant(document: Document) -> PlantModel | None:
     whole = tuple(cell for cell in cells if cell)
     regions = zones(document, whole)
     zoned = tuple(with_zones(document, cell, regions) for cell in whole)
-    if shape is None or timing is None or len(whole) < len(cells):
+    if timing is None:
+        return None
+    times = Timing(**timing.model_dump())
+    check_arrivals_show(document, whole, times)
+    if shape is None or len(whole) < len(cells):
         return None
     return PlantModel(
         name=shape.name,
         cells=zoned,
-        timing=Timing(**timing.model_dump()),
+        timing=times,
         mqtt_version=MQTT_PROTOCOL[shape.mqtt_version],
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),

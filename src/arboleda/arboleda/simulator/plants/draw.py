@@ -9,7 +9,7 @@ from arboleda.core.model import Joint
 from ..chance import Dice
 from .cells import DrawnCell, draw_cell
 from .poses import Section, draw_rack
-from .timing import draw_timing
+from .timing import draw_timing, hasten
 from .ways import draw_paths
 from .zones import draw_zones
 
@@ -42,6 +42,7 @@ def draw(
     file["cells"] = {cell.name: cell.section for cell in cells}
     if zones := draw_zones(dice, cells, shared):
         file["zones"] = zones
+    hasten(Dice(seed, "plant", attempt, "haste"), file)
     return file
 
 

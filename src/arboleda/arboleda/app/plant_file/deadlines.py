@@ -1,0 +1,66 @@
+"""Times within which no robot can show that it has arrived."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.core.belief import APART_S
+from arboleda.core.evidence import QUIET_S
+from arboleda.core.model import Arm, Cell, Evidence, Mobile, Robot, Timing
+
+from .document import Document, Place
+
+PERIOD_S = APART_S / 2  # of telemetry
+# by what an arrival shows: its own report; one of moving and one of the end; two with QUIET_S between them
+SHOWN_S = {
+    Evidence.IDS: PERIOD_S,
+    Evidence.STATE: APART_S + PERIOD_S,
+    Evidence.JOINTS: QUIET_S + 2 * PERIOD_S,
+}
+ROUNDING_S = 1e-6
+
+
+def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timing) -> None:
+    """Keeps a problem for each robot whose moves may be given up or taken for done before they show."""
+    for cell in cells:
+        for key, robot in (("arm", cell.arm), ("mobile", cell.mobile)):
+            _check_patience(document, robot, timing)
+            spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), SHOWN_S[robot.evidence]
+            if spare_s < needed_s - ROUNDING_S:
+                place: Place = ("cells", cell.name, key)
+                document.problem(place, _sentence(robot, timing, spare_s, needed_s))
+
+
+def _check_patience(document: Document, robot: Robot, timing: Timing) -> None:
+    needed_s = SHOWN_S[Evidence.STATE]
+    if robot.evidence is Evidence.STATE and timing.stop_timeout_s < needed_s - ROUNDING_S:
+        rule = f"must be at least {needed_s:g} for {robot.name}, which has evidence: state"
+        why = "so late it may say that it moves, and a move of no length would count as done before"
+        document.problem(("timing", "stop_timeout_s"), f"{rule}; {why}; is {timing.stop_timeout_s:g}")
+
+
+def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
+    """How much more than its computed time a move has at least, of all that take up to `longest_s`."""
+    factor, floor_s = timing.deadline_factor, timing.deadline_floor_s
+    # moves of up to this length have `timeout_s`, however short they are; longer ones have more than that
+    even_s = min(max((robot.timeout_s - floor_s) / factor, 0.0), longest_s)
+    return max(robot.timeout_s, even_s * factor + floor_s) - even_s
+
+
+def _longest_s(cell: Cell, robot: Robot) -> float:
+    if isinstance(robot, Arm):
+        return robot.travel_s(None, cell.home.q)
+    assert isinstance(robot, Mobile)
+    ways = [path.nodes for path in cell.paths]
+    ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
+    return max(robot.travel_s(way) for way in ways)
+
+
+def _sentence(robot: Robot, timing: Timing, spare_s: float, needed_s: float) -> str:
+    keys = (
+        f"timeout_s {robot.timeout_s:g}, deadline_factor {timing.deadline_factor:g}, "
+        f"deadline_floor_s {timing.deadline_floor_s:g}"
+    )
+    what = f"a move may take only {spare_s:.3g} s longer than computed ({keys})"
+    why = f"with evidence: {robot.evidence.value}, an arrival may show {needed_s:g} s later"
+    return f"{what}; {why}: a deadline_floor_s of {needed_s:g} or more mends that"
