@@ -13,7 +13,7 @@ from rich.text import Text
 from arboleda.app import screen as shown
 from arboleda.app.parts.orchestrator import task_line
 from arboleda.app.screen import Screen, joints, logged, parting, table
-from arboleda.core.messages import Reason, TaskChanged, TaskState
+from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.core.model import MotionState
 from arboleda.testing import Rig, shipped
 
@@ -148,3 +148,17 @@ def test_texts_of_a_snapshot_are_no_markup_and_nothing_that_a_terminal_obeys(rig
     text = drawn(snapshot, 200)
     assert "\x1b" not in text and "\u202e" not in text
     assert text.count("[red]x[/red]\\x1b[2J") == 3
+
+
+def test_an_idle_cell_that_cannot_work_says_so(rig: Rig) -> None:
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        rig.operate(verb, "sis_a")
+        rig.wait(2.0)
+    text = drawn(rig.snapshot(), 100)
+    assert "paused" in text and "resume sis_a starts it" in " ".join(text.split())
+    rig.power_off("rm_sis_a")
+    rig.wait(3.0)
+    text = drawn(rig.snapshot(), 100)
+    assert "blocked" in text
+    assert text.count("rm_sis_a is offline") == 1, "once is enough"
+    assert "bring rm_sis_a back, then resume sis_a" in " ".join(text.split())

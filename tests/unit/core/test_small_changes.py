@@ -34,5 +34,12 @@ def test_a_cell_is_diagnosed_with_its_state_its_queue_and_its_step(hand: Callabl
     plant.submit("sis_a palletizing")
     plant.submit("sis_a palletizing")
     rows = {name: values for name, _, _, _, values in view.diagnostics(view.snapshot(plant.plant))}
-    assert rows["arboleda: sis_a"] == {"state": "execute", "queued": "1", "step": "system start"}
-    assert rows["arboleda: sis_b"] == {"state": "idle", "queued": "0", "step": ""}
+    shown = {"state": "execute", "queued": "1", "step": "system start"}
+    assert rows["arboleda: sis_a"] == {**shown, "waiting_for": "sis_a is busy", "advice": ""}
+    assert rows["arboleda: sis_b"] == {
+        "state": "idle",
+        "queued": "0",
+        "step": "",
+        "waiting_for": "",
+        "advice": "",
+    }

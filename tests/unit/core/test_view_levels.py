@@ -83,4 +83,47 @@ def test_a_silent_robot_is_stale() -> None:
     rig.wait(0.5)
     rig.power_off("ra_1", will_after_s=7.0)
     rig.wait(rig.model.timing.stale_after_s + 0.1)
-    assert levels(rig) == {"ra1": STALE, "rm_sis_a": OK, "sis_a": OK}
+    assert levels(rig) == {"ra1": STALE, "rm_sis_a": OK, "sis_a": WARN}
+
+
+def test_an_idle_cell_that_cannot_work_is_told_with_what_leads_out() -> None:
+    rig = Rig(shipped("sis_a"))
+    rig.wait(0.5)
+    rig.power_off("ra_1")
+    rig.wait(2.0)
+    snapshot = rig.snapshot()
+    (cell,) = snapshot["cells"]
+    assert (cell["state"], cell["not_ready"]) == ("idle", "ra1 is offline; bring ra1 back")
+    assert view.standing(cell) == "blocked"
+    assert cell["advice"] == [
+        {
+            "do": "bring_back",
+            "hand": True,
+            "scope": "ra1",
+            "by_hand": False,
+            "instead": False,
+            "said": "bring ra1 back",
+            "why": "ra1 is offline",
+            "moves": [],
+            "drops": [],
+            "refusal": None,
+        }
+    ]
+    *_, (_, _, level, message, values) = view.diagnostics(snapshot)
+    assert (level, message, values["waiting_for"]) == (WARN, cell["not_ready"], cell["not_ready"])
+    assert values["advice"] == "bring ra1 back"
+
+
+def test_a_paused_queue_is_told_before_anything_waits_in_it() -> None:
+    rig = Rig(shipped("sis_a"))
+    rig.wait(0.5)
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        rig.operate(verb, "sis_a")
+        rig.wait(1.0)
+    (cell,) = rig.snapshot()["cells"]
+    said = "the queue of sis_a is paused; resume sis_a starts it"
+    assert (cell["not_ready"], cell["waiting_for"]) == (said, None)
+    assert view.standing(cell) == "paused"
+    assert rig.operate(Verb.RESUME, "sis_a") is None
+    (cell,) = rig.snapshot()["cells"]
+    assert (cell["not_ready"], cell["advice"], view.standing(cell)) == (None, [], "idle")

@@ -17,6 +17,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from arboleda.core import view
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.core.outside import plain
@@ -142,9 +143,10 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
 
 def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> list[Text]:
     task = cell["task"]
-    style = {"idle": "", "execute": "cyan"}.get(cell["state"], "red")
+    standing = view.standing(cell)
+    style = {"idle": "", "execute": "cyan", "paused": "yellow", "blocked": "yellow"}.get(standing, "red")
     queued = f" +{len(cell['queue'])}" if cell["queue"] else ""
-    words = (cell["name"], (task["text"] if task else cell["state"]) + queued, cell["step"] or "")
+    words = (cell["name"], (task["text"] if task else standing) + queued, cell["step"] or "")
     return [
         *(_words(word, style) for word in words),
         _of(arm, f"{joints(arm)}, {effector(arm)}"),
@@ -159,16 +161,20 @@ def _of(robot: dict[str, Any], said: str) -> Text:
 
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
-    held = [cell["held_by"] for cell in snapshot["cells"] if cell["held_by"]]
+    held = [why for cell in snapshot["cells"] if (why := cell["held_by"] or cell["not_ready"])]
     latched = [each["name"] for each in snapshot["robots"] if each.get("latched")]
     stopped = [f"stop (software) latched: {', '.join(latched)}; clear, then reset"] if latched else []
     return held + stopped + _obstacles(snapshot)
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:
-    """What keeps a robot without a task from working; a latch alone is told of all robots in one line."""
+    """What keeps a robot without a task from working; a latch alone is told of all robots in one line, and
+    what its idle cell says already not again.
+    """
+    told = " ".join(cell["not_ready"] or "" for cell in snapshot["cells"])
     idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
+    robots = [each for each in robots if each["obstacle"] not in told]
     return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 

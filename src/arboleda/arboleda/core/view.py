@@ -9,10 +9,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from . import places, recipes, tree_view, twin_view
+from .advice import Advice, Hand, in_words, sentence
 from .belief import Belief
 from .cell import CellRun
+from .cell_states import CellState
 from .ledger import Entry
-from .messages import TaskChanged
+from .messages import TaskChanged, Verb
 from .model import Arm, Cell, PlantModel
 from .operator import OperatorAct
 from .plant import Plant
@@ -42,7 +44,7 @@ def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
     """
     at, cells, robots, open_tasks = plant.now, [], [], {}
     for cell in plant.cells.values():
-        cells.append(_cell(cell, plant.now))
+        cells.append(_cell(plant, cell))
         robots += [_robot(plant, plant.dispatcher.beliefs[robot.name]) for robot in cell.cell.robots]
         waiting = [cell.task, *cell.queue] if cell.task else cell.queue
         open_tasks |= {task.id: _task(task, plant.now) for task in waiting}
@@ -143,7 +145,8 @@ def _tasks(plant: Plant, open_tasks: dict[str, dict[str, Any]]) -> list[dict[str
     return forgotten + [rows[id] for id in plant.intake.tasks if id in rows]
 
 
-def _cell(cell: CellRun, now: float) -> dict[str, Any]:
+def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
+    now, ways = plant.now, plant.advice(cell.cell.name)
     return {
         "name": cell.cell.name,
         "state": cell.state.value,
@@ -155,9 +158,42 @@ def _cell(cell: CellRun, now: float) -> dict[str, Any]:
         "queue": [task.id for task in cell.queue],
         "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
+        "not_ready": _not_ready(cell, ways),
         "held_by": cell.held_by,
+        "advice": [_advice(each) for each in ways],
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
     }
+
+
+def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> str | None:
+    """Why an idle cell would start no task, and what to do; a queue that is paused says so itself."""
+    why = cell.not_ready
+    if why is None or why == cell.why_paused or not ways:
+        return why
+    return f"{why}; {sentence(ways)}"
+
+
+def _advice(advice: Advice) -> dict[str, Any]:
+    return {
+        "do": advice.do.value,
+        "hand": isinstance(advice.do, Hand),
+        "scope": advice.scope,
+        "by_hand": advice.by_hand,
+        "instead": advice.instead,
+        "said": in_words(advice),
+        "why": advice.why,
+        "moves": list(advice.moves),
+        "drops": list(advice.drops),
+        "refusal": advice.refusal,
+    }
+
+
+def standing(cell: dict[str, Any]) -> str:
+    """How a cell of a snapshot stands: its state; where it only looks idle, `blocked` or `paused`."""
+    if cell["state"] != CellState.IDLE or cell["not_ready"] is None:
+        return str(cell["state"])
+    only_paused = [each["do"] for each in cell["advice"]] == [Verb.RESUME]
+    return "paused" if only_paused else "blocked"
 
 
 def _task(task: Task, now: float) -> dict[str, Any]:
@@ -242,7 +278,16 @@ def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
 
 
 def _cell_diagnostic(cell: dict[str, Any]) -> Diagnostic:
-    level = OK if cell["state"] in ("idle", "execute") and not cell["paused"] else WARN
-    message = cell["held_by"] or cell["waiting_for"] or cell["state"]
-    values = {"state": cell["state"], "queued": str(len(cell["queue"])), "step": cell["step"] or ""}
+    well = (
+        cell["state"] in (CellState.IDLE, CellState.EXECUTE) and not cell["paused"] and not cell["not_ready"]
+    )
+    message = cell["held_by"] or cell["not_ready"] or cell["waiting_for"] or cell["state"]
+    values = {
+        "state": cell["state"],
+        "queued": str(len(cell["queue"])),
+        "step": cell["step"] or "",
+        "waiting_for": cell["not_ready"] or cell["waiting_for"] or "",
+        "advice": ", ".join(each["said"] for each in cell["advice"]),
+    }
+    level = OK if well else WARN
     return (f"arboleda: {cell['name']}", "", level, message, values)

@@ -25,6 +25,8 @@ class CellLook:
     step: str | None
     queue: tuple[str, ...]
     held_by: str | None
+    not_ready: str | None
+    advice: tuple[str, ...]
     waiting_for: str | None
 
 
@@ -57,6 +59,8 @@ def cell(world: World, name: str) -> CellLook:
         step=found["step"],
         queue=tuple(found["queue"]),
         held_by=found["held_by"],
+        not_ready=found["not_ready"],
+        advice=tuple(each["said"] for each in found["advice"]),
         waiting_for=found["waiting_for"],
     )
 

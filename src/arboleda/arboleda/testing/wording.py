@@ -54,7 +54,7 @@ def standing(tasks: Iterable[Handle], watched: Watched) -> list[str]:
     """One line per task of the test and per cell."""
     lines = [f"task {task.text!r}: {_joined(task.state, task.reason, task.sentence)}" for task in tasks]
     for cell in view.snapshot(watched.world.plant)["cells"]:
-        why = cell["held_by"] or cell["waiting_for"]
+        why = cell["held_by"] or cell["waiting_for"] or cell["not_ready"]
         lines.append(f"cell {cell['name']}: {_joined(cell['state'], cell['step'], why)}")
     return lines
 

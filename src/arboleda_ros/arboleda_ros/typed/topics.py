@@ -53,5 +53,5 @@ def _cell(cell: Mapping[str, Any]) -> dict[str, Any]:
         "progress": cell["progress"] or 0.0,
         "queue_running": not cell["paused"],
         "queue": cell["queue"],
-        "waiting_for": cell["waiting_for"] or "",
+        "waiting_for": cell["not_ready"] or cell["waiting_for"] or "",
     }

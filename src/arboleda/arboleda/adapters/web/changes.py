@@ -16,7 +16,11 @@ Row = dict[str, Any]
 
 # list in a snapshot: (kind of event, what names a row, what counts as a change of it)
 ROWS = {
-    "cells": ("cell", "name", ("state", "task", "step", "queue", "paused", "waiting_for", "held_by")),
+    "cells": (
+        "cell",
+        "name",
+        ("state", "task", "step", "queue", "paused", "waiting_for", "not_ready", "held_by", "advice"),
+    ),
     "robots": (
         "robot",
         "name",

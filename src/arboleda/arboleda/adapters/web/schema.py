@@ -51,6 +51,21 @@ class Done(_Told):
     scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
 
 
+class Advice(_Told):
+    """One thing to do that leads a cell out of its state."""
+
+    do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference or check.")
+    hand: bool = Field(description="Only a person at the machine can do it.")
+    scope: str = Field(description="A cell, a robot or a zone.")
+    by_hand: bool = Field(description="For `home`: the robot was put at its reference.")
+    instead: bool = Field(description="It begins another way out than those before it.")
+    said: str = Field(description="In words, as the command line takes a verb.")
+    why: str
+    moves: list[str] = Field(description="Robots that it may set in motion.")
+    drops: list[str] = Field(description="Arms whose part falls.")
+    refusal: str | None = Field(description="Why it would be refused now.")
+
+
 class Cell(_Told):
     name: str
     state: str
@@ -61,7 +76,9 @@ class Cell(_Told):
     queue: list[str] = Field(description="Ids of the tasks that wait.")
     paused: bool
     waiting_for: str | None
+    not_ready: str | None = Field(description="Why an idle cell would start no task, and what can be done.")
     held_by: str | None = Field(description="Why the cell is held, and what can be done.")
+    advice: list[Advice] = Field(description="What leads it out of its state, in the order to do it.")
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
 
 

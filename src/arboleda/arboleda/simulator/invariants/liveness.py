@@ -54,11 +54,12 @@ def no_starvation(look: Look) -> Iterable[str]:
 
 def _idle_though_ready(look: Look) -> Iterator[str]:
     for cell in look.record.idle:
-        if _ready(look, cell):
+        if ready(look, cell):
             yield f"{cell.name} is ready, and its next task does not start"
 
 
-def _ready(look: Look, cell: KnownCell) -> bool:
+def ready(look: Look, cell: KnownCell) -> bool:
+    """Whether a cell would start a task, by what its robots said and what operators asked for."""
     plant, robots = look.world.plant, look.record.robots
     if cell.stopped or plant.intake.closed:
         return False

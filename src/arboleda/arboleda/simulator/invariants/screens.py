@@ -18,6 +18,7 @@ from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
 from ..recorded.robots import KnownRobot, Stopped
 from .invariant import Look, When, invariant
+from .liveness import ready
 
 NOTHING: tuple[str, ...] = ()
 EVERY_S, STATUS_S = 5.0, 1.0
@@ -40,6 +41,8 @@ def _shown(look: Look) -> Iterator[str]:
     for row in shown["cells"]:
         cell = record.cells[row["name"]]
         yield from _unlike(cell.name, row, _cell(look, cell))
+        if cell.state is CellState.IDLE and cell.paused and row["not_ready"] is None:
+            yield f"{cell.name} is shown as ready, and its queue is paused"
         yield from _tree(cell, row["tree"])
     for row in shown["robots"]:
         known = record.robots[row["name"]]
@@ -97,6 +100,10 @@ def _cell(look: Look, cell: KnownCell) -> Row:
         expected["waiting_for"] = None
     if cell.state is not CellState.HELD:
         expected["held_by"] = None
+    if cell.state is not CellState.IDLE or (not cell.paused and ready(look, cell)):
+        expected["not_ready"] = None
+    if cell.state is CellState.EXECUTE:
+        expected["advice"] = []
     running = tasks.open.get(tasks.running.get(cell.name, ""))
     if running is None:
         expected["task"] = None
@@ -183,7 +190,7 @@ def _diagnoses(shown: Row) -> Iterator[str]:
             yield f"{robot['name']} has the diagnosis {level} {message!r}"
     for cell in shown["cells"]:
         level, message = rows.pop(f"arboleda: {cell['name']}", (None, ""))
-        well = cell["state"] in ("idle", "execute") and not cell["paused"]
+        well = cell["state"] in ("idle", "execute") and not cell["paused"] and not cell["not_ready"]
         if level != (OK if well else WARN) or not message:
             yield f"{cell['name']} has the diagnosis {level} {message!r}"
     if rows:
