@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence, recipes, text, view
+from arboleda.core import advisor, evidence, recipes, text, view
+from arboleda.core.advisor import Advisor
 from arboleda.core.belief import Belief
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
@@ -118,6 +119,29 @@ PEOPLE = (
     ),
 )
 
+ADVICE = (
+    mutant(
+        "advice_leads_out",
+        "After a reboot it is advised to retry, which is held again, for ever.",
+        edit(Advisor._readying, "obstacle.reason is Reason.NOT_HOMED", "False"),
+        weather={"reboot": 10.0},
+        cycles=1,
+    ),
+    mutant(
+        "refusals_are_foretold",
+        "It is foretold that no verb is refused.",
+        edit(Operator.refusal, "return str(refused)", "return None"),
+        weather={"operator_resume": 40.0},
+    ),
+    mutant(
+        "no_advice_where_all_is_well",
+        "It is advised to resume a queue that runs.",
+        edit(advisor._running_again, "if run.queue_paused:", "if True:"),
+        weather="none",
+        rest_s=60.0,
+    ),
+)
+
 SCREENS = (
     mutant(
         "screens_show_what_is",
@@ -139,4 +163,4 @@ SCREENS = (
     ),
 )
 
-TOLD = (*PROOFS, *BRIDGE, *PEOPLE, *SCREENS)
+TOLD = (*PROOFS, *BRIDGE, *PEOPLE, *ADVICE, *SCREENS)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from itertools import count
 
-from arboleda.core.cell import CellRun
-from arboleda.core.cell_states import CellState
-from arboleda.core.messages import TaskChanged, TaskState, Verb
-from arboleda.core.model import Cell, MotionState
+from arboleda.core.advice import Advice, Hand
+from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.core.model import Cell
 
 from .chance import Dice
+from .hands import do
 from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue
+BY_THEMSELVES = (Hand.BRING_BACK, Hand.REPAIR)
 ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
 
 
@@ -88,7 +89,10 @@ class Customers:
 
 
 class Attendant:
-    """Comes by every few seconds and does, cell by cell, the next thing that gets it going again."""
+    """Comes by every few seconds and does, cell by cell, the first thing that is advised.
+
+    What is lost or broken comes back when its fault is over: nobody brings it back or repairs it before.
+    """
 
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
@@ -99,51 +103,15 @@ class Attendant:
         self._world.at(self._world.now + self._dice.between(*ROUND_S), self._round)
 
     def _round(self, _: None) -> None:
-        for cell in self._world.plant.cells.values():
-            wanted = self._wanted(cell)
-            if wanted is not None:
-                verb, scope, by_hand = wanted
-                if by_hand:
-                    self._world.home_by_hand(scope)
-                else:
-                    self._world.request_verb(verb, scope)
+        for cell in self._world.plant.cells:
+            self._see_to(self._world.plant.advice(cell))
         self._next_round()
 
-    def _wanted(self, cell: CellRun) -> tuple[Verb, str, bool] | None:
-        name = cell.cell.name
-        if cell.state in (CellState.IDLE, CellState.HELD):
-            if self._stopped_by_others(cell):
-                return Verb.STOP, name, False
-            if (lost := self._lost(cell)) is not None:
-                return lost
-        if cell.state is CellState.HELD:
-            return self._held(cell)
-        if cell.state in (CellState.ABORTED, CellState.CLEARING):
-            return Verb.CLEAR, name, False
-        if cell.state is CellState.STOPPED:
-            return Verb.RESET, name, False
-        return (Verb.RESUME, name, False) if cell.state is CellState.IDLE and cell.queue_paused else None
-
-    def _held(self, cell: CellRun) -> tuple[Verb, str, bool]:
-        name = cell.cell.name
-        if cell.stranded:
-            return Verb.ABANDON, name, False
-        if cell.task is not None and cell.trouble is None:
-            return Verb.RESUME, name, False
-        if cell.task is None and cell.context.holding():
-            return Verb.RELEASE, cell.cell.arm.name, False
-        return (Verb.RETRY if self._dice.chance(0.5) else Verb.ABANDON), name, False
-
-    def _stopped_by_others(self, cell: CellRun) -> bool:
-        """Whether a robot says that it is stopped though no operator of this plant stopped it."""
-        beliefs = [self._world.plant.dispatcher.beliefs[robot.name] for robot in cell.cell.robots]
-        return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)
-
-    def _lost(self, cell: CellRun) -> tuple[Verb, str, bool] | None:
-        """Homing, for a robot of the cell that is heard and does not know where it is."""
-        beliefs = [self._world.plant.dispatcher.beliefs[robot.name] for robot in cell.cell.robots]
-        for belief in beliefs:
-            astray = belief.robot is cell.cell.arm and cell.context.astray() is not None
-            if belief.online and (belief.unhomed or astray):
-                return Verb.HOME, belief.robot.name, not belief.robot.says_homed
-        return None
+    def _see_to(self, ways: tuple[Advice, ...]) -> None:
+        """The first; who has looked into a zone also says so, as the plant cannot know."""
+        for advice in ways:
+            if advice.refusal is not None or advice.do in BY_THEMSELVES:
+                return
+            do(self._world, advice)
+            if advice.do is not Hand.CHECK:
+                return

@@ -29,6 +29,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.plant import Plant
 
+from .recorded.acts import Acts
 from .recorded.boards import Boards, KnownBoard
 from .recorded.bridge import Bridges
 from .recorded.cells import LOOK_S, KnownCell
@@ -76,7 +77,8 @@ class Record:
         self.bridges = Bridges(model)
         self.works = Works(self.cells, self.robots, model.timing.dwell_s)
         self.asked = Before()
-        world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world.plant))
+        self.acts = Acts()
+        world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step
         self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)
@@ -208,6 +210,9 @@ class Record:
                 take(self, message)
         self._compare(plant)
         self.stepped_at = plant.now
+        if self.acts.of:
+            faults, last = self.world.faults_active, self.world.last_fault_at
+            self.acts.look(self.cells, last_fault_at=last, faults=faults)
 
     def _has_work(self, cell: KnownCell) -> bool:
         return cell.tree is not None or cell.queued > 0
@@ -283,6 +288,7 @@ class Record:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
                 self.undisturbed = False
+                self.acts.take(event, [self.cells[name] for name in self.scopes.cells(event.scope)])
                 for robot in self.scopes.robots(event.scope):
                     self._verbs.setdefault(robot, set()).add(event.verb)
 

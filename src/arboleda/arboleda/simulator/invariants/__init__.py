@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .advice import ADVICE
 from .beliefs import BELIEFS
 from .books import BOOKS
 from .bridge import BRIDGE
@@ -37,6 +38,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *TEXTS,
     *WORK,
     *VERBS,
+    *ADVICE,
     *MEMORY,
     *LIVENESS,
     *BOOKS,

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import TaskState
-from arboleda.core.plant import Plant
+from arboleda.core.messages import OperatorRequest, TaskState
 
+from ..world import World
 from .cells import KnownCell
 from .tasks import Tasks
 
@@ -33,11 +33,16 @@ class Before:
     def __init__(self) -> None:
         self.cells: list[Asked] = []
         self.quarantined: dict[str, str] = {}  # zone -> its silent robot
+        self.foretold: list[tuple[OperatorRequest, str | None]] = []  # of a verb that comes alone
         self.tasks: dict[str, TaskState] = {}
         self.ids: frozenset[str] = frozenset()  # of all tasks that were accepted and may be remembered
 
-    def look(self, cells: Iterable[KnownCell], tasks: Tasks, plant: Plant) -> None:
+    def look(self, cells: Iterable[KnownCell], tasks: Tasks, world: World) -> None:
         """Somebody asks: the plant has not heard it yet."""
+        plant, asked = world.plant, world.moment.asked
+        alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        verbs = [each for each in asked if isinstance(each, OperatorRequest)] if alone else []
+        self.foretold = [(each, plant.refusal(each)) for each in verbs]
         self.tasks = {id: task.state for id, task in tasks.open.items()}
         self.ids = frozenset(tasks.open) | frozenset(tasks.ended)
         self.cells = [

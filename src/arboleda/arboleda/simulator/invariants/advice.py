@@ -1,0 +1,39 @@
+"""Advice leads out: whoever follows it gets every cell to work again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from .invariant import Look, When, invariant
+
+ENOUGH = 6  # acts
+
+
+@invariant(When.ASKED)
+def advice_leads_out(look: Look) -> Iterator[str]:
+    """Once nothing goes wrong any more, the first advice leads each cell to work in at most six acts."""
+    for name, acts in look.record.acts.of.items():
+        if len(acts) > ENOUGH:
+            why = look.world.plant.cells[name].waiting_for()
+            yield f"{name} does not work after {', '.join(acts)}: {why}"
+
+
+@invariant(When.ASKED)
+def refusals_are_foretold(look: Look) -> Iterator[str]:
+    """Whether and why a verb would be refused is told before as it is answered then."""
+    for request, foretold in look.record.asked.foretold:
+        (answer,) = look.record.answers
+        if answer.refusal != foretold:
+            said = f"{request.verb.value} {request.scope!r}"
+            yield f"{said} was answered with {answer.refusal!r}, foretold was {foretold!r}"
+
+
+@invariant(When.END)
+def no_advice_where_all_is_well(look: Look) -> Iterator[str]:
+    """At the end nothing is advised, as every cell works."""
+    for name in look.world.plant.cells:
+        for advice in look.world.plant.advice(name)[:1]:
+            yield f"for {name} it is advised: {advice}"
+
+
+ADVICE = (advice_leads_out, refusals_are_foretold, no_advice_where_all_is_well)

@@ -1,0 +1,44 @@
+"""What operators did for each cell since it worked last, while nothing else happened to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from arboleda.core.cell_states import CellState
+from arboleda.core.messages import OperatorRequest
+from arboleda.core.task import Task
+
+from .cells import KnownCell
+
+
+class Acts:
+    """`of` has them by cell, in words; a cell that works, and a fault anywhere, begin anew."""
+
+    def __init__(self) -> None:
+        self.of: dict[str, list[str]] = {}
+        self._had: dict[str, Task | None] = {}
+        self._last_fault_at = -math.inf
+
+    def look(self, cells: dict[str, KnownCell], *, last_fault_at: float, faults: int) -> None:
+        """Forget what is over; called after every step of the plant."""
+        if faults or last_fault_at != self._last_fault_at:
+            self._last_fault_at = last_fault_at
+            self.of.clear()
+        for name in [name for name in self.of if self._works(cells[name])]:
+            del self.of[name]
+
+    def take(self, request: OperatorRequest, cells: Iterable[KnownCell]) -> None:
+        """Somebody asks for something on these cells."""
+        for cell in cells:
+            if cell.name not in self.of:
+                self._had[cell.name] = cell.run.task
+            said = f"{request.verb.value} {request.scope}{' --by-hand' if request.by_hand else ''}"
+            self.of.setdefault(cell.name, []).append(said)
+
+    def _works(self, cell: KnownCell) -> bool:
+        """Whether a cell would start a task, or has started another one than it had then."""
+        run = cell.run
+        if run.state is CellState.IDLE:
+            return run.not_ready is None
+        return run.state is CellState.EXECUTE and run.task not in (None, self._had[cell.name])
