@@ -198,6 +198,32 @@ FOUND = {
             Fault(kind="hop_partition", at=27.638, seconds=7.644, target="plant", word="to plant, lost"),
         ),
     ),
+    "a move of the work, given anew and halted in the same step, was taken for one of the recovery": Found(
+        seed=166,
+        seconds=60,
+        faults=(
+            Fault(
+                kind="delay",
+                at=17.618,
+                seconds=2.147,
+                target="bridge",
+                amount=1.041,
+                word="down",
+                seed=4208822265,
+            ),
+            Fault(
+                kind="plant_freeze",
+                at=24.522,
+                seconds=1.407,
+                target="plant",
+                amount=6.779,
+                word="plant",
+                seed=867490635,
+            ),
+            Fault(kind="plant_stall", at=47.886, seconds=4.381, target="plant", seed=1350324084),
+            Fault(kind="lost_part", at=52.441, target="arm_back", seed=3420715198),
+        ),
+    ),
 }
 
 

@@ -302,7 +302,7 @@ class Record:
             cell.wait(plant.now - self.stepped_at)
         goals: dict[str, list[Any]] = {}
         for each in self.commands.new:
-            if each.entry is not None:
+            if each.entry is not None and each.entry.cancelled_at is None:  # halted at once: the work's last
                 of_cell = goals.setdefault(each.entry.cell, [])
                 of_cell += [each.command.q] if isinstance(each.command, MoveJoints) else []
         holders = plant.zones.robots
