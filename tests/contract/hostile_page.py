@@ -30,6 +30,7 @@ SAID = {
     "not_ready",
     "said",
     "why",
+    *(verb.value for verb in Verb),
     "refusal",
     "waiting_for",
     "last",

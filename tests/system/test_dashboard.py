@@ -141,7 +141,7 @@ def get_ready(page: Any) -> None:
     """Clear, reset and resume the whole plant."""
     show(page, "panel")
     page.click('[data-scope=""]')
-    for verb, after in (("clear", "stopped"), ("reset", "idle"), ("resume", "idle")):
+    for verb, after in (("clear", "stopped"), ("reset", "paused"), ("resume", "idle")):
         page.click(f".verb[data-verb={verb}] button")
         wait_for_answer(page, "Done", "good")
         page.wait_for_function(EVERY_CELL, arg=after)
@@ -217,8 +217,41 @@ def test_a_stop_is_one_act_though_there_are_two_ways(open_page: Open) -> None:
 def test_what_is_refused_says_why(open_page: Open) -> None:
     page = open_page("panel")
     page.click("[data-scope=sis_a]")
-    page.click(".verb[data-verb=reset] button")
-    wait_for_answer(page, "sis_a is idle; this needs a cell that is stopped", "bad")
+    page.wait_for_selector(".verb[data-verb=reset] button:disabled")
+    said = page.inner_text(".verb[data-verb=reset] p")
+    assert said == "sis_a is idle; this needs a cell that is stopped"
+    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; this needs a cell that is execute"
+
+
+def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: Open) -> None:
+    page = open_page()
+    page.wait_for_function("document.title === 'arboleda'")
+    page.click("#stop")
+    wait_for_stop(page, "stopped")
+    page.wait_for_function("document.title.startsWith('⚠ sis_a')")
+    assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree_trouble.svg")
+    for cell in ("sis_a", "sis_b", "sis_c"):
+        for act in ("clear", "reset", "resume"):
+            page.click(f'[data-rows="ways.{cell}"] [data-s=next] button[data-act={act}]:enabled')
+        page.wait_for_selector(f'[data-live="{cell}.state"][data-s=idle]')
+    page.wait_for_function("document.title === 'arboleda'")
+    assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
+
+
+def test_what_moves_a_robot_is_asked_once_and_says_what_will_happen(open_page: Open) -> None:
+    page = open_page("tasks")
+    task = send(page, "sis_b 0B 7")
+    wait_for_task(page, task, "running")
+    show(page, "panel")
+    page.click("[data-scope=sis_b]")
+    page.click(".verb[data-verb=hold] button")
+    show(page, "cells")
+    page.click('[data-rows="ways.sis_b"] [data-s=next] button[data-act=resume]')
+    page.wait_for_selector("dialog[open]")
+    assert "this sets ra2, rm_sis_b in motion" in page.inner_text("#question")
+    page.click("dialog .primary")
+    show(page, "tasks")
+    wait_for_task(page, task, "done")
 
 
 def test_a_wrong_task_shows_the_plants_sentence(open_page: Open) -> None:
@@ -413,7 +446,7 @@ def by_held_key(page: Any) -> None:
     page.keyboard.up("Escape")
 
 
-QUESTIONS = (("sis_a", "release"), ("sis_a", "home"), ("ra1", "home"), ("ra1", "home_by_hand"))
+QUESTIONS = (("sis_a", "release"), ("sis_a", "home"), ("ra1", "home"))
 
 
 @pytest.mark.parametrize(

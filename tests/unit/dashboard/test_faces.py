@@ -9,9 +9,9 @@ import pytest
 from arboleda.core.messages import Verb
 from arboleda.dashboard.faces import changed
 from arboleda.dashboard.faces.moment import seconds
-from arboleda.dashboard.faces.panel import suggested
 from arboleda.dashboard.faces.stop import stopped
 from arboleda.dashboard.faces.tasks import sorted_tasks
+from arboleda.testing import faults
 
 
 def robot(name: str, **said: Any) -> dict[str, Any]:
@@ -108,18 +108,99 @@ def test_a_failed_task_says_why_and_offers_to_be_sent_again(told: Callable[..., 
     assert [(act["act"], act["of"]) for act in row["acts"]] == [("submit", "sis_a 0B 7")]
 
 
-@pytest.mark.parametrize(
-    ("cell", "verbs"),
-    [
-        ({"state": "aborted"}, ("clear",)),
-        ({"state": "stopped"}, ("reset",)),
-        ({"state": "execute"}, ()),
-        ({"state": "idle", "paused": True}, ("resume",)),
-        ({"state": "held", "held_by": "a is held (x); retry a or abandon a"}, ("retry", "abandon")),
-    ],
-)
-def test_the_panel_suggests_what_comes_next(cell: dict[str, Any], verbs: tuple[str, ...]) -> None:
-    assert suggested({"paused": False, **cell}) == verbs
+def test_the_panel_suggests_what_comes_next_and_says_what_would_be_refused(told: Callable[..., Any]) -> None:
+    rig = told()
+    assert rig.face()["text/suggested.plant"][0] == ""
+    refused = json.loads(rig.face("es")["text/refused.sis_a"][0])
+    assert refused["reset"] == "sis_a está inactiva; para esto la celda debe estar liberada"
+    assert "home" not in refused and "home_by_hand" in json.loads(rig.face()["text/refused.ra1"][0])
+    for verb, following in ((Verb.STOP, "clear"), (Verb.CLEAR, "reset"), (Verb.RESET, "resume")):
+        rig.operate(verb, "sis_a")
+        rig.wait(1.0)
+        face = rig.face()
+        assert face["text/suggested.sis_a"][0] == face["text/suggested.plant"][0] == following
+        assert following not in json.loads(face["text/refused.sis_a"][0])
+        assert following not in json.loads(face["text/refused.plant"][0])
+    assert "clear" in json.loads(rig.face()["text/refused.plant"][0])
+
+
+def ways(face: dict[str, Any]) -> list[dict[str, Any]]:
+    return [face[f"row/ways.sis_a/{number}"] for number in face["rows/ways.sis_a"]]
+
+
+def test_the_advice_stands_on_the_card_as_buttons_in_the_order_to_press(told: Callable[..., Any]) -> None:
+    rig = told()
+    assert ways(rig.face()) == []
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.crash("ra_1")
+    rig.wait(10.0)
+    home, retry, abandon = ways(rig.face())
+    (button,) = home["acts"]
+    assert (home["state"], button["act"], button["of"]) == ("next", "home", "ra1")
+    assert button["label"] == "Home ra1"
+    assert (button["does"], button["refused"]) == ("ra1 is not homed", False)
+    assert button["asks"] == ["Home ra1: this sets ra1 in motion. Is everybody clear?"]
+    assert home["texts"] == ["", "Moves ra1."]
+    assert (retry["state"], retry["acts"][0]["label"]) == ("later", "Retry sis_a")
+    assert abandon["texts"][1] == "Or: Moves nothing." and abandon["acts"][0]["asks"] == []
+    assert rig.face("es")["row/ways.sis_a/0"]["acts"][0]["label"] == "Referenciar ra1"
+
+
+def test_what_would_be_refused_is_disabled_with_the_reason(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.operate(Verb.STOP, "sis_a")
+    rig.wait(1.0)
+    clear, reset, _ = ways(rig.face())
+    assert (clear["acts"][0]["refused"], reset["acts"][0]["refused"]) == (False, True)
+    assert reset["texts"][1] == "Not now: sis_a is aborted; this needs a cell that is stopped"
+
+
+def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.power_off("ra_1")
+    rig.wait(2.0)
+    face = rig.face()
+    (hand,) = ways(face)
+    assert (hand["state"], hand["texts"], hand["acts"]) == ("hand", ["Bring ra1 back", "ra1 is offline"], [])
+    assert face["text/sis_a.state"] == ["blocked", "blocked"]
+    assert face["text/sis_a.trouble"] == ["ra1 is offline; bring ra1 back", "blocked"]
+    assert face["text/title"] == ["⚠ sis_a blocked - arboleda", "trouble"]
+    assert face["text/sum"][1] == "blocked"
+
+
+def test_a_part_that_would_fall_is_asked_about(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to station 7")
+    truth, rig.carry = rig.carry, faults.says("ra_1", estado=2)
+    assert rig.wait(20.0, until=lambda: rig.plant.cells["sis_a"].task is None)
+    rig.carry = truth
+    rig.wait(2.0)
+    release = next(way for way in ways(rig.face()) if way["acts"][0]["act"] == "release")
+    assert release["acts"][0]["asks"] == ["Release ra1: the part that ra1 holds will fall. Do it?"]
+    assert release["texts"][1] == "Or: The part that ra1 holds falls."
+
+
+def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.crash("rm_sis_a")
+    rig.wait(10.0)
+    said = "Failed in drive path 0B: rm_sis_a: the link was lost while driving path 0B"
+    assert rig.face()["text/sis_a.cause"] == [said, "failed"]
+    for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
+        rig.operate(verb, "sis_a")
+        rig.wait(1.0)
+        assert rig.face()["text/sis_a.cause"] == [said, "failed"]
+    rig.operate(Verb.HOME, "rm_sis_a")
+    rig.wait(10.0)
+    rig.submit("sis_a 0B 1")
+    rig.operate(Verb.RESUME, "sis_a")
+    rig.wait(1.0)
+    face = rig.face()
+    assert (face["text/sis_a.cause"][0], face["text/title"]) == ("", ["arboleda", "well"])
 
 
 def test_refused_messages_are_counted_with_the_last_reason(told: Callable[..., Any]) -> None:

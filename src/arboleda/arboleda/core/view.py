@@ -14,7 +14,7 @@ from .belief import Belief
 from .cell import CellRun
 from .cell_states import CellState
 from .ledger import Entry
-from .messages import TaskChanged, Verb
+from .messages import OperatorRequest, TaskChanged, Verb
 from .model import Arm, Cell, PlantModel
 from .operator import OperatorAct
 from .plant import Plant
@@ -23,6 +23,8 @@ from .task import Task
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
+OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
+OF_CELLS = (*OF_ROBOTS, Verb.RESET, Verb.HOLD, Verb.RESUME, Verb.CANCEL, Verb.RETRY, Verb.ABANDON)
 RECENT = 20  # ended tasks that a snapshot shows
 
 
@@ -161,6 +163,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "not_ready": _not_ready(cell, ways),
         "held_by": cell.held_by,
         "advice": [_advice(each) for each in ways],
+        "refused": _refused(plant, cell.cell.name, OF_CELLS),
         "tree": tree_view.rows(cell.tree, now) if cell.tree else [],
     }
 
@@ -186,6 +189,16 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "drops": list(advice.drops),
         "refusal": advice.refusal,
     }
+
+
+def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, str]:
+    """The verbs that would be refused there now, and why; homing by hand is `home_by_hand`."""
+    asked = {verb.value: OperatorRequest(at=plant.now, verb=verb, scope=scope) for verb in verbs}
+    if Verb.HOME in verbs:
+        by_hand = OperatorRequest(at=plant.now, verb=Verb.HOME, scope=scope, by_hand=True)
+        asked["home_by_hand"] = by_hand
+    found = {name: plant.refusal(request) for name, request in asked.items()}
+    return {name: why for name, why in found.items() if why is not None}
 
 
 def standing(cell: dict[str, Any]) -> str:
@@ -238,6 +251,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "telemetry_hz": belief.rate_hz if belief.online else None,
         "command": _command(plant.dispatcher.last_sent.get(robot.name), now),
         "rejected": _rejected(plant.dispatcher.rejected.get(robot.name)),
+        "refused": _refused(plant, robot.name, OF_ROBOTS),
     }
 
 

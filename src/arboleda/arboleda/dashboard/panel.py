@@ -84,10 +84,13 @@ def _verb(name: str, verb: Verb, offer: Offer, words: Words) -> None:
             data_asks=json.dumps([words(f"asks.{name}")] * offer.asks),
             **({"data_by_hand": "true"} if offer.by_hand else {}),
         )
-        tag("p", does)
+        tag("p", does, data_does=does)
 
 
 def _suggestions(layout: Layout) -> None:
     """What the plant would do next, read by the script to mark buttons."""
     for name in ["plant", *(cell["name"] for cell in layout["cells"])]:
         live("span", f"suggested.{name}", hidden="true", data_suggested=name)
+    robots = [robot for cell in layout["cells"] for robot in (cell["arm"], cell["mobile"])]
+    for name in ["plant", *(cell["name"] for cell in layout["cells"]), *robots]:
+        live("span", f"refused.{name}", hidden="true", data_refused=name)

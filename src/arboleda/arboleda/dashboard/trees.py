@@ -34,7 +34,9 @@ def _card(cell: str, words: Words) -> None:
             live("span", f"{cell}.elapsed")
             live("span", f"{cell}.left")
             live("span", f"{cell}.queue")
+        live("span", f"{cell}.cause", classes="trouble")
         live("span", f"{cell}.trouble", classes="trouble")
+    rows(f"ways.{cell}", ["", ""], classes="ways")
 
 
 def _tree(cell: str, words: Words) -> None:

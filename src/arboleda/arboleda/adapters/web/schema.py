@@ -79,6 +79,7 @@ class Cell(_Told):
     not_ready: str | None = Field(description="Why an idle cell would start no task, and what can be done.")
     held_by: str | None = Field(description="Why the cell is held, and what can be done.")
     advice: list[Advice] = Field(description="What leads it out of its state, in the order to do it.")
+    refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
 
 
@@ -94,6 +95,7 @@ class Robot(_Told):
     node: int | None = Field(description="Node of a mobile robot on its grid.")
     homed: bool | None
     latched: bool
+    refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")
 
 
 class Snapshot(_Told):

@@ -93,12 +93,15 @@ function acts(offers) {
   return made;
 }
 
-function offerButton({ act, of, label, does }) {
+function offerButton({ act, of, label, does, asks, by_hand: byHand, refused }) {
   const button = document.createElement("button");
   button.type = "button";
   button.className = "act";
   button.textContent = label;
   button.title = does;
   Object.assign(button.dataset, { act, of });
+  if (asks) button.dataset.asks = JSON.stringify(asks);
+  if (byHand) button.dataset.byHand = "true";
+  button.disabled = refused === true;
   return button;
 }

@@ -61,7 +61,25 @@ function chooseScope(of, kind) {
 
 function suggest() {
   const words = (value(`text/suggested.${scope.of || "plant"}`)?.[0] ?? "").split(" ");
-  all(".verb").forEach((verb) => verb.classList.toggle("suggested", words.includes(verb.dataset.verb)));
+  const refused = JSON.parse(value(`text/refused.${scope.of || "plant"}`)?.[0] || "{}");
+  for (const verb of all(".verb")) {
+    const why = refused[verb.dataset.verb];
+    const says = verb.querySelector("[data-does]");
+    verb.classList.toggle("suggested", words.includes(verb.dataset.verb));
+    verb.querySelector(".act").disabled = why !== undefined;
+    says.textContent = why ?? says.dataset.does;
+  }
+}
+
+// The tab of the browser, its icon and the header show trouble, also to whom another tab is open.
+function alarm() {
+  const [title, state] = value("text/title") ?? ["Arboleda", "well"];
+  if (document.title !== title) document.title = title;
+  if (document.documentElement.dataset.stands === state) return;
+  document.documentElement.dataset.stands = state;
+  const icon = document.querySelector("link[rel~=icon]");
+  const home = document.querySelector("link[href$='/page.css']").href.replace("page.css", "");
+  if (icon) icon.href = `${home}${state === "trouble" ? "tree_trouble" : "tree"}.svg`;
 }
 
 function filterBy(list, cell) {
@@ -123,6 +141,7 @@ function begin() {
   form.start();
   tree.start();
   onChange(suggest);
+  onChange(alarm);
   document.addEventListener("click", clicked);
   choosePart(location.hash.slice(1) || kept.get("part"));
   chooseCell(kept.get("cell"));

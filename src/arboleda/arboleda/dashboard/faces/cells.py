@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.core.view import standing
 from arboleda.drawing.layout import parent
 
 from ..tree_drawing import drawing
 from ..tree_memory import FAILURE, RUNNING, SUCCESS, TreeMemory
+from ..wording import Words
 from . import Face
 from .moment import Moment, clock, seconds
 
@@ -32,17 +34,81 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
     words, name = moment.words, cell["name"]
     task = cell["task"] or _last_task(moment, memory)
     leaf = memory.leaf
-    state = "failed" if cell["state"] == "idle" and task and task["state"] == "failed" else cell["state"]
+    stands = standing(cell)
+    failed = task is not None and task["state"] == "failed"
+    state = "failed" if stands == "idle" and failed else stands
     return {
-        f"text/{name}.state": [words.of("cell_state", cell["state"]), cell["state"]],
+        f"text/{name}.state": [words.of("cell_state", stands), stands],
+        f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
+        **_ways(words, cell),
         f"text/{name}.task": [_task_line(moment, task), task["state"] if task else "none"],
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", ""],
         f"text/{name}.feedback": [words.say(leaf["feedback"]) if leaf and leaf["feedback"] else "", ""],
         f"text/{name}.elapsed": [seconds(cell["task"]["elapsed_s"]) if cell["task"] else "", ""],
         f"text/{name}.left": [_left(moment, leaf), ""],
         f"text/{name}.queue": [_queue(moment, cell), "paused" if cell["paused"] else ""],
-        f"text/{name}.trouble": [trouble(moment, cell, task), state],
+        f"text/{name}.trouble": [trouble(moment, cell), state],
         f"bar/{name}.progress": progress(memory.rows, memory.statuses) if cell["task"] else None,
+    }
+
+
+def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
+    """Why the last task failed, and in which step; until the cell is at work again."""
+    if cell["state"] == "execute" or task is None or task["state"] != "failed":
+        return ""
+    step = next((row["name"] for row in memory.rows if row["path"] == task["failed_in"]), None)
+    why = words.say(task["sentence"])
+    return why if step is None else words("cells.failed_in", step=words.say(step), why=why)
+
+
+def _ways(words: Words, cell: Row) -> Face:
+    """What leads the cell out: a row for each advice, in the order to do it."""
+    name, found = cell["name"], {}
+    for number, advice in enumerate(cell["advice"]):
+        found[f"row/ways.{name}/{number}"] = {
+            "state": "hand" if advice["hand"] else "next" if number == 0 else "later",
+            "texts": [_said(words, advice) if advice["hand"] else "", _note(words, advice)],
+            "acts": [] if advice["hand"] else [_offer(words, advice)],
+        }
+    return {f"rows/ways.{name}": [str(number) for number in range(len(cell["advice"]))], **found}
+
+
+def _said(words: Words, advice: Row) -> str:
+    if advice["by_hand"]:
+        return words("ways.by_hand", robot=advice["scope"])
+    said = words.say(advice["said"])
+    return said[:1].upper() + said[1:]
+
+
+def _note(words: Words, advice: Row) -> str:
+    """Why not now; else what comes of it."""
+    if advice["refusal"]:
+        note = words("ways.not_yet", why=words.say(advice["refusal"]))
+    elif advice["drops"]:
+        note = words("ways.drops", robots=", ".join(advice["drops"]))
+    elif advice["moves"]:
+        note = words("ways.moves", robots=", ".join(advice["moves"]))
+    else:
+        note = words.say(advice["why"]) if advice["hand"] else words("ways.still")
+    return words("ways.instead", note=note) if advice["instead"] else note
+
+
+def _offer(words: Words, advice: Row) -> Row:
+    said, asks = _said(words, advice), []
+    if advice["by_hand"]:
+        asks = [words("asks.home_by_hand")]
+    elif advice["drops"]:
+        asks = [words("ways.asks_drops", said=said, robots=", ".join(advice["drops"]))]
+    elif advice["moves"]:
+        asks = [words("ways.asks_moves", said=said, robots=", ".join(advice["moves"]))]
+    return {
+        "act": advice["do"],
+        "of": advice["scope"],
+        "label": said,
+        "does": words.say(advice["why"]),
+        "asks": asks,
+        "by_hand": advice["by_hand"],
+        "refused": bool(advice["refusal"]),
     }
 
 
@@ -57,16 +123,14 @@ def _last_task(moment: Moment, memory: TreeMemory) -> Row | None:
     return next((task for task in moment.snapshot["tasks"] if task["id"] == memory.task), None)
 
 
-def trouble(moment: Moment, cell: Row, task: Row | None) -> str:
-    """What is in the way of a cell, or why its last task failed; "" where all is well."""
+def trouble(moment: Moment, cell: Row) -> str:
+    """What is in the way of a cell; "" where nothing is."""
     words = moment.words
     if cell["held_by"]:
         return words.say(cell["held_by"])
     if cell["state"] not in ("idle", "execute"):
         return words(f"next.{cell['state']}", cell=cell["name"])
-    if cell["state"] == "idle" and cell["waiting_for"]:
-        return words.say(cell["waiting_for"])
-    return words.say(task["sentence"]) if task is not None and task["state"] == "failed" else ""
+    return words.say(cell["not_ready"]) if cell["not_ready"] else ""
 
 
 def _left(moment: Moment, leaf: Row | None) -> str:

@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
+
+from arboleda.core.view import standing
 
 from . import Face
 from .cells import trouble
 from .moment import Moment
 
 Row = dict[str, Any]
-SUGGESTED: dict[str, tuple[str, ...]] = {
-    "aborted": ("clear",),
-    "clearing": ("clear",),
-    "stopped": ("reset",),
-}
 
 
 def face(moment: Moment) -> Face:
     found: Face = {}
     for cell in moment.snapshot["cells"]:
         name = cell["name"]
-        found[f"text/scope.{name}"] = [moment.words.of("cell_state", cell["state"]), cell["state"]]
-        found[f"text/advice.{name}"] = [trouble(moment, cell, None), cell["state"]]
+        found[f"text/scope.{name}"] = [moment.words.of("cell_state", standing(cell)), standing(cell)]
+        found[f"text/advice.{name}"] = [trouble(moment, cell), standing(cell)]
         found[f"text/suggested.{name}"] = [" ".join(suggested(cell)), ""]
-    every = {verb for cell in moment.snapshot["cells"] for verb in suggested(cell) if verb in FOR_ALL}
+    cells = moment.snapshot["cells"]
+    every = {verb for cell in cells for verb in suggested(cell) if verb in FOR_ALL}
     found["text/suggested.plant"] = [" ".join(sorted(every)), ""]
+    for row in (*cells, *moment.snapshot["robots"]):
+        found[f"text/refused.{row['name']}"] = [_refused(moment, row["refused"]), ""]
+    found["text/refused.plant"] = [_refused(moment, refused_everywhere(cells)), ""]
     found.update(_zones(moment))
     return found
 
@@ -33,13 +35,19 @@ FOR_ALL = ("clear", "reset", "resume")
 
 
 def suggested(cell: Row) -> tuple[str, ...]:
-    """The verbs that a person would want next."""
-    if cell["state"] == "held":
-        said = cell["held_by"] or ""
-        return tuple(verb for verb in ("release", "resume", "retry", "abandon") if f"{verb} " in said)
-    if cell["state"] == "idle" and cell["paused"]:
-        return ("resume",)
-    return SUGGESTED.get(cell["state"], ())
+    """The verbs that a person would want next, of those that can be done for the cell now."""
+    ways = [each for each in cell["advice"] if not each["hand"] and not each["refusal"]]
+    return tuple(each["do"] for each in ways if each["scope"] in (cell["name"], cell["arm"]))
+
+
+def refused_everywhere(cells: list[Row]) -> dict[str, str]:
+    """What the whole plant would be refused: what can be done in none of its cells."""
+    first = cells[0]["refused"] if cells else {}
+    return {verb: why for verb, why in first.items() if all(verb in cell["refused"] for cell in cells)}
+
+
+def _refused(moment: Moment, refused: dict[str, str]) -> str:
+    return json.dumps({verb: moment.words.say(why) for verb, why in sorted(refused.items())})
 
 
 def _zones(moment: Moment) -> Face:

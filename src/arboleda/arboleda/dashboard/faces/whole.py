@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+from arboleda.core.view import standing
+
 from . import Face, cells, links, panel, stop, tasks, timeline
 from .moment import Moment
 
 PARTS = (stop.face, cells.face, tasks.face, panel.face, links.face, timeline.face)
-WORST = ("aborted", "aborting", "clearing", "stopped", "resetting", "held", "holding", "execute", "idle")
+WORST = (
+    "aborted",
+    "aborting",
+    "clearing",
+    "stopped",
+    "resetting",
+    "held",
+    "holding",
+    "blocked",
+    "paused",
+    "execute",
+    "idle",
+)
+WELL = ("execute", "idle")
 
 
 def face(moment: Moment) -> Face:
-    found: Face = {"text/sum": _sum(moment)}
+    found: Face = {"text/sum": _sum(moment), "text/title": _title(moment)}
     for part in PARTS:
         found.update(part(moment))
     return found
@@ -18,8 +33,18 @@ def face(moment: Moment) -> Face:
 
 def _sum(moment: Moment) -> list[str]:
     """How many cells are in which state; the worst of them colours it."""
-    states = [cell["state"] for cell in moment.snapshot["cells"]]
+    states = [standing(cell) for cell in moment.snapshot["cells"]]
     there = [state for state in WORST if state in states]
     counts = [f"{moment.words.of('cell_state', state)}: {states.count(state)}" for state in there[::-1]]
     ending = [moment.words("page.ending")] if moment.snapshot["ending"] else []
     return [" · ".join([*counts, *ending]), there[0] if there else ""]
+
+
+def _title(moment: Moment) -> list[str]:
+    """What a browser's tab says: the plant, and before it the cells that wait for somebody."""
+    states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
+    bad = {name: moment.words.of("cell_state", state) for name, state in states.items() if state not in WELL}
+    plant = moment.snapshot["plant"]
+    if not bad:
+        return [plant, "well"]
+    return [f"⚠ {', '.join(f'{name} {word}' for name, word in bad.items())} - {plant}", "trouble"]
