@@ -106,6 +106,22 @@ FOUND = {
                 retry: {times: 1, backoff_s: 0.3}
         """,
     ),
+    "a mobile robot that stopped on its last node, too early on its round trip, was taken for done": Found(
+        seed=1,
+        seconds=40.0,
+        faults=(Fault(kind="hop_partition", at=5.1, seconds=2.3, target="plant", word="to bridge, lost"),),
+        file="""
+            name: drawn_61
+            paths: {rt: [8, 7, 4, 7, 4, 7]}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_1, link: mqtt, evidence: joints, speed_mm_s: 84.3}
+                home: {deg: [-55.1, -7.3], mm: 61.3}
+                pickup: {deg: [91.7, 42.1], mm: 9.8}
+                stations: {columns_q1_deg: [-83.1, 112.1], rows_q2_deg: [20.1]}
+        """,
+    ),
     "an arm that says it stands where it cannot was given more time than its longest way takes": Found(
         seed=411,
         faults=(

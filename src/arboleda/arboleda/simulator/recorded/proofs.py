@@ -173,10 +173,10 @@ def _surely_at(off: float | None) -> bool:
 
 
 def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int | None) -> float | None:
-    """By how much the worst joint misses its goal beyond its tolerance; 1 or -1 for the node of a path."""
+    """By how much the worst joint misses its goal beyond its tolerance; of a path see `_off_path`."""
     command = sent.command
     if isinstance(command, FollowPath):
-        return None if node is None else (-1.0 if node == command.nodes[-1] else 1.0)
+        return None if node is None else _off_path(command.nodes, node)
     if not isinstance(command, MoveJoints) or not isinstance(robot, Arm) or q is None:
         return None
 
@@ -187,6 +187,13 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
     tolerances = robot.tolerance or [joint.step / 2 + 1e-5 for joint in robot.joints]
     steps = [joint.step for joint in robot.joints]
     return max(starmap(beyond, zip(q, command.q, steps, tolerances, strict=True)))
+
+
+def _off_path(nodes: tuple[int, ...], node: int) -> float:
+    """1 away from the last node, -1 on it; 0 on one by which the path comes before, as on a round trip."""
+    if node != nodes[-1]:
+        return 1.0
+    return 0.0 if node in nodes[:-1] else -1.0
 
 
 def told(failure: Failure | None) -> str:
