@@ -24,10 +24,11 @@ PARTS = ("no_grip", "no_part", "piece_false", "piece_flicker", "stuck_effector",
 
 
 def _mistaken(at: float, arm: str) -> list[dict[str, Any]]:
-    """An arm says for some time that it moves, or what it said last, and its cell is held meanwhile."""
+    """An arm says for some time that it moves, or what it said last; its cell is held, then given up."""
     lie = {"at": at, "seconds": 12.0, "target": f"ra_{arm}", "word": "estado"}
     hold = {"kind": "operator_hold", "at": at + 0.8, "target": f"ra{arm}"}
-    return [{"kind": "stuck_bit", **lie}, hold, {**hold, "at": at + 0.2}]
+    give_up = [{**hold, "kind": "operator_abandon", "at": at + late} for late in (5.4, 6.0)]
+    return [{"kind": "stuck_bit", **lie}, hold, {**hold, "at": at + 0.2}, *give_up]
 
 
 MISTAKEN = [each for at in range(3, 60, 14) for arm in "123" for each in _mistaken(at + int(arm) / 3, arm)]
@@ -47,7 +48,7 @@ WEATHERS: dict[str, tuple[range, str | dict[str, Any]]] = {
     "lies": (range(1, 9), {"rates": {"lying_telemetry": 20.0, "stuck_bit": 30.0, "operator_hold": 15.0}}),
     "no end of a halt": (range(1, 14, 2), {"faults": MISTAKEN}),
     "latches": (range(1, 7), {"rates": {**LATCHES, "operator_stop": 3.0}}),
-    "twice": (range(1, 9), {"rates": {"duplicate": 50.0, "reorder": 30.0, **dict.fromkeys(HOLDS, 60.0)}}),
+    "twice": (range(1, 18), {"rates": {"duplicate": 50.0, "reorder": 30.0, **dict.fromkeys(HOLDS, 60.0)}}),
     "in the dark": (range(2, 13, 2), {"faults": DARK}),
     "overridden": (range(2, 9, 2), {"rates": {"brown_out": 15.0, "operator_override": 40.0}}),
     "parts": (range(2, 9, 2), {"rates": dict.fromkeys(PARTS, 10.0)}),
@@ -74,6 +75,7 @@ FIRST: tuple[tuple[str, int], ...] = (
     ("in the dark", 10),
     ("no end of a halt", 13),
     ("twice", 1),
+    ("twice", 17),
     ("garbage", 1),
     ("flood", 1),
 )
