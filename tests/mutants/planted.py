@@ -7,9 +7,16 @@ from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
 from arboleda.core.tree_run import TreeRun
 
-from .mutant import edit, mutant
+from .mutant import SHARED, edit, mutant
 
 PLANTED = (
+    mutant(
+        "ends_are_proven",
+        "A position from before the command counts at joints.",
+        edit(evidence._look_at_place, "if report.q is None and report.node is None:\n        return", ""),
+        seeds=SHARED,
+        weather={"operator_hold": 30.0, "operator_resume": 60.0, "loss": 10.0},
+    ),
     mutant(
         "proofs_end_commands",
         "A device fault fails only motions.",
