@@ -1,4 +1,7 @@
-"""The second judge: the simulator alone, seed by seed, until an invariant breaks."""
+"""The second judge: the simulator alone, seed by seed, until an invariant breaks.
+
+Odd seeds run both packaged plants in turn, even ones a plant of their own that they draw.
+"""
 
 from __future__ import annotations
 
@@ -62,13 +65,19 @@ def _runner() -> Any:
     from importlib.resources import as_file, files
 
     from arboleda.app import config
-    from arboleda.app.simulate.plants import InTurn, Plant
+    from arboleda.app.simulate.drawn import Drawn
+    from arboleda.app.simulate.plants import Plant
     from arboleda.app.simulate.setting import Setting
     from arboleda.app.simulate.workers import collect_rarely
 
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
-        plants = tuple(Plant(declared=each) for each in (config.load(shared), config.load()))
-    setting = Setting(plants=InTurn(plants=plants), cycles=0, level=LEVEL, seconds=SECONDS)
+        packaged = tuple(Plant(declared=each) for each in (config.load(shared), config.load()))
+
+    class Both:
+        def of(self, seed: int) -> Plant:
+            return packaged[seed // 2 % 2] if seed % 2 else Drawn().of(seed)
+
+    setting = Setting(plants=Both(), cycles=0, level=LEVEL, seconds=SECONDS)
     collect_rarely()
 
     def run(seed: int) -> str:

@@ -425,14 +425,18 @@ class Record:
                 self.robots[name].displaced = False
 
     def _cancelled(self, scope: str) -> None:
-        """A task by its id, or the one that runs in a cell."""
-        task = self.tasks.known(scope.strip().lstrip("#"))
-        cells = self.scopes.cells(scope)
-        if task is None and len(cells) == 1:
-            task = self.tasks.open.get(self.tasks.running.get(cells[0], ""))
+        """A task by its id, or what runs in each cell of the scope that could be cancelled."""
+        task, cells = self.tasks.known(scope.strip().lstrip("#")), self.scopes.cells(scope)
         if task is not None:
             task.cancelled = True
             self.unattended.pop(task.cell, None)
+            return
+        for name in cells:
+            running = self.tasks.open.get(self.tasks.running.get(name, ""))
+            if running is not None and running.cancelled is False:
+                running.cancelled = True if len(cells) == 1 else None
+        if len(cells) == 1:
+            self.unattended.pop(cells[0], None)
 
 
 TAKES: dict[type, Callable[[Record, Any], None]] = {

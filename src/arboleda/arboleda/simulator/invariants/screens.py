@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core import places, twin_view, view
 from arboleda.core.cell_states import CellState
-from arboleda.core.ledger import State
+from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import FollowPath, MoveJoints
 from arboleda.core.model import Arm, Mobile
 from arboleda.wire import status
@@ -17,6 +17,7 @@ from arboleda.wire import status
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
 from ..recorded.robots import KnownRobot, Stopped
+from . import rows
 from .invariant import Look, When, invariant
 from .liveness import ready
 
@@ -31,7 +32,14 @@ Row = dict[str, Any]
 @invariant(When.STEPPED)
 def screens_show_what_is(look: Look) -> Iterable[str]:
     """A screen shows cells, tasks, robots and zones as they were told, asked and commanded."""
-    return _shown(look) if look.record.due_for("screens", EVERY_S) else NOTHING
+    if look.record.due_for("screens", EVERY_S):
+        return _shown(look)
+    return _lines(look) if look.record.tasks.changes else NOTHING
+
+
+def _lines(look: Look) -> Iterator[str]:
+    for change in look.record.tasks.changes:
+        yield from _unlike(f"task {change.said.task}", view.change(change.said), rows.line(change.said))
 
 
 def _shown(look: Look) -> Iterator[str]:
@@ -43,10 +51,14 @@ def _shown(look: Look) -> Iterator[str]:
         yield from _unlike(cell.name, row, _cell(look, cell))
         if cell.state is CellState.IDLE and cell.paused and row["not_ready"] is None:
             yield f"{cell.name} is shown as ready, and its queue is paused"
-        yield from _tree(cell, row["tree"])
+        yield from rows.queue(cell, row)
+        yield from _tree(cell, row["tree"], record.stepped_at)
     for row in shown["robots"]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
+        yield from _obstacle(look, known, row)
+    yield from _lines(look)
+    yield from _tasks(look, shown)
     open_tasks = {row["id"]: row["state"] for row in shown["tasks"] if row["ended_at"] is None}
     if open_tasks != {id: task.state.value for id, task in record.tasks.open.items()}:
         yield f"tasks {open_tasks} are shown as open"
@@ -116,14 +128,35 @@ def _cell(look: Look, cell: KnownCell) -> Row:
     return expected
 
 
-def _tree(cell: KnownCell, rows: list[Row]) -> Iterator[str]:
+def _tasks(look: Look, shown: Row) -> Iterator[str]:
+    tasks = look.record.tasks
+    for row in shown["tasks"]:
+        known = tasks.open.get(row["id"]) or tasks.ended.get(row["id"])
+        if known is not None:
+            yield from _unlike(f"task {known.id}", row, rows.task(known))
+            yield from rows.times(known, row, look.record.stepped_at)
+
+
+def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
+    word = rows.obstacle(known, look.record.stepped_at, look.world.plant.epoch)
+    said = row["obstacle"]
+    if word is not None and (word not in (said or "") or bool(word) is not (said is not None)):
+        yield f"{known.robot.name}: {said!r} is shown as what is in its way, it is {word!r}"
+    last = look.record.commands.last.get(known.robot.name)
+    expected = rows.command(last, look.record.stepped_at)
+    if expected is None or expected["state"] is None:
+        return
+    yield from _unlike(known.robot.name, row["command"] or {}, expected)
+
+
+def _tree(cell: KnownCell, rows_: list[Row], now: float) -> Iterator[str]:
     """Each node in its place, with what it is doing."""
     tree = cell.run.tree
     if tree is None:
         return
-    if len(rows) != sum(1 for _ in tree.iterate()):
-        yield f"{cell.name}: {len(rows)} nodes are shown of a tree with more or less"
-    for row in rows:
+    if len(rows_) != sum(1 for _ in tree.iterate()):
+        yield f"{cell.name}: {len(rows_)} nodes are shown of a tree with more or less"
+    for row in rows_:
         node = _node(tree, row["path"])
         if (row["name"], row["status"]) != (node.name, node.status.value):
             yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
@@ -132,6 +165,7 @@ def _tree(cell: KnownCell, rows: list[Row]) -> Iterator[str]:
             yield f"{cell.name}: {row['path']} is shown with {row['parameters']}"
         if entry is not None and row["kind"] != "command":
             yield f"{cell.name}: {row['path']} is shown as a {row['kind']}"
+        yield from rows.node(cell, node, row, now)
         left = row["deadline_s"]
         if left is not None and left < -EXACT:
             yield f"{cell.name}: {row['path']} is shown with {left} s left"
@@ -181,20 +215,21 @@ def _goal(last: SentCommand | None) -> Row | None:
 
 
 def _diagnoses(shown: Row) -> Iterator[str]:
-    rows = {name: (level, message) for name, _, level, message, _ in view.diagnostics(shown)}
+    told = {name: rest for name, *rest in view.diagnostics(shown)}
     for robot in shown["robots"]:
-        level, message = rows.pop(f"arboleda: {robot['name']}", (None, ""))
+        whose, level, message, values = told.pop(f"arboleda: {robot['name']}", (None, None, "", {}))
+        yield from rows.of_robot(robot, values)
         bad = robot["state"] not in (None, 0, 1)
         expected = STALE if not robot["online"] else ERROR if bad else OK
-        if level != expected or message != (robot["obstacle"] or "ready"):
+        if (whose, level, message) != (robot["mqtt"], expected, robot["obstacle"] or "ready"):
             yield f"{robot['name']} has the diagnosis {level} {message!r}"
     for cell in shown["cells"]:
-        level, message = rows.pop(f"arboleda: {cell['name']}", (None, ""))
+        _, level, message, values = told.pop(f"arboleda: {cell['name']}", (None, None, "", {}))
         well = cell["state"] in ("idle", "execute") and not cell["paused"] and not cell["not_ready"]
-        if level != (OK if well else WARN) or not message:
-            yield f"{cell['name']} has the diagnosis {level} {message!r}"
-    if rows:
-        yield f"there are diagnoses of {sorted(rows)}"
+        if level != (OK if well else WARN) or not message or values != rows.of_cell(cell):
+            yield f"{cell['name']} has the diagnosis {level} {message!r} {values}"
+    if told:
+        yield f"there are diagnoses of {sorted(told)}"
 
 
 def _drawn(look: Look, drawn: Row) -> Iterator[str]:
@@ -204,12 +239,32 @@ def _drawn(look: Look, drawn: Row) -> Iterator[str]:
         wanted = {key: expected[key] for key in ("online", "q", "node", "goal")}
         wanted["homed"] = not known.unhomed if known.robot.evidence.value == "ids" else row["homed"]
         yield from _unlike(f"{row['name']} as drawn", row, {**wanted, "heard_at": known.heard_at})
+        yield from _ends(look, known, row)
     for name, part in drawn["parts"].items():
         kept = look.record.effector_of(look.record.cells[name].cell.arm.name)
         if (part is not None and part["at"] == "arm") is not (kept != "off"):
             yield f"the part of {name} is drawn at {part}, its effector is {kept}"
         if kept != "off" and part is not None and part.get("sure") is not (kept == "on"):
             yield f"the part of {name} is drawn as {part}, its effector is {kept}"
+        running = look.record.tasks.open.get(look.record.tasks.running.get(name, ""))
+        if kept == "off" and running is not None and look.record.cells[name].run.tree is not None:
+            yield from rows.waits_at(look.record.cells[name], running.said.text, part)
+
+
+def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
+    """Since when a robot goes, where it came to, and when it said where it is."""
+    name = known.robot.name
+    last = look.record.commands.last.get(name)
+    reached = rows.ended_at(known.robot, last, look.world.plant.dispatcher.reached.get(name))
+    goes = last is not None and last.state in (State.RUNNING, State.CANCELLING)
+    since = row["going_since"]
+    if row["reached"] != reached or (since is not None and (last is None or last.state not in OPEN)):
+        yield f"{name} is drawn going since {since}, at {row['reached']}; it came to {reached}"
+    if goes and last is not None and last.cancelled_at is None and not (since and since >= last.at):
+        yield f"{name} is drawn going since {since}, its command left at {last.at}"
+    known_place = known.q if isinstance(known.robot, Arm) else known.node
+    if (row["position_at"] is None) is not (known_place is None):
+        yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
 
 
 @invariant(When.HEARD)
@@ -244,7 +299,14 @@ def plans_show_the_model(look: Look) -> Iterator[str]:
     model = look.world.model
     shown = {row["name"]: row for row in view.layout(model)["cells"]}
     placed = places.places(model)
-    rows = {row["name"]: row for row in placed["robots"]}
+    stand = {row["name"]: row for row in placed["robots"]}
+    around = {row["name"]: row for row in placed["cells"]}
+    without_stop = [robot.name for robot in model.robots.values() if not robot.has_stop]
+    yield from _unlike(
+        "the plant",
+        view.layout(model),
+        {"plant": model.name, "zones": list(model.zones), "no_stop": without_stop, "places": placed},
+    )
     for cell in model.cells:
         grid = cell.mobile.grid
         yield from _unlike(
@@ -259,7 +321,8 @@ def plans_show_the_model(look: Look) -> Iterator[str]:
             },
         )
         for robot in cell.robots:
-            yield from _unlike(robot.name, rows[robot.name], PLACED[type(robot)](cell, robot))
+            yield from _unlike(robot.name, stand[robot.name], PLACED[type(robot)](cell, robot))
+        yield from _unlike(f"the place of {cell.name}", around[cell.name], rows.place(cell))
     for row in placed["zones"]:
         yield from _spots(look, row)
 
@@ -276,7 +339,14 @@ def _mobile_placed(cell: Any, mobile: Mobile) -> Row:
     rows = range(grid.rows)
     nodes = [[column * grid.pitch, row * grid.pitch] for row in rows for column in range(grid.columns)]
     at = [grid.origin.x, grid.origin.y, grid.origin.yaw]
-    return {"cell": cell.name, "kind": "mobile", "at": at, "nodes": nodes, "speeds": [mobile.speed] * 2}
+    return {
+        "cell": cell.name,
+        "kind": "mobile",
+        "at": at,
+        "nodes": nodes,
+        "reference": nodes[0],
+        "speeds": [mobile.speed] * 2,
+    }
 
 
 def _spots(look: Look, row: Row) -> Iterator[str]:

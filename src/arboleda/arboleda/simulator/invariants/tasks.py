@@ -93,11 +93,23 @@ def first_come_first_served(look: Look) -> Iterable[str]:
 
 @invariant(When.TOLD)
 def cancelled_tasks_end_cancelled(look: Look) -> Iterable[str]:
-    """A task that an operator has cancelled ends as cancelled, whatever its last move came to."""
+    """A task ends as cancelled where an operator has cancelled it, as failed with a reason, or as done."""
     for change in look.record.tasks.changes:
-        ended = change.said.state in ENDED and not change.answer
-        if ended and change.cancelled and change.said.state is not TaskState.CANCELLED:
-            yield f"task {change.said.task} was cancelled, and ended as {change.said.state.value}"
+        if change.said.state not in ENDED or change.answer:
+            continue
+        cancelled = change.said.state is TaskState.CANCELLED
+        known = change.cancelled is not None and not (cancelled and _asked_to_cancel(look))
+        if known and cancelled is not change.cancelled:
+            word = "cancelled" if change.cancelled else "never cancelled"
+            yield f"task {change.said.task} was {word}, and ended as {change.said.state.value}"
+        if (change.said.reason is None) is not (change.said.state is TaskState.DONE):
+            yield f"task {change.said.task} ended as {change.said.state.value} for {change.said.reason}"
+
+
+def _asked_to_cancel(look: Look) -> bool:
+    """Whether somebody asks for that in this step: the plant tells of the task before it answers."""
+    asked = (each for each in look.moment.asked if isinstance(each, OperatorRequest))
+    return any(each.verb is Verb.CANCEL for each in asked)
 
 
 @invariant(When.NEWS)

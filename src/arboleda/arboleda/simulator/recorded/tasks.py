@@ -16,14 +16,20 @@ OPEN = frozenset({TaskState.QUEUED, TaskState.RUNNING})
 
 @dataclass(slots=True)
 class KnownTask:
-    """A task that was accepted; `number` counts the accepted ones, `cancelled` is an operator's word."""
+    """A task that was accepted; `number` counts the accepted ones, `cancelled` is an operator's word,
+    None where it may have been for this one.
+
+    `said` is what was told of it last, `began` when it was told to run.
+    """
 
     id: str
     cell: str
     number: int
     state: TaskState
     since: float
-    cancelled: bool = False
+    said: TaskChanged
+    cancelled: bool | None = False
+    began: float | None = None
 
 
 @dataclass(slots=True)
@@ -37,7 +43,7 @@ class Change:
     before: TaskState | None
     answer: bool
     first: str | None
-    cancelled: bool
+    cancelled: bool | None
 
 
 class Tasks:
@@ -78,7 +84,7 @@ class Tasks:
         before = task.state if task else None
         answer = asked_again and before is said.state
         first = next(iter(self.queues[said.cell]), None)
-        self.changes.append(Change(said, before, answer, first, bool(task and task.cancelled)))
+        self.changes.append(Change(said, before, answer, first, task.cancelled if task else False))
         if not answer:
             self._follow(said, task, now)
 
@@ -90,8 +96,9 @@ class Tasks:
     def _follow(self, said: TaskChanged, task: KnownTask | None, now: float) -> None:
         if task is None or said.state is TaskState.QUEUED:
             self._accepted += 1
-            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now)
-        task.state, task.since = said.state, now
+            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now, said)
+        task.state, task.since, task.said = said.state, now, said
+        task.began = now if said.state is TaskState.RUNNING else task.began
         queue = self.queues[task.cell]
         queue.pop(task.id, None)
         self.open.pop(task.id, None)

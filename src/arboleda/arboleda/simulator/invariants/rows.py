@@ -1,0 +1,209 @@
+"""Rows of tasks, trees, diagnoses and places as a screen must show them, written down here once more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.core.ledger import OPEN, State
+from arboleda.core.messages import FollowPath, MoveJoints, TaskChanged, TaskState
+from arboleda.core.model import Arm, Cell, MotionState, Robot
+
+from ..recorded.cells import KnownCell
+from ..recorded.commands import SentCommand
+from ..recorded.robots import KnownRobot, Stopped
+from ..recorded.tasks import KnownTask
+
+Row = dict[str, Any]
+EXACT = 1e-6
+ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
+WORDS = {
+    "Selector": "selector",
+    "Sequence": "sequence",
+    "Act": "command",
+    "Announce": "notice",
+    "Carry": "note",
+    "Dwell": "dwell",
+}  # kinds of nodes by their class; others may have heirs
+UNTOLD = ("age_s", "telemetry_hz")  # change all the time
+
+
+def line(said: TaskChanged) -> Row:
+    """One change of a task, for people who follow it."""
+    return {
+        "id": said.task,
+        "text": said.text,
+        "cell": said.cell,
+        "state": said.state.value,
+        "reason": None if said.reason is None else said.reason.value,
+        "sentence": said.sentence,
+    }
+
+
+def task(known: KnownTask) -> Row:
+    """A task as it was told, but for times that pass."""
+    said = known.said
+    expected: Row = {"text": said.text, "cell": known.cell, "state": known.state.value}
+    if known.state in ENDED:  # one that recovers has its reason before it is told
+        expected |= {"reason": said.reason.value if said.reason else None, "sentence": said.sentence}
+    return expected
+
+
+def times(known: KnownTask, row: Row, now: float) -> Iterator[str]:
+    """When it ran must fit to when it was told to run, and to have ended."""
+    began = known.began
+    ended = known.since if known.state in ENDED else None
+    elapsed = None if began is None else (now if ended is None else ended) - began
+    for key, value in (("started_at", began), ("ended_at", ended), ("elapsed_s", elapsed)):
+        if (row[key] is None) is not (value is None) or abs((row[key] or 0.0) - (value or 0.0)) > EXACT:
+            yield f"task {known.id}: {key} is shown as {row[key]}, it is {value}"
+
+
+def queue(cell: KnownCell, row: Row) -> Iterator[str]:
+    """Why a cell does not start what waits, what holds it, and how far its work is."""
+    state, name = row["state"], cell.name
+    waits = row["queue"] and (state != "idle" or row["paused"])
+    if waits and name not in (row["waiting_for"] or ""):
+        yield f"{name} is {state}, its tasks are shown to wait for {row['waiting_for']!r}"
+    if state == "held" and f"{name} is held (" not in (row["held_by"] or ""):
+        yield f"{name} is held, by what is shown by {row['held_by']!r}"
+    yield from _progress(cell, row)
+
+
+def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
+    tree = cell.run.tree
+    if tree is None:
+        return
+    work = next((phase for phase in tree.children if phase.name == "main"), None)
+    done = None
+    if work is not None and work.children:
+        done = sum(each.status is Status.SUCCESS for each in work.children) / len(work.children)
+    if (row["progress"] is None) is not (done is None) or abs((row["progress"] or 0) - (done or 0)) > EXACT:
+        yield f"{cell.name}: {row['progress']} of the work is shown as done, it is {done}"
+    runs = [node.name for node in tree.iterate() if node.status is Status.RUNNING]
+    step = (row["step"] or "").removeprefix("recovery: ")
+    if bool(runs) is not bool(step) or (step and step not in runs):
+        yield f"{cell.name}: {row['step']!r} is shown as the step, {runs} run"
+
+
+def node(cell: KnownCell, there: Behaviour, row: Row, now: float) -> Iterator[str]:
+    """What a node was given and how much of its time has passed."""
+    where = f"{cell.name}: {row['path']}"
+    word = WORDS.get(type(there).__name__)
+    if word is not None and row["kind"] != word:
+        yield f"{where} is shown as a {row['kind']}, it is a {word}"
+    failed = there.status is Status.FAILURE and there.feedback_message
+    if row["feedback"] != there.feedback_message or (failed and row["failure"] != there.feedback_message):
+        yield f"{where} is shown with {row['feedback']!r} and {row['failure']!r}"
+    seconds = getattr(there, "seconds", None)
+    timed = seconds is not None and row["kind"] in ("dwell", "await")
+    if timed and row["parameters"].get("seconds") != seconds:
+        yield f"{where} is shown with {row['parameters']}, it waits {seconds} s"
+    entry = getattr(there, "entry", None)
+    if entry is not None and row["kind"] == "command":
+        yield from _command(where, there, row, now)
+    elif timed and row["since_s"] is not None:
+        passed, left = row["since_s"], row["deadline_s"]
+        if abs(passed + left - seconds) > EXACT or passed < -EXACT:
+            yield f"{where} is shown {passed} s old with {left} s left of {seconds}"
+
+
+def _command(where: str, there: Any, row: Row, now: float) -> Iterator[str]:
+    entry, given = there.entry, row["parameters"]
+    expected = {each.name: getattr(entry.command, each.name) for each in fields(entry.command)}
+    expected["command"] = expected.pop("id")
+    if {key: given.get(key) for key in expected} != expected or given.get("tries", 1) != there.tries + 1:
+        yield f"{where} is shown with {given}, it was given {expected} at try {there.tries + 1}"
+    if there.status is Status.RUNNING and there.again_at is None and entry.state in OPEN:
+        if row["since_s"] is None or abs(row["since_s"] - (now - entry.sent_at)) > EXACT:
+            yield f"{where} is shown to run for {row['since_s']} s"
+        if row["deadline_s"] is None or abs(row["deadline_s"] - (entry.deadline - now)) > EXACT:
+            yield f"{where} is shown with {row['deadline_s']} s left"
+
+
+def command(last: SentCommand | None, now: float) -> Row | None:
+    """The last command of a robot, but for the words of what it is."""
+    if last is None:
+        return None
+    state = last.state.value if last.state else None
+    return {"id": last.command.id, "state": state, "age_s": now - last.at}
+
+
+def obstacle(known: KnownRobot, now: float, plant: int) -> str | None:
+    """A word that the sentence must have which says why a robot takes no command; "" where none may be."""
+    if known.stop is Stopped.LATCHED:
+        return "stopped"
+    if known.offline(now):
+        return "offline" if known.heard_at is not None else "not heard"
+    if known.robot.link.value == "mqtt" and known.epoch is not None and known.plant != plant:
+        return "bridge"
+    if known.state in (MotionState.FAULT, MotionState.STOP_LATCHED):
+        return "fault" if known.state is MotionState.FAULT else "stopped"
+    if known.unhomed:
+        return "not homed"
+    if not known.robot.says_homed:
+        return None  # it may have lost its place as only its joints show
+    return "moving" if known.state is MotionState.MOVING else ""
+
+
+def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:
+    """A diagnosis has what the row of its robot has, as words."""
+    for key, value in row.items():
+        if isinstance(value, dict) or value is None or key in UNTOLD:
+            continue
+        if values.get(key) != str(value):
+            yield f"{row['name']} is diagnosed with {key} {values.get(key)!r}, it is {value!r}"
+    hz = row["telemetry_hz"]
+    if values.get("telemetry_hz") != (None if hz is None else f"{hz:.0f}") or "age_s" in values:
+        yield f"{row['name']} is diagnosed with {values.get('telemetry_hz')} reports a second, it is {hz}"
+
+
+def of_cell(row: Row) -> dict[str, str]:
+    """The values of the diagnosis of a cell."""
+    return {"state": row["state"], "queued": str(len(row["queue"])), "step": row["step"] or ""}
+
+
+def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
+    """Where the last motion of a robot ended, as far as that was proven; `q`: where an arm's did."""
+    if isinstance(robot, Arm):
+        return None if q is None else {"q": list(q)}
+    done = last is not None and last.state is State.DONE and isinstance(last.command, FollowPath)
+    return {"node": last.command.nodes[-1]} if done else None  # type: ignore[union-attr]
+
+
+def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
+    """Where the part of a task is drawn that no effector holds."""
+    sent = [leaf.entry for leaf in _acts(cell) if leaf.entry is not None]
+    sent.sort(key=lambda entry: entry.sent_at)
+    letting_go = [entry for entry in sent if type(entry.command).__name__ == "SetEffector"]
+    if letting_go:
+        before = [each.command for each in sent[: sent.index(letting_go[-1])]]
+        goals = [each.q for each in before if isinstance(each, MoveJoints)]
+        expected = {"at": "pose", "q": list(goals[-1])} if goals else None
+    elif text.endswith(" palletizing"):
+        expected = {"at": "pose", "q": list(cell.cell.palletizing.pick.q)}
+    else:
+        expected = {"at": "mobile"}
+    if part != expected:
+        yield f"the part of {cell.name} is drawn at {part}, it is at {expected}"
+
+
+def _acts(cell: KnownCell) -> Iterator[Any]:
+    nodes = cell.run.tree.iterate() if cell.run.tree is not None else ()
+    return (each for each in nodes if type(each).__name__ == "Act")
+
+
+def place(cell: Cell) -> Row:
+    """What never changes of a cell."""
+    return {
+        "arm": cell.arm.name,
+        "mobile": cell.mobile.name,
+        "pitch": cell.mobile.grid.pitch,
+        "columns": cell.mobile.grid.columns,
+        "pickup": list(cell.pickup.q),
+        "stations": [list(station.q) for station in cell.stations],
+    }
