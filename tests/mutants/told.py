@@ -5,6 +5,7 @@ from __future__ import annotations
 from arboleda.core import advisor, evidence, recipes, text, view
 from arboleda.core.advisor import Advisor
 from arboleda.core.belief import Belief
+from arboleda.core.cell import CellRun
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.operator import Operator
@@ -43,9 +44,24 @@ BRIDGE = (
         edit(Bridge._fence, "if is_stop(command):", "if isinstance(command, Stop):"),
         weather={"second_orchestrator": 60.0},
     ),
+    mutant(
+        "who_moves_hears_the_beat",
+        "Beats go to boards that need not move.",
+        edit(Bridge._beat_all, " if board.in_motion", ""),
+        weather="none",
+    ),
 )
 
 PEOPLE = (
+    mutant(
+        "tasks_start_where_all_is_ready",
+        "A task starts whatever its robots say.",
+        edit(
+            CellRun._unready,
+            "found = [self.context.obstacle(robot.name) for robot in self.cell.reached]",
+            "found = []",
+        ),
+    ),
     mutant(
         "believed_as_said",
         "That a robot is homed again is not believed.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..recorded.bridge import COMMANDS, REPORTS
+from ..recorded.bridge import BEATS, COMMANDS, REPORTS
 from .invariant import Look, When, invariant
 
 
@@ -20,4 +20,10 @@ def commands_are_passed_on(look: Look) -> Iterable[str]:
     return look.record.bridges.wrong[COMMANDS]
 
 
-BRIDGE = (telemetry_is_reported, commands_are_passed_on)
+@invariant(When.BRIDGED)
+def who_moves_hears_the_beat(look: Look) -> Iterable[str]:
+    """A board whose motion has not ended gets the plant's beats, and one whose motion has ended gets none."""
+    return look.record.bridges.wrong[BEATS]
+
+
+BRIDGE = (telemetry_is_reported, commands_are_passed_on, who_moves_hears_the_beat)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import TABLE, Cause, CellState
 from arboleda.core.messages import (
+    Fact,
     OperatorAnswer,
     OperatorRequest,
     Reason,
@@ -89,6 +90,22 @@ def first_come_first_served(look: Look) -> Iterable[str]:
     for change in look.record.tasks.changes:
         if change.said.state is TaskState.RUNNING and not change.answer and change.first != change.said.task:
             yield f"task {change.said.task} started before {change.first}"
+
+
+@invariant(When.TOLD)
+def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
+    """A task starts only where each robot of its cell takes commands and no effector may hold a part."""
+    record = look.record
+    for change in record.tasks.changes:
+        if change.said.state is not TaskState.RUNNING or change.answer or change.said.cell is None:
+            continue
+        cell = record.cells[change.said.cell].cell
+        for robot in cell.reached:
+            if record.robots[robot.name].is_unfit(record.stepped_at, look.world.plant.epoch):
+                yield f"task {change.said.task} starts, and {robot.name} takes no command"
+        kept = record.kept.get(Fact.EFFECTOR, {}).get(cell.arm.name, "off")
+        if "off" not in (kept, record.effector_of(cell.arm.name)):
+            yield f"task {change.said.task} starts, and the effector of {cell.arm.name} is {kept}"
 
 
 @invariant(When.TOLD)
@@ -280,6 +297,7 @@ def _technical(sentence: str | None) -> Iterator[str]:
 
 
 TASKS = (
+    tasks_start_where_all_is_ready,
     each_task_ends_once,
     ended_tasks_stay_ended,
     only_legal_task_states,

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from arboleda.core.messages import TaskRequest, TaskState
+from arboleda.core.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.core.model import PlantModel
 
 from .invariant import Look, When, invariant
 
 LONGEST = 200
+EXAMPLE = re.compile(r"e\.g\. (.+?), or ")
+HINT = re.compile(r"did you mean (\S+)\?")
 ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
 
@@ -26,6 +28,7 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
     if meant is None:
         if not refused:
             yield f"{asked[0].text[:60]!r} means nothing, and was taken"
+        yield from _unhelpful(look)
         return
     cell, words, id = meant
     before = next(each for each in record.asked.cells if each.name == cell)
@@ -39,6 +42,20 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
         yield f"{asked[0].text!r} has another id: {[said.task for said in changes]}"
     if not known and not refused and not any(said.state is TaskState.QUEUED for said in changes):
         yield f"{asked[0].text!r} was taken, and nobody says that it waits"
+
+
+def _unhelpful(look: Look) -> Iterator[str]:
+    """An example that a refusal gives is a task of this plant, and what it hints at is there."""
+    for said in look.moment.sent:
+        if not isinstance(said, TaskChanged) or said.state is not TaskState.REFUSED:
+            continue
+        example = EXAMPLE.search(said.sentence)
+        meant = _meant(look.world.model, example[1]) if example else None
+        if example and (meant is None or f"{meant[0]} " not in example[1]):
+            yield f"{example[1]!r} is given as an example, and is no task"
+        for hint in HINT.findall(said.sentence):
+            if hint not in said.sentence.partition("there are ")[2].partition(";")[0].split(", "):
+                yield f"{said.sentence!r} hints at what there is not"
 
 
 def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:

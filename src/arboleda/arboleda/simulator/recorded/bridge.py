@@ -26,6 +26,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Arm, Evidence, Link, Mobile, MotionState, PlantModel, Robot
 from arboleda.wire.hop import FromPlant
+from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..world import Passed
@@ -92,16 +93,20 @@ class _Bridge:
     def take(self, passed: Passed) -> None:
         reports: defaultdict[str, list[Report]] = defaultdict(list)
         published: defaultdict[str, list[Publication]] = defaultdict(list)
+        rejections: defaultdict[str, list[Rejection]] = defaultdict(list)
         for message in passed.out:
             if isinstance(message, Report):
                 reports[message.robot].append(message)
             elif isinstance(message, Publication):
                 published[message.topic.partition("/")[0]].append(message)
+            elif isinstance(message, Rejection):
+                rejections[message.robot].append(message)
         for event in passed.events:
             self._event(event)
         late = any(event.at < passed.now for event in passed.events)
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
+            board.rejections = rejections.get(name, [])
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
 
@@ -163,7 +168,11 @@ class _Board:
         self._late = False
         self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
         self._is_new = True  # a bridge that starts tells that it has no link yet
-        self._beats = 0
+        self.rejections: list[Rejection] = []  # that the bridge told of it in this step
+        self._heard_beat = False  # in this step
+        self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
+        self._motion: int | None = None  # number of a motion that surely has not ended
+        self._may_move = False  # whether a motion may be open
 
     def take_over(self, now: float, belief: Belief) -> None:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
@@ -182,7 +191,7 @@ class _Board:
 
     def hear_plant(self, epoch: int) -> None:
         self._plant = epoch
-        self._beats += 1
+        self._heard_beat = self.touched = True
 
     def deliver(self, delivery: Delivery, channel: str) -> None:
         self.touched = True
@@ -204,6 +213,8 @@ class _Board:
         said = self._fields(delivery.payload)
         if said is None:
             return
+        if self._motion in (said.get("hecho"), said.get("rechazo_seq")):
+            self._motion = None
         number, boot = said.get("seq"), said.get("arranque")
         same = boot is not None and boot == self._boot
         if same and number is not None and self._number is not None and number <= self._number:
@@ -227,6 +238,12 @@ class _Board:
         return said
 
     def _take(self, delivery: Delivery, said: dict[str, Any]) -> None:
+        boot = said.get("arranque", self._boot)
+        if None not in (boot, self._boot) and boot != self._boot:
+            self._motion, self._may_move = None, False
+        done = (said.get("epoca_ack"), said.get("hecho"))
+        if self._by_ids and self._newest is not None and done == self._newest:
+            self._may_move = False
         self._up, self._heard_at = True, delivery.at
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
@@ -286,6 +303,7 @@ class _Board:
     def _lose(self) -> None:
         self._fell |= self._up
         self._up = False
+        self._motion, self._may_move = None, False
 
     def end_step(
         self, now: float, reports: list[Report], published: list[Publication], *, late: bool
@@ -294,6 +312,7 @@ class _Board:
         self._late = late
         if self._up and self._heard_at + self._patience_s <= now:
             self._lose()
+        self._compare_beats(published)
         if self._orders or published:
             self._compare_orders(reports, published)
         if reports or self._telling or self._fell:
@@ -304,8 +323,16 @@ class _Board:
         self._is_new = False
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
-        self._fell = self._rose = False
-        self._beats = 0
+        self._fell = self._rose = self._heard_beat = False
+
+    def _compare_beats(self, published: list[Publication]) -> None:
+        """Who moves hears that somebody is there; whose motion has ended need not."""
+        beats = any(each.topic.endswith("/latido") for each in published)
+        moves = any(isinstance(command, Motions) for command, _ in self._orders)
+        if beats and self._by_ids and not self._may_move and not moves:
+            self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
+        if self._heard_beat and self._motion is not None and not beats and not self._late:
+            self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
 
     def _compare_orders(self, reports: list[Report], published: list[Publication]) -> None:
         orders = [each for each in published if not each.topic.endswith("/latido")]
@@ -315,6 +342,7 @@ class _Board:
                 self._refused.add((command.id, word))
                 if (command.id, word) not in [(each.rejected, each.refusal) for each in reports]:
                     self._say(COMMANDS, f"{command} had to be refused as {word}, and was not")
+                self._check_told(command.id, word)
                 continue
             if (command.id, "no_link") in [(each.rejected, each.refusal) for each in reports] and self._late:
                 self._refused.add((command.id, "no_link"))  # a bridge that was away does not trust its link
@@ -341,6 +369,23 @@ class _Board:
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication)
+        if isinstance(command, Motions):
+            self._may_move = True
+            self._motion, self._newest = (
+                (self._seq, (body["epoca"], self._seq)) if self._by_ids else (None, None)
+            )
+        elif isinstance(command, Stop):
+            self._motion = None
+
+    def _check_told(self, id: str, word: str) -> None:
+        """People are told which robot refused what, and why in words."""
+        for each in self.rejections:
+            why = each.sentence.partition(f" was refused ({word}): ")[2]
+            if (each.id, each.reason) == (id, word) and each.sentence.startswith(f"{self.robot.name}: "):
+                if not why or why == word:
+                    self._say(COMMANDS, f"{id} was refused without a reason: {each.sentence}")
+                return
+        self._say(COMMANDS, f"{id} was refused as {word}, and people are told {self.rejections}")
 
     def _number_of(self, id: str, publication: Publication) -> None:
         if not self._by_ids:
@@ -350,6 +395,7 @@ class _Board:
         self._seq += 1
         if number[1] != self._seq:
             self._say(COMMANDS, f"{publication.topic} has the number {number[1]} after {self._seq - 1}")
+            self._motion = None
         self._ids[number] = id
         if len(self._ids) > KEPT:
             self._ids.popitem(last=False)
