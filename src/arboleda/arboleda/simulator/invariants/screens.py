@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 
 from arboleda.core import places, twin_view, view
 from arboleda.core.cell_states import CellState
+from arboleda.core.errors import PayloadError
 from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import FollowPath, MoveJoints
 from arboleda.core.model import Arm, Mobile
@@ -269,10 +271,10 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
 
 @invariant(When.HEARD)
 def status_says_the_report(look: Look) -> Iterable[str]:
-    """A report that goes over ROS 2 arrives as it left."""
+    """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
     if not look.record.anew or not look.record.due_for("status", STATUS_S):
         return NOTHING
-    return _carried(look)
+    return (*_carried(look), *_broken(look))
 
 
 def _carried(look: Look) -> Iterator[str]:
@@ -291,6 +293,23 @@ def _carried(look: Look) -> Iterator[str]:
         refused = sent.message == "command refused"
         if sent.hardware_id != robot.mqtt or refused is not (report.state is None):
             yield f"{report} is told over ROS 2 as {sent.message!r} of {sent.hardware_id}"
+
+
+def _broken(look: Look) -> Iterator[str]:
+    """The last report as other nodes may garble it."""
+    report = look.record.anew[-1]
+    robot = look.world.model.robots.get(report.robot)
+    if robot is None:
+        return
+    sent = status.to_status(robot, report)
+    garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
+    alone = {key: value for key, value in sent.values.items() if key != "reason"} | {"rejected": "1-1"}
+    for each in (*garbled, replace(sent, name=f"arboleda: {robot.name}2"), replace(sent, values=alone)):
+        try:
+            heard = status.from_status(report.at, robot, each)
+        except PayloadError:
+            continue
+        yield f"{each} is taken for {heard}"
 
 
 @invariant(When.END)
@@ -357,6 +376,22 @@ def _spots(look: Look, row: Row) -> Iterator[str]:
         yield f"zone {zone} is shown with {len(row['spots'])} spots"
 
 
+GARBLED = (
+    ("state", "9"),
+    ("state", ""),
+    ("q", "1.0,nan"),
+    ("q", "1e999"),
+    ("q", "0.1,,0.2"),
+    ("node", "-1"),
+    ("homed", "True"),
+    ("epoch", "4294967296"),
+    ("boot_id", "1.0"),
+    ("accepted", "1 1"),
+    ("done", ""),
+    ("foreign", ""),
+    ("foreign", "\x1b[31m"),
+    ("foreign", "x" * 301),
+)
 PLACED: dict[type, Callable[[Any, Any], Row]] = {Arm: _arm_placed, Mobile: _mobile_placed}
 
 SCREENS = (screens_show_what_is, status_says_the_report, plans_show_the_model)

@@ -16,7 +16,7 @@ from arboleda.core.messages import (
     TaskState,
     Verb,
 )
-from arboleda.core.model import Evidence
+from arboleda.core.model import Evidence, Link
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped
@@ -100,8 +100,9 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
         if change.said.state is not TaskState.RUNNING or change.answer or change.said.cell is None:
             continue
         cell = record.cells[change.said.cell].cell
-        for robot in cell.reached:
-            if record.robots[robot.name].is_unfit(record.stepped_at, look.world.plant.epoch):
+        for robot in cell.robots:
+            known = record.robots[robot.name]
+            if robot.link is not Link.NONE and known.is_unfit(record.stepped_at, look.world.plant.epoch):
                 yield f"task {change.said.task} starts, and {robot.name} takes no command"
         kept = record.kept.get(Fact.EFFECTOR, {}).get(cell.arm.name, "off")
         if "off" not in (kept, record.effector_of(cell.arm.name)):

@@ -45,17 +45,21 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
 
 
 def _unhelpful(look: Look) -> Iterator[str]:
-    """An example that a refusal gives is a task of this plant, and what it hints at is there."""
+    """An example is a task for the last place of a rack, and what is hinted at is there."""
     for said in look.moment.sent:
         if not isinstance(said, TaskChanged) or said.state is not TaskState.REFUSED:
             continue
         example = EXAMPLE.search(said.sentence)
-        meant = _meant(look.world.model, example[1]) if example else None
-        if example and (meant is None or f"{meant[0]} " not in example[1]):
+        if example and not _is_last_place(look.world.model, example[1]):
             yield f"{example[1]!r} is given as an example, and is no task"
         for hint in HINT.findall(said.sentence):
             if hint not in said.sentence.partition("there are ")[2].partition(";")[0].split(", "):
                 yield f"{said.sentence!r} hints at what there is not"
+
+
+def _is_last_place(model: PlantModel, text: str) -> bool:
+    meant = _meant(model, text)
+    return meant is not None and text.endswith(f" {len(model.cell(meant[0]).stations) - 1}")
 
 
 def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:

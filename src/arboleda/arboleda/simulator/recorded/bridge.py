@@ -26,13 +26,14 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Arm, Evidence, Link, Mobile, MotionState, PlantModel, Robot
 from arboleda.wire.hop import FromPlant
-from arboleda.wire.rejections import Rejection
+from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..world import Passed
 
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
+LINGER_S = 1.0  # for which a board that names no command has to say that it stands still
 COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
 SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
 FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
@@ -101,12 +102,15 @@ class _Bridge:
                 published[message.topic.partition("/")[0]].append(message)
             elif isinstance(message, Rejection):
                 rejections[message.robot].append(message)
+            elif isinstance(message, ForeignCommand):
+                self._boards[message.robot].foreign["obeyed"] += 1
         for event in passed.events:
             self._event(event)
         late = any(event.at < passed.now for event in passed.events)
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
             board.rejections = rejections.get(name, [])
+            board.foreign["refused"] += sum(each.reason == FOREIGN for each in board.rejections)
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
 
@@ -169,10 +173,15 @@ class _Board:
         self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
         self._is_new = True  # a bridge that starts tells that it has no link yet
         self.rejections: list[Rejection] = []  # that the bridge told of it in this step
+        self.foreign = {"refused": 0, "obeyed": 0}  # commands of others, as people were told
+        self._foreign = dict(self.foreign)  # before this step
         self._heard_beat = False  # in this step
+        self._is_new_plant = False  # whether a plant is heard since this step
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
         self._motion: int | None = None  # number of a motion that surely has not ended
         self._may_move = False  # whether a motion may be open
+        self._moved = False  # whether the board has said so since the last motion, or a stop followed that
+        self._still_since: float | None = None  # since then
 
     def take_over(self, now: float, belief: Belief) -> None:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
@@ -190,6 +199,7 @@ class _Board:
             self._lose()
 
     def hear_plant(self, epoch: int) -> None:
+        self._is_new_plant |= epoch != self._plant
         self._plant = epoch
         self._heard_beat = self.touched = True
 
@@ -244,6 +254,10 @@ class _Board:
         done = (said.get("epoca_ack"), said.get("hecho"))
         if self._by_ids and self._newest is not None and done == self._newest:
             self._may_move = False
+        if said["estado"] == MotionState.MOVING.value:
+            self._moved, self._still_since = True, None
+        elif self._moved and self._still_since is None:
+            self._still_since = delivery.at
         self._up, self._heard_at = True, delivery.at
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
@@ -317,19 +331,31 @@ class _Board:
             self._compare_orders(reports, published)
         if reports or self._telling or self._fell:
             self._compare_reports(reports)
+        if self._telling and not self._is_new_plant and self._foreign == self.foreign:
+            self._compare_foreign(reports)
+        self._foreign = dict(self.foreign)
         if self._heard_at + self._patience_s <= now:
             self._up = False  # what counted only in hindsight may be too old by now
         self._telling, self._maybe, self._orders = [], [], []
         self._is_new = False
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
-        self._fell = self._rose = self._heard_beat = False
+        self._fell = self._rose = self._heard_beat = self._is_new_plant = False
+
+    def _compare_foreign(self, reports: list[Report]) -> None:
+        known = (self.foreign["refused"], self.foreign["obeyed"])
+        for report in reports:
+            said = (report.foreign_refused or 0, report.foreign_obeyed or 0)
+            if said != known or (report.foreign is None) is any(known):
+                self._say(REPORTS, f"{said} commands of others are counted ({report.foreign}), of {known}")
 
     def _compare_beats(self, published: list[Publication]) -> None:
         """Who moves hears that somebody is there; whose motion has ended need not."""
         beats = any(each.topic.endswith("/latido") for each in published)
         moves = any(isinstance(command, Motions) for command, _ in self._orders)
-        if beats and self._by_ids and not self._may_move and not moves:
+        ended = self._still_since is not None and self._heard_at >= self._still_since + LINGER_S + EXACT
+        ended = not self._may_move or (ended and not self._by_ids)
+        if beats and ended and not moves:
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
         if self._heard_beat and self._motion is not None and not beats and not self._late:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
@@ -370,12 +396,12 @@ class _Board:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication)
         if isinstance(command, Motions):
-            self._may_move = True
+            self._may_move, self._moved, self._still_since = True, False, None
             self._motion, self._newest = (
                 (self._seq, (body["epoca"], self._seq)) if self._by_ids else (None, None)
             )
         elif isinstance(command, Stop):
-            self._motion = None
+            self._motion, self._moved = None, self._moved or command.mode is not StopMode.CLEAR
 
     def _check_told(self, id: str, word: str) -> None:
         """People are told which robot refused what, and why in words."""
@@ -426,7 +452,7 @@ class _Board:
             self._take(self._maybe[-1], said)
             self._telling = []
             return True
-        return bool(self._words) and _content(report) == _content(self._words[2])
+        return self._is_new_plant and bool(self._words) and _content(report) == _content(self._words[2])
 
     def _says(self, report: Report, delivery: Delivery) -> bool:
         """Whether a report says what telemetry says, of our commands too."""
