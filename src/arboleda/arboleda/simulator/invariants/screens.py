@@ -303,6 +303,9 @@ def _broken(look: Look) -> Iterator[str]:
         return
     sent = status.to_status(robot, report)
     garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
+    if isinstance(robot, Arm):
+        endless = ",".join(["1e999"] * len(robot.joints))
+        garbled.append(replace(sent, values={**sent.values, "q": endless}))
     alone = {key: value for key, value in sent.values.items() if key != "reason"} | {"rejected": "1-1"}
     for each in (*garbled, replace(sent, name=f"arboleda: {robot.name}2"), replace(sent, values=alone)):
         try:
@@ -380,7 +383,6 @@ GARBLED = (
     ("state", "9"),
     ("state", ""),
     ("q", "1.0,nan"),
-    ("q", "1e999"),
     ("q", "0.1,,0.2"),
     ("node", "-1"),
     ("homed", "True"),
