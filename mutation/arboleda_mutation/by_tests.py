@@ -21,7 +21,7 @@ from .sources import MUTATED, PACKAGE, Sources
 
 TESTS = ("tests/unit", "tests/scenario")
 LEAST_CPU_S, TIMES = 20.0, 10.0  # what computes longer, and so much longer than it did, hangs
-ARGUMENTS = ("-q", "-x", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist")
+ARGUMENTS = ("-q", "-x", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "--timeout=0")
 
 
 def measure(root: Path, folders: Sequence[str], say: Say) -> dict[str, Any]:

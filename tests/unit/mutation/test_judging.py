@@ -111,6 +111,17 @@ def test_who_comes_by_the_line_is_asked_and_the_killer_first(sources: Sources) -
     assert by_tests.in_order(mutant, reach, breadth, "b")[0] == ("b", 3.0)
 
 
+def test_a_test_that_is_slow_on_a_busy_machine_is_no_kill(tmp_path: Path) -> None:
+    (tmp_path / "pytest.ini").write_text("[pytest]\ntimeout = 0.01\n")
+    (tmp_path / "test_slow.py").write_text("import time\n\ndef test_slow():\n    time.sleep(0.1)\n")
+
+    def run(say: object) -> dict[str, object]:
+        return {"status": by_tests._pytest(tmp_path, by_tests.ARGUMENTS, ["test_slow.py"], object())}
+
+    ended = _in_a_child(run, tmp_path)
+    assert ended.said == {"status": 0}
+
+
 def test_what_is_carried_out_at_import_concerns_everybody_in_the_file(sources: Sources) -> None:
     mutant = next(each for each in sources.mutants if not each.function)
     lines = {mutant.file: {"6": "5"}, f"{mutant.file}@import": {"2": "0"}}
