@@ -180,6 +180,7 @@ class _Board:
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
         self._motion: int | None = None  # number of a motion that surely has not ended
         self._may_move = False  # whether a motion may be open
+        self._had_ended = False  # whether none was open after the step before
         self._moved = False  # whether the board has said so since the last motion, or a stop followed that
         self._still_since: float | None = None  # since then
 
@@ -355,7 +356,8 @@ class _Board:
         moves = any(isinstance(command, Motions) for command, _ in self._orders)
         ended = self._still_since is not None and self._heard_at >= self._still_since + LINGER_S + EXACT
         ended = not self._may_move or (ended and not self._by_ids)
-        if beats and ended and not moves:
+        before, self._had_ended = self._had_ended, ended
+        if beats and ended and before and not moves:
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
         if self._heard_beat and self._motion is not None and not beats and not self._late:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
@@ -397,6 +399,7 @@ class _Board:
         self._number_of(command.id, publication)
         if isinstance(command, Motions):
             self._may_move, self._moved, self._still_since = True, False, None
+            self._had_ended = False
             self._motion, self._newest = (
                 (self._seq, (body["epoca"], self._seq)) if self._by_ids else (None, None)
             )
