@@ -292,6 +292,25 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
     assert plant.plant.intake.tasks.popitem()[1].failure.reason is Reason.INTERRUPTED
 
 
+def test_a_plant_that_ends_takes_no_task_and_shows_that_it_ends(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    plant.plant.step(plant.now, [Shutdown(at=plant.now)])
+    plant.submit("sis_a 0B 7")
+    assert last_change(plant).state.value == "refused"
+    assert "the plant is ending" in last_change(plant).sentence
+    assert view.snapshot(plant.plant)["ending"] is True
+
+
+def test_a_queue_that_is_paused_after_an_absence_is_shown_anew(hand: Any) -> None:
+    plant = hand(Evidence.IDS)
+    plant.submit("sis_a 0B 7")  # waits: nothing was heard yet
+    before = plant.plant.version
+    plant.plant.step(plant.now + 60.0, [])
+    assert view.snapshot(plant.plant)["cells"][0]["paused"]
+    assert plant.plant.version != before
+
+
 def test_a_snapshot_shows_open_tasks_and_the_last_ended_ones(hand: Any) -> None:
     plant = hand(Evidence.IDS)
     for number in range(view.RECENT + 5):
