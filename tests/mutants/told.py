@@ -9,6 +9,7 @@ from arboleda.core.cell import CellRun
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.operator import Operator
+from arboleda.core.plant import Plant
 from arboleda.wire import status
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge
@@ -164,6 +165,12 @@ SCREENS = (
         "A screen shows the age of a report as of the start of the plant.",
         edit(view._robot, "now - belief.heard_at", "now"),
         weather="none",
+    ),
+    mutant(
+        "screens_are_told_of_news",
+        "What an operator has done is shown only with the next news.",
+        edit(Plant._on_operator_request, "self._changes += 1", "pass"),
+        weather={"operator_hold": 10.0},
     ),
     mutant(
         "status_says_the_report",

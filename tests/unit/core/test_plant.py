@@ -12,6 +12,7 @@ from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
     MoveJoints,
+    OperatorRequest,
     Reason,
     SetEffector,
     Shutdown,
@@ -20,6 +21,7 @@ from arboleda.core.messages import (
     SystemStart,
     TaskChanged,
     TaskRequest,
+    Verb,
 )
 from arboleda.core.model import Evidence, MotionState, Timing
 from arboleda.core.plant import Plant
@@ -300,6 +302,14 @@ def test_a_plant_that_ends_takes_no_task_and_shows_that_it_ends(hand: Any) -> No
     assert last_change(plant).state.value == "refused"
     assert "the plant is ending" in last_change(plant).sentence
     assert view.snapshot(plant.plant)["ending"] is True
+
+
+def test_what_an_operator_does_is_shown_anew(hand: Any) -> None:
+    plant, _ = driven_to_the_arm(hand, Evidence.IDS)
+    before = plant.plant.version
+    plant.plant.step(plant.now, [OperatorRequest(at=plant.now, verb=Verb.HOLD, scope="sis_a")])
+    assert plant.plant.cells["sis_a"].state is CellState.HOLDING
+    assert plant.plant.version != before
 
 
 def test_a_queue_that_is_paused_after_an_absence_is_shown_anew(hand: Any) -> None:

@@ -346,6 +346,7 @@ class Plant:
             )
 
     def _on_operator_request(self, request: OperatorRequest) -> None:
+        self._changes += 1
         refusal = None
         try:
             self._operator.act(request)

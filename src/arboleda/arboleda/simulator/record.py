@@ -62,6 +62,7 @@ class Record:
     `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
     `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
     until then. `answers`, `errors` and `transitions` (cell, state before, state after) are of this step;
+    `unnumbered`: whether a cell or a task changed in this step and the number of what screens show did not.
     `differences` are what a step changed in which everything asked was refused and nothing was heard.
     """
 
@@ -96,6 +97,7 @@ class Record:
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
         self.stepped = self.news = self.born = self.told = False
         self.undisturbed = True
+        self.unnumbered = False
         self._cells = tuple(self.cells.values())
         self._look_again_at = 0.0
         self._has_news = False
@@ -154,7 +156,7 @@ class Record:
     def _begin(self, plant: Plant) -> None:
         """A plant that starts knows nothing but what it had to keep."""
         self._plant = plant
-        self.stepped_at = plant.now
+        self.stepped_at, self._version = plant.now, -1
         self.unattended.clear()
         self.tasks.forget()
         self.commands.forget()
@@ -264,6 +266,8 @@ class Record:
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
         said = self.tasks.changes or self.tasks.refused or self.answers or self.transitions
         self.told = bool(said or self.errors)
+        self.unnumbered = (changed or bool(self.tasks.changes)) and plant.version == self._version
+        self._version = plant.version
         if self.news or plant.now >= self._look_again_at:
             self._look_into_trees(plant.now)
 

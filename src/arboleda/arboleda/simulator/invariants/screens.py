@@ -269,6 +269,14 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
 
 
+@invariant(When.NEWS)
+def screens_are_told_of_news(look: Look) -> Iterable[str]:
+    """Whenever a cell or a task changes, so does the number by which screens know that they are behind."""
+    if look.record.unnumbered:
+        return [f"cells or tasks changed, and what is shown is still number {look.world.plant.version}"]
+    return NOTHING
+
+
 @invariant(When.HEARD)
 def status_says_the_report(look: Look) -> Iterable[str]:
     """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
@@ -396,4 +404,4 @@ GARBLED = (
 )
 PLACED: dict[type, Callable[[Any, Any], Row]] = {Arm: _arm_placed, Mobile: _mobile_placed}
 
-SCREENS = (screens_show_what_is, status_says_the_report, plans_show_the_model)
+SCREENS = (screens_show_what_is, screens_are_told_of_news, status_says_the_report, plans_show_the_model)
