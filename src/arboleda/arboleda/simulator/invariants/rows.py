@@ -164,7 +164,13 @@ def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:
 
 def of_cell(row: Row) -> dict[str, str]:
     """The values of the diagnosis of a cell."""
-    return {"state": row["state"], "queued": str(len(row["queue"])), "step": row["step"] or ""}
+    return {
+        "state": row["state"],
+        "queued": str(len(row["queue"])),
+        "step": row["step"] or "",
+        "waiting_for": row["not_ready"] or row["waiting_for"] or "",
+        "advice": ", ".join(each["said"] for each in row["advice"]),
+    }
 
 
 def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
