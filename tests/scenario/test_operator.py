@@ -510,6 +510,14 @@ def test_a_robot_that_says_itself_whether_it_is_homed_is_not_homed_by_hand(stage
     assert "says itself" in str(rig.operate(Verb.HOME, "ra1", by_hand=True))
 
 
+@pytest.mark.parametrize("verb", [each for each in Verb if each is not Verb.CANCEL])
+def test_only_cancel_can_mean_a_task(stage: Stage, verb: Verb) -> None:
+    rig, _ = stage(Evidence.IDS)
+    fetch(rig)
+    assert rig.operate(verb, cell(rig).task.id) is not None
+    assert cell(rig).task.state is TaskState.RUNNING and cell(rig).task.failure is None
+
+
 @levels
 def test_cancel_of_a_queued_task_leaves_the_running_one(stage: Stage, evidence: Evidence) -> None:
     rig, witness = stage(evidence)
