@@ -67,7 +67,7 @@ def queue(cell: KnownCell, row: Row) -> Iterator[str]:
     """Why a cell does not start what waits, what holds it, and how far its work is."""
     state, name = row["state"], cell.name
     waits = row["queue"] and (state != "idle" or row["paused"])
-    if waits and name not in (row["waiting_for"] or ""):
+    if waits and not row["waiting_for"]:
         yield f"{name} is {state}, its tasks are shown to wait for {row['waiting_for']!r}"
     if state == "held" and f"{name} is held (" not in (row["held_by"] or ""):
         yield f"{name} is held, by what is shown by {row['held_by']!r}"
