@@ -156,6 +156,7 @@ class _Board:
         self._boot: int | None = None
         self._returns = 0
         self._plant: int | None = None
+        self._plant_before: int | None = None  # after the step before: a beat may come between two reports
         self._latched = False
         self._ids: OrderedDict[tuple[int, int], str] = OrderedDict()  # (epoca, seq) -> command
         self._seq = 0
@@ -186,6 +187,7 @@ class _Board:
 
     def take_over(self, now: float, belief: Belief) -> None:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
+        self._plant_before = belief.plant
         self._up, self._heard_at = belief.heard_at is not None, now
 
     @property
@@ -342,6 +344,7 @@ class _Board:
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
         self._fell = self._rose = self._heard_beat = self._is_new_plant = False
+        self._plant_before = self._plant
 
     def _compare_foreign(self, reports: list[Report]) -> None:
         known = (self.foreign["refused"], self.foreign["obeyed"])
@@ -459,7 +462,7 @@ class _Board:
 
     def _says(self, report: Report, delivery: Delivery) -> bool:
         """Whether a report says what telemetry says, of our commands too."""
-        if report.at != delivery.at or report.plant != self._plant:
+        if report.at != delivery.at or report.plant not in (self._plant, self._plant_before):
             return False
         before, _, after = _parts(delivery.payload)
         if self._words and (before, after) == self._words[:2] and report.words == self._words[2].words:

@@ -1,0 +1,31 @@
+"""Whose command a board has accepted."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.messages import Home
+from arboleda.core.model import MotionState
+from arboleda.wire.labels import Labels
+from arboleda.wire.strict import UINT32
+from arboleda.wire.values import Telemetry
+
+
+def accepted(epoch: int, seq: int) -> Telemetry:
+    return Telemetry(state=MotionState.STOPPED, q=None, node=0, ack_epoch=epoch, ack=seq)
+
+
+@pytest.mark.parametrize("epoch", [999, 1000, 1001, UINT32])
+def test_what_a_board_has_accepted_before_our_first_command_is_nobody_elses(epoch: int) -> None:
+    labels = Labels(1000)
+    labels.hear(accepted(epoch, 7))
+    assert labels.foreign is None
+
+
+def test_a_number_above_ours_is_somebody_elses_and_told_once() -> None:
+    labels = Labels(1000)
+    labels.issue(Home(id="1-1", robot="ra1"))
+    labels.hear(accepted(1000, 2))
+    assert labels.foreign == (1000, 2)
+    labels.hear(accepted(1000, 2))
+    assert labels.foreign is None
