@@ -24,7 +24,7 @@ from .invariant import Look, When, invariant
 from .liveness import ready
 
 NOTHING: tuple[str, ...] = ()
-EVERY_S, STATUS_S = 5.0, 1.0
+EVERY_S, STATUS_S, GARBLED_S = 5.0, 1.0, 10.0
 EXACT = 1e-6
 GOING = (State.SENT, State.RUNNING)
 STALE, ERROR, WARN, OK = 3, 2, 1, 0
@@ -282,7 +282,7 @@ def status_says_the_report(look: Look) -> Iterable[str]:
     """A report that goes over ROS 2 arrives as it left; a status that no bridge can mean is refused."""
     if not look.record.anew or not look.record.due_for("status", STATUS_S):
         return NOTHING
-    return (*_carried(look), *_broken(look))
+    return (*_carried(look), *(_broken(look) if look.record.due_for("garbled", GARBLED_S) else NOTHING))
 
 
 def _carried(look: Look) -> Iterator[str]:

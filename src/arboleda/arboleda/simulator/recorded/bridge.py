@@ -33,6 +33,7 @@ from ..world import Passed
 
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
+MOVING = MotionState.MOVING.value
 LINGER_S = 1.0  # for which a board that names no command has to say that it stands still
 COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
 SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
@@ -94,23 +95,20 @@ class _Bridge:
     def take(self, passed: Passed) -> None:
         reports: defaultdict[str, list[Report]] = defaultdict(list)
         published: defaultdict[str, list[Publication]] = defaultdict(list)
-        rejections: defaultdict[str, list[Rejection]] = defaultdict(list)
         for message in passed.out:
             if isinstance(message, Report):
                 reports[message.robot].append(message)
             elif isinstance(message, Publication):
                 published[message.topic.partition("/")[0]].append(message)
             elif isinstance(message, Rejection):
-                rejections[message.robot].append(message)
+                self._boards[message.robot].reject(message)
             elif isinstance(message, ForeignCommand):
-                self._boards[message.robot].foreign["obeyed"] += 1
+                self._boards[message.robot].obey_foreign()
         for event in passed.events:
             self._event(event)
         late = any(event.at < passed.now for event in passed.events)
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
-            board.rejections = rejections.get(name, [])
-            board.foreign["refused"] += sum(each.reason == FOREIGN for each in board.rejections)
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
 
@@ -173,9 +171,9 @@ class _Board:
         self._late = False
         self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
         self._is_new = True  # a bridge that starts tells that it has no link yet
-        self.rejections: list[Rejection] = []  # that the bridge told of it in this step
-        self.foreign = {"refused": 0, "obeyed": 0}  # commands of others, as people were told
-        self._foreign = dict(self.foreign)  # before this step
+        self._rejections: list[Rejection] = []  # that the bridge told of it in this step
+        self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
+        self._is_foreign_new = False  # whether there was one in this step
         self._heard_beat = False  # in this step
         self._is_new_plant = False  # whether a plant is heard since this step
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
@@ -201,10 +199,23 @@ class _Board:
         if not up:
             self._lose()
 
+    def reject(self, told: Rejection) -> None:
+        """People are told of a refused command."""
+        self._rejections.append(told)
+        self.touched = True
+        if told.reason == FOREIGN:
+            self._foreign, self._is_foreign_new = (self._foreign[0] + 1, self._foreign[1]), True
+
+    def obey_foreign(self) -> None:
+        """People are told of an obeyed command of somebody else."""
+        self._foreign, self._is_foreign_new = (self._foreign[0], self._foreign[1] + 1), True
+        self.touched = True
+
     def hear_plant(self, epoch: int) -> None:
         self._is_new_plant |= epoch != self._plant
         self._plant = epoch
-        self._heard_beat = self.touched = True
+        self._heard_beat = True
+        self.touched |= self._motion is not None
 
     def deliver(self, delivery: Delivery, channel: str) -> None:
         self.touched = True
@@ -251,20 +262,23 @@ class _Board:
         return said
 
     def _take(self, delivery: Delivery, said: dict[str, Any]) -> None:
-        boot = said.get("arranque", self._boot)
-        if None not in (boot, self._boot) and boot != self._boot:
-            self._motion, self._may_move = None, False
-        done = (said.get("epoca_ack"), said.get("hecho"))
-        if self._by_ids and self._newest is not None and done == self._newest:
-            self._may_move = False
-        if said["estado"] == MotionState.MOVING.value:
-            self._moved, self._still_since = True, None
-        elif self._moved and self._still_since is None:
-            self._still_since = delivery.at
+        if self._may_move:
+            self._follow_motion(delivery.at, said)
         self._up, self._heard_at = True, delivery.at
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
         self._telling.append(delivery)
+
+    def _follow_motion(self, at: float, said: dict[str, Any]) -> None:
+        boot = said.get("arranque", self._boot)
+        if None not in (boot, self._boot) and boot != self._boot:
+            self._motion, self._may_move = None, False
+        if self._by_ids and self._newest == (said.get("epoca_ack"), said.get("hecho")):
+            self._may_move = False
+        if said["estado"] == MOVING:
+            self._moved, self._still_since = True, None
+        elif self._moved and self._still_since is None:
+            self._still_since = at
 
     def expect_copy(self, at: float, command: Command) -> None:
         plain = replace(command, id="")
@@ -334,33 +348,36 @@ class _Board:
             self._compare_orders(reports, published)
         if reports or self._telling or self._fell:
             self._compare_reports(reports)
-        if self._telling and not self._is_new_plant and self._foreign == self.foreign:
-            self._compare_foreign(reports)
-        self._foreign = dict(self.foreign)
+        if self._telling and reports and not (self._is_new_plant or self._is_foreign_new):
+            self._compare_foreign(reports[-1])
         if self._heard_at + self._patience_s <= now:
             self._up = False  # what counted only in hindsight may be too old by now
         self._telling, self._maybe, self._orders = [], [], []
+        if self._rejections or self._is_foreign_new:
+            self._rejections, self._is_foreign_new = [], False
         self._is_new = False
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
         self._fell = self._rose = self._heard_beat = self._is_new_plant = False
         self._plant_before = self._plant
 
-    def _compare_foreign(self, reports: list[Report]) -> None:
-        known = (self.foreign["refused"], self.foreign["obeyed"])
-        for report in reports:
-            said = (report.foreign_refused or 0, report.foreign_obeyed or 0)
-            if said != known or (report.foreign is None) is any(known):
-                self._say(REPORTS, f"{said} commands of others are counted ({report.foreign}), of {known}")
+    def _compare_foreign(self, report: Report) -> None:
+        said = (report.foreign_refused or 0, report.foreign_obeyed or 0)
+        if said != self._foreign or (report.foreign is None) is any(said):
+            self._say(
+                REPORTS, f"{said} commands of others are counted ({report.foreign}), of {self._foreign}"
+            )
 
     def _compare_beats(self, published: list[Publication]) -> None:
         """Who moves hears that somebody is there; whose motion has ended need not."""
-        beats = any(each.topic.endswith("/latido") for each in published)
-        moves = any(isinstance(command, Motions) for command, _ in self._orders)
-        ended = self._still_since is not None and self._heard_at >= self._still_since + LINGER_S + EXACT
-        ended = not self._may_move or (ended and not self._by_ids)
+        ended = not self._may_move
+        if self._still_since is not None and not self._by_ids:
+            ended |= self._heard_at >= self._still_since + LINGER_S + EXACT
         before, self._had_ended = self._had_ended, ended
-        if beats and ended and before and not moves:
+        if not (published or self._heard_beat):
+            return
+        beats = any(each.topic.endswith("/latido") for each in published)
+        if beats and ended and before and not any(isinstance(order, Motions) for order, _ in self._orders):
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
         if self._heard_beat and self._motion is not None and not beats and not self._late:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
@@ -411,13 +428,13 @@ class _Board:
 
     def _check_told(self, id: str, word: str) -> None:
         """People are told which robot refused what, and why in words."""
-        for each in self.rejections:
+        for each in self._rejections:
             why = each.sentence.partition(f" was refused ({word}): ")[2]
             if (each.id, each.reason) == (id, word) and each.sentence.startswith(f"{self.robot.name}: "):
                 if not why or why == word:
                     self._say(COMMANDS, f"{id} was refused without a reason: {each.sentence}")
                 return
-        self._say(COMMANDS, f"{id} was refused as {word}, and people are told {self.rejections}")
+        self._say(COMMANDS, f"{id} was refused as {word}, and people are told {self._rejections}")
 
     def _number_of(self, id: str, publication: Publication) -> None:
         if not self._by_ids:
