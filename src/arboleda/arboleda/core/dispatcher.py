@@ -186,9 +186,13 @@ class Dispatcher:
         self.ledger.changed |= {self.model.cell_of[robot].name for robot in robots}
 
     def place(self, cell: Cell) -> Pose | None:
-        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes."""
+        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes.
+
+        What it said last may be older than a move that it was just given.
+        """
         belief = self.beliefs[cell.arm.name]
-        restless = belief.state is MotionState.MOVING or cell.arm.name in self.under_way.ids
+        given = cell.arm.name in self.under_way.ids or self.motion_of(cell.arm.name) is not None
+        restless = belief.state is MotionState.MOVING or given
         if not belief.online or belief.unhomed or restless:
             return None
         here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
