@@ -5,7 +5,7 @@
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
-PYTEST_ARGS ?= -n 6 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+PYTEST_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 SEEDS ?= 1000
 CYCLES ?= 36
 DRAWN_CYCLES ?= 4 # of each drawn plant; it ends at a full minute, so there are more
