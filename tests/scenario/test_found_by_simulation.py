@@ -224,6 +224,23 @@ FOUND = {
             Fault(kind="lost_part", at=52.441, target="arm_back", seed=3420715198),
         ),
     ),
+    "an effector that somebody opened while its report was on its way counted as never closed": Found(
+        seed=303,
+        seconds=31,
+        faults=(
+            Fault(kind="brown_out", at=2.811, seconds=11.449, target="ra_1", amount=5.093, seed=134363669),
+            Fault(
+                kind="hop_reorder",
+                at=18.494,
+                seconds=13.639,
+                target="plant",
+                amount=0.313,
+                word="to plant",
+                seed=2742292697,
+            ),
+            Fault(kind="opened_effector", at=29.613, target="ra_1", seed=1929225998),
+        ),
+    ),
 }
 
 

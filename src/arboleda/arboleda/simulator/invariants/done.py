@@ -49,7 +49,8 @@ def _untrue(truth: Truth, booked: Booked) -> str | None:
     if robot is None or _unprovable(truth, booked, robot):
         return None
     if isinstance(command, SetEffector) and isinstance(robot, ArmTruth):
-        lost = command.on and robot.booted_us >= booked.sent_at * 1e6  # it was on, and its power went
+        ended_at = max(robot.booted_us / 1e6, robot.robbed_at)  # by its power, or by somebody else
+        lost = command.on and ended_at >= booked.sent_at  # it was on, which is told only now
         return None if lost or robot.on == command.on else f"it is {'on' if robot.on else 'off'}"
     if isinstance(command, MoveJoints) and isinstance(robot, ArmTruth):
         return None if robot.stands_at(command.q) else _where(robot, f"{robot.true} motor steps")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from operator import add, sub
 
 from arboleda.core.model import Arm, Cell, Pose
@@ -24,7 +25,7 @@ class ArmTruth(RobotTruth):
     and stations have no extent here, so an arm that lost steps counts as where it would be without that, and
     one within its tolerance of a pose as at it: `here` names the poses where it stands still in this sense,
     `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept; `opened`:
-    in this step somebody else than the plant opened its effector.
+    in this step somebody else than the plant opened its effector, `robbed_at` when that last ended a grip.
     """
 
     SIGNS = ("next_change_us", "effector", "holding")
@@ -34,6 +35,7 @@ class ArmTruth(RobotTruth):
         assert isinstance(board.body, ArmBody)
         self.on, self.holding = board.body.effector, board.body.holding
         self.opened = False
+        self.robbed_at = -math.inf
         super().__init__(robot, cell, board, client)
         self.arm = robot
         self.lost: Steps = (0,) * len(robot.joints)
@@ -57,6 +59,12 @@ class ArmTruth(RobotTruth):
         self._speeds: tuple[float, ...] | None = None
         self._jitter = tuple(2 * JITTER_STEPS * j.acceleration / j.step for j in robot.joints)
         self._locate()
+
+    def be_opened(self, at: float) -> None:
+        """Somebody else than the plant opens its effector."""
+        self.opened = True
+        if self.on:
+            self.robbed_at = at
 
     def poses_like(self, q: tuple[float, ...]) -> frozenset[str]:
         """The names of all poses that are where `q` is."""

@@ -121,7 +121,7 @@ class Truth:
             self._boards[board].carry_out(goal)
         for board in moment.opened:
             if isinstance(arm := self._boards[board], ArmTruth):
-                arm.opened = True
+                arm.be_opened(self.world.now)
         for board in moment.put_right:
             self._boards[board].put_right(self.world.now)
 
