@@ -470,9 +470,9 @@ class _Board:
 
     def _is_known(self, report: Report) -> bool:
         """Whether it repeats the last words, as for a plant that was not heard before, or what may count."""
-        if any(self._says(report, delivery) for delivery in self._maybe):
-            said = _read(self._maybe[-1].payload, self.robot) or {}
-            self._take(self._maybe[-1], said)
+        counted = next((delivery for delivery in self._maybe if self._says(report, delivery)), None)
+        if counted is not None:
+            self._take(counted, _read(counted.payload, self.robot) or {})
             self._telling = []
             return True
         return self._is_new_plant and bool(self._words) and _content(report) == _content(self._words[2])
