@@ -8,6 +8,7 @@ BIN := .venv/bin
 PYTEST_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
 SEEDS ?= 1000
 CYCLES ?= 36
+DRAWN_SEEDS ?= 500
 DRAWN_CYCLES ?= 4 # of each drawn plant; it ends at a full minute, so there are more
 MUTANTS ?= --sample 400
 
@@ -27,9 +28,9 @@ campaign: install  ## simulate 1000 seeds with every kind of fault; SEEDS=... CY
 	$(BIN)/arboleda simulate --seeds $(SEEDS) --cycles $(CYCLES) --json campaign.json
 	$(BIN)/python scripts/campaign campaign.json $(SEEDS)
 
-drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault
-	$(BIN)/arboleda simulate --drawn-plants --seeds 500 --cycles $(DRAWN_CYCLES) --json drawn.json
-	$(BIN)/python scripts/campaign drawn.json
+drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with every kind of fault; DRAWN_SEEDS=... for others
+	$(BIN)/arboleda simulate --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
+	$(BIN)/python scripts/campaign drawn.json $(DRAWN_SEEDS)
 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
