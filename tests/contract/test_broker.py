@@ -11,6 +11,7 @@ import pytest
 from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.adapters.mqtt import Credentials
 from arboleda.core.errors import StartError
+from arboleda.core.model import MqttVersion
 from arboleda.wire.transport import Publication
 
 USERS = {"ra_1": "one", "ra_10": "ten", "ana": "look"}
@@ -156,7 +157,7 @@ def test_a_silent_board_is_dropped_after_one_and_a_half_keep_alives(broker, peer
 
 
 def test_mqtt_5_is_refused_in_one_sentence(broker, peer, caplog):
-    peer("bridge", broker.start(), version=5)
+    peer("bridge", broker.start(), version=MqttVersion.V5)
     time.sleep(1.0)
     assert len(caplog.records) == 1
     assert "over MQTT 5: Unsupported protocol version" in caplog.text

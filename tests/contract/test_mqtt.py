@@ -10,6 +10,7 @@ from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from arboleda.adapters.mqtt import Credentials, NotConnected
+from arboleda.core.model import MqttVersion
 from arboleda.wire.transport import Publication
 
 GOALS, STATE, PRESENCE = "ra_1/juntas", "ra_1/sensores", "ra_1/conexion"
@@ -87,7 +88,7 @@ def test_an_oversized_payload_is_for_the_codec_to_refuse(broker, peer):
 def test_over_mqtt_5_a_huge_message_does_not_even_come(mosquitto, peer):
     broker = mosquitto()
     broker.start()
-    board = peer("ra_1", broker.address, subscriptions=[GOALS], version=5).up()
+    board = peer("ra_1", broker.address, subscriptions=[GOALS], version=MqttVersion.V5).up()
     other = peer("other", broker.address).up()
     for payload in (b"x" * 100_000, b"small"):
         other.client.publish(message(payload))
@@ -237,7 +238,7 @@ def test_mqtt_5_lets_commands_expire_after_a_second(mosquitto, peer):
     listener.connect(broker.address.host, broker.address.port)
     listener.subscribe("#", 1)
     listener.loop_start()
-    bridge = peer("bridge", broker.address, subscriptions=[GOALS], version=5).up()
+    bridge = peer("bridge", broker.address, subscriptions=[GOALS], version=MqttVersion.V5).up()
     try:
         bridge.client.publish(message(b"goal"))
         bridge.client.publish(message(b"1", PRESENCE, retain=True))

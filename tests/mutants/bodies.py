@@ -90,7 +90,7 @@ GRIP = (
     mutant(
         "effector_on_only_between_pick_and_place",
         "The work at a pose is done before the arm goes there.",
-        edit(recipes._at, "[_move(context, pose), *work]", "[*work, _move(context, pose)]"),
+        edit(recipes._at, "[go, *work]", "[*work, go]"),
         weather="none",
     ),
     mutant(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -62,6 +63,20 @@ def test_retry_gives_the_interrupted_step_anew_and_the_task_is_done(rig: Rig) ->
     away(rig, 20.0, PLANT)
     assert rig.operate(Verb.RETRY, "sis_a") is None
     assert rig.wait(60.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_the_time_away_is_no_part_of_a_pause_that_a_step_waits_out() -> None:
+    plant = shipped("sis_a")
+    rig = Rig(replace(plant, timing=replace(plant.timing, dwell_s=5.0)))
+    rig.wait(2.0)
+    rig.submit("sis_a 0A 4")
+    rig.wait_for("sis_a", "effector on/dwell")
+    rig.stall(PLANT, 20.0)
+    rig.wait(20.5)
+    assert rig.operate(Verb.RETRY, "sis_a") is None
+    rig.wait(3.0)
+    assert rig.runs("sis_a", "effector on/dwell")
+    rig.wait_for("sis_a", "main/move to station 4", 3.0)
 
 
 def test_abandon_recovers_and_the_queue_waits_for_resume(rig: Rig) -> None:

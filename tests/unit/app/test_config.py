@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.model import Evidence, Link, PlantModel, Timing
+from arboleda.core.model import Evidence, Link, MqttVersion, PlantModel, Timing
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {
@@ -73,7 +73,7 @@ def test_shipped_robots_prove_motion_by_ids_over_mqtt(shipped: PlantModel) -> No
 
 
 def test_shipped_times_and_limits_of_the_queue_are_the_defaults(shipped: PlantModel) -> None:
-    assert (shipped.name, shipped.timing, shipped.mqtt_version) == ("arboleda", Timing(), 4)
+    assert (shipped.name, shipped.timing, shipped.mqtt_version) == ("arboleda", Timing(), MqttVersion.V3_1_1)
     for cell in shipped.cells:
         assert (cell.arm.timeout_s, cell.mobile.timeout_s) == (10, 20)
         assert (cell.queue_limit, cell.drive_to_start) == (100, True)

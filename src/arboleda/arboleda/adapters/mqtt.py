@@ -18,6 +18,7 @@ from paho.mqtt.properties import Properties
 from paho.mqtt.reasoncodes import ReasonCode
 
 from arboleda.core.errors import ArboledaError
+from arboleda.core.model import MqttVersion
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .clock import seconds
@@ -33,6 +34,7 @@ QUEUE_LIMIT = 100
 LARGEST_PACKET = 4096  # bytes; all that plant and boards say is shorter
 AT_ONCE = 40  # topics of one SUBSCRIBE: the plant's own broker takes packets of 4 kB
 EXPIRY_S = 1
+PAHO_VERSION = {MqttVersion.V3_1_1: MQTTProtocolVersion.MQTTv311, MqttVersion.V5: MQTTProtocolVersion.MQTTv5}
 
 
 class NotConnected(ArboledaError):
@@ -76,7 +78,7 @@ class MqttClient:
         will: Publication | None = None,
         clock: Callable[[], float] = seconds,
         credentials: Credentials | None = None,
-        version: int = MQTTProtocolVersion.MQTTv311,
+        version: MqttVersion = MqttVersion.V3_1_1,
         announce: bool = True,
     ) -> None:
         self.client_id = client_id
@@ -86,7 +88,7 @@ class MqttClient:
         self._will = will
         self._clock = clock
         self._credentials = credentials
-        self._version = MQTTProtocolVersion(version)
+        self._version = PAHO_VERSION[version]
         self._announce = announce
         self._told: str | None = None  # the trouble that the log already names
         self._refused: str | None = None  # what the broker of this connection said no to

@@ -17,7 +17,7 @@ from arboleda.adapters.mqtt import Credentials
 from arboleda.adapters.store import Store
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
-from arboleda.core.model import Link, PlantModel
+from arboleda.core.model import Link, MqttVersion, PlantModel
 
 from .log_queue import Output
 from .parts.bridge import BridgePart
@@ -37,7 +37,6 @@ if TYPE_CHECKING:  # its libraries are needed only where this part is
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
 OF_BOARDS = frozenset({"broker", "devices", "bridge"})  # of no use where no robot is reached over MQTT
 STORE = "plant.sqlite"
-MQTT_311 = 4  # paho's number of the protocol
 LOG = logging.getLogger(__name__)
 
 
@@ -293,7 +292,7 @@ def _acts(store: Store) -> list[dict[str, Any]]:
 
 def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker | OtherBroker:
     own = "broker" in parts
-    if own and model.mqtt_version != MQTT_311:
+    if own and model.mqtt_version is not MqttVersion.V3_1_1:
         raise StartError("the plant's own broker speaks MQTT 3.1.1 only; name another one with --broker")
     if not own:
         return OtherBroker(address(options.broker or f"127.0.0.1:{MQTT_PORT}"), options.credentials)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, ForeignCommands, PlantModel, Retry, Timing
+from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
 
 from . import user_file
 from .plant_file import rack
@@ -23,7 +23,6 @@ from .plant_file.yaml_marks import LARGEST
 from .plant_file.zones import with_zones, zones
 
 SHARED = ("paths", "stations", "palletizing")
-MQTT_PROTOCOL = {"3.1.1": 4, "5": 5}  # paho's numbers
 
 
 def load(path: Path | None = None) -> PlantModel:
@@ -93,7 +92,7 @@ def _plant(document: Document) -> PlantModel | None:
         name=shape.name,
         cells=zoned,
         timing=times,
-        mqtt_version=MQTT_PROTOCOL[shape.mqtt_version],
+        mqtt_version=MqttVersion(shape.mqtt_version),
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),
     )

@@ -32,6 +32,13 @@ class ForeignCommands(str, Enum):
     OBEY = "obey"
 
 
+class MqttVersion(str, Enum):
+    """Which MQTT a plant speaks."""
+
+    V3_1_1 = "3.1.1"
+    V5 = "5"
+
+
 class MotionState(int, Enum):
     """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
 
@@ -315,7 +322,7 @@ class PlantModel:
     name: str
     cells: tuple[Cell, ...]
     timing: Timing = Timing()
-    mqtt_version: int = 4  # paho's protocol number of MQTT 3.1.1; 5 for MQTT 5
+    mqtt_version: MqttVersion = MqttVersion.V3_1_1
     zones: tuple[str, ...] = ()
     foreign_commands: ForeignCommands = ForeignCommands.REFUSE
 

@@ -70,7 +70,7 @@ def recovery(context: Context) -> Behaviour:
         *_rise(context),
         *([TakeZones("take zones", context, context.recovery_zones, inside=True)] if shares else []),
         _selector("part back", Unless("holds nothing", lambda: not context.holding()), back),
-        _move(context, cell.home),
+        _move(context, cell.home.name, cell.home.q),
         *([LeaveZones("leave zones", context)] if shares else []),
     )
 
@@ -167,16 +167,15 @@ def _take(context: Context, zones: frozenset[str]) -> Behaviour:
 
 def _at(context: Context, pose: Pose, *work: Behaviour) -> list[Behaviour]:
     """Go to a pose, do the work there and, where the pose has an approach height, come back up."""
+    go = _move(context, pose.name, pose.q)
     if pose.above is None:
-        return [_move(context, pose), *work]
-    above = partial(_move, context, pose, above=True)
-    return [above(), _move(context, pose), *work, above()]
+        return [go, *work]
+    above = partial(_move, context, f"above {pose.name}", pose.above)
+    return [above(), go, *work, above()]
 
 
-def _move(context: Context, pose: Pose, *, above: bool = False) -> Behaviour:
-    arm, target = context.cell.arm.name, pose.above if above and pose.above else pose.q
-    where = f"above {pose.name}" if above else pose.name
-    make = partial(MoveJoints, robot=arm, q=target)
+def _move(context: Context, where: str, q: tuple[float, ...]) -> Behaviour:
+    make = partial(MoveJoints, robot=context.cell.arm.name, q=q)
     return Act(f"move to {where}", context, make, f"moving to {where}", guard=partial(_part_lost, context))
 
 
