@@ -86,7 +86,7 @@ def open_page(browser: Any, household: Any, address: str) -> Iterator[Open]:
         opened.append(context if options else page)
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.goto(f"{at}/#{part}")
+        page.goto(f"{at}/?tab={part}")
         if token:
             page.fill("input", token)
             page.press("input", "Enter")
@@ -305,12 +305,61 @@ def test_a_reload_in_the_middle_shows_where_the_plant_is(open_page: Open) -> Non
     page = open_page("cells")
     page.click("[data-choose=sis_b]")
     task = send(page, "sis_b 1B 0")
-    page.goto(page.url.partition("#")[0])
+    page.reload()
     connected(page)
     assert page.is_visible("#part-tasks")
     wait_for_task(page, task, "done")
     show(page, "cells")
     page.wait_for_selector(".cell.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
+
+
+def test_back_leads_through_the_parts_and_cells_that_were_shown(open_page: Open) -> None:
+    page = open_page("cells")
+    page.click("[data-choose=sis_c]")
+    show(page, "tasks")
+    page.wait_for_selector("#part-tasks:not([hidden])")
+    show(page, "panel")
+    page.click("[data-scope=sis_b]")
+    assert "tab=panel" in page.url and "cell=sis_b" in page.url
+    page.go_back()
+    page.wait_for_selector("[data-robots=sis_c]:not([hidden])", state="attached")
+    page.go_back()
+    assert page.is_visible("#part-tasks")
+    page.go_back()
+    page.wait_for_selector(".cell.chosen[data-cell=sis_c]", state="attached")
+    page.go_back()
+    page.wait_for_selector(".cell.chosen[data-cell=sis_a]", state="attached")
+    page.go_forward()
+    page.wait_for_selector(".cell.chosen[data-cell=sis_c]", state="attached")
+
+
+def test_a_link_leads_to_part_cell_and_language(open_page: Open) -> None:
+    page = open_page("tasks&cell=sis_b&lang=es", locale="en")
+    assert page.is_visible("[data-maps=sis_b]") and "Tarea nueva" in page.inner_text("#task-form")
+    show(page, "panel")
+    page.wait_for_selector("[data-scope=sis_b][aria-pressed=true]")
+    page.click("[data-language=en]")
+    page.wait_for_selector("[aria-label='For whom']")
+    assert "cell=sis_b" in page.url and "lang=en" in page.url
+    page.go_back()
+    page.wait_for_selector("html[lang=es]")
+
+
+def test_a_tab_is_a_link_to_be_opened_elsewhere(open_page: Open) -> None:
+    page = open_page("cells&cell=sis_c")
+    with page.context.expect_page() as opened:
+        page.click("[data-tab=links]", modifiers=["ControlOrMeta"])
+    other = opened.value
+    connected(other)
+    assert other.is_visible("#part-links") and "cell=sis_c" in other.url
+    assert page.is_visible("#part-cells")
+    other.close()
+
+
+def test_a_link_to_a_cell_that_is_not_there_says_so(open_page: Open) -> None:
+    page = open_page("cells&cell=%3Cimg src=x%3E")
+    wait_for_answer(page, "There is no cell <img src=x> in this plant", "bad")
+    assert "cell=" not in page.url
 
 
 def test_a_second_browser_sees_the_same(open_page: Open) -> None:
@@ -414,7 +463,9 @@ def test_the_links_say_who_is_heard(open_page: Open) -> None:
 
 def test_a_viewer_may_stop_and_nothing_else(open_page: Open, tmp_path: Path) -> None:
     with running(tmp_path, "--host", "0.0.0.0") as address:
-        page = open_page(at=address, token=json.loads((tmp_path / "tokens.json").read_text())["viewer"])
+        token = json.loads((tmp_path / "tokens.json").read_text())["viewer"]
+        page = open_page("links&cell=sis_b", at=address, token=token)
+        assert page.is_visible("#part-links") and "cell=sis_b" in page.url
         page.click("#stop")
         wait_for_stop(page, "stopped")
         show(page, "panel")
@@ -488,6 +539,18 @@ def test_escape_says_no_and_gives_the_page_back(open_page: Open) -> None:
     assert page.evaluate("document.activeElement.closest('.verb').dataset.verb") == "home"
     show(page, "tasks")
     assert page.inner_text(".stop-state") == "Stops every robot of the plant"
+
+
+def test_going_back_says_no(open_page: Open) -> None:
+    page = open_page("tasks")
+    show(page, "panel")
+    page.click("[data-scope=sis_a]")
+    page.click(".verb[data-verb=home] button")
+    page.wait_for_selector("dialog button:focus")
+    page.go_back()
+    page.wait_for_selector("dialog", state="detached")
+    page.wait_for_selector("[data-scope=''][aria-pressed=true]")
+    show(page, "tasks")
 
 
 def test_only_the_stop_can_be_reached_beside_a_question(open_page: Open) -> None:

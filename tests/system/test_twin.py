@@ -156,7 +156,7 @@ def browsing(browser: Any) -> Iterator[Any]:
             page = opened.enter_context(browser.new_context(**(SMALL | more))).new_page()
             page.set_default_timeout(PATIENCE_MS)
             page.on("pageerror", lambda error: troubles.append(str(error)))
-            page.goto(f"{address}/#{part}")
+            page.goto(f"{address}/?tab={part}")
             page.wait_for_function("document.getElementById('connection')?.hidden")
             if part == "twin":
                 page.wait_for_function(

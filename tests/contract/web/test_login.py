@@ -126,3 +126,29 @@ def test_tokens_that_cannot_be_read_let_nobody_in_and_are_said_once(caplog):
     assert [record.getMessage() for record in caplog.records] == [
         "nobody can log in: The tokens cannot be read."
     ]
+
+
+def test_where_somebody_wanted_to_go_survives_the_login(open_to_all):
+    browser = open_to_all.client(origin=open_to_all.origin, accept="text/html")
+    turned = browser.get("/?tab=tasks&cell=sis_b")
+    assert (turned.status_code, turned.headers["location"]) == (303, "/login?tab=tasks&cell=sis_b")
+    form = browser.get(turned.headers["location"])
+    assert 'action="/login?tab=tasks&amp;cell=sis_b"' in form.text
+    answer = browser.post("/login?tab=tasks&cell=sis_b", data={"token": TOKENS[Role.VIEWER]})
+    assert answer.headers["location"] == "/?tab=tasks&cell=sis_b"
+    assert browser.get("/login?tab=links").headers["location"] == "/?tab=links"
+
+
+@pytest.mark.parametrize(
+    "query", ["//evil.example", "next=https://evil.example", "%0d%0aset-cookie:a=b", '"><b>']
+)
+def test_no_address_leads_a_login_elsewhere(open_to_all, query):
+    browser = open_to_all.client(origin=open_to_all.origin)
+    form = browser.get(f"/login?{query}").text
+    assert '"><b>' not in form
+    answer = browser.post(f"/login?{query}", data={"token": TOKENS[Role.VIEWER]})
+    assert answer.headers["location"].startswith("/?") and "a" not in browser.cookies
+
+
+def test_the_form_speaks_the_language_of_the_address(open_to_all):
+    assert "Clave" in open_to_all.client(**{"accept-language": "en"}).get("/login?lang=es").text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .plant_side import Layout
-from .tags import live, tag
+from .tags import link, live, tag
 from .wording import LANGUAGES, Words
 
 
@@ -31,7 +31,7 @@ def _stop(words: Words) -> None:
 def _tabs(words: Words, parts: list[str]) -> None:
     with tag("nav", classes="tabs", aria_label=words("page.parts")):
         for name in parts:
-            tag("button", words(f"tab.{name}"), type="button", classes="tab", data_tab=name)
+            link(words(f"tab.{name}"), tab=name, classes="tab", data_tab=name)
 
 
 def _tools(words: Words, role: str | None) -> None:

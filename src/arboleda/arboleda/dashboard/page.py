@@ -75,11 +75,9 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
 
 
 def language_of(request: Request) -> str:
-    """The language chosen before, else the first that the browser asks for and we have."""
-    chosen = request.cookies.get(LANGUAGE_COOKIE)
-    if chosen in LANGUAGES:
-        return chosen
-    asked = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
+    """That of the address, else the one chosen before, else the first of the browser's that we have."""
+    spoken = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
+    asked = [request.query_params.get("lang"), request.cookies.get(LANGUAGE_COOKIE), *spoken]
     return next((each for each in asked if each in LANGUAGES), LANGUAGES[0])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from nicegui import ui
@@ -23,6 +24,12 @@ def tag(
 def live(name: str, key: str, *, classes: str = "", **attributes: Any) -> Element:
     """An element whose text and state come with the frames, as `text/<key>`."""
     return tag(name, classes=classes, data_live=key, **attributes)
+
+
+def link(label: str, *, tab: str, cell: str | None = None, classes: str = "", **attributes: Any) -> Element:
+    """A link to another place of the page; without a cell the chosen one stays."""
+    there = {"tab": tab} | ({} if cell is None else {"cell": cell})
+    return tag("a", label, classes=classes, href=f"/?tab={tab}", data_go=json.dumps(there), **attributes)
 
 
 def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Element:

@@ -51,6 +51,11 @@ class Asked:
     def path(self) -> str:
         return str(self.scope["path"])
 
+    def at(self, path: str) -> str:
+        """The same query at a path of ours: where somebody wanted to go survives a login."""
+        query = self.scope["query_string"].decode("latin-1")
+        return f"{path}?{query}" if query else path
+
     @property
     def reads(self) -> bool:
         """Whether it only looks. A websocket may do anything."""

@@ -150,5 +150,5 @@ class Guard:
 def _unknown(asked: Asked) -> Turned:
     turned = Turned(401, "This plant wants a token or a login.", www_authenticate="Bearer")
     if asked.wants_page:
-        turned.answer = RedirectResponse(LOGIN, status_code=303)
+        turned.answer = RedirectResponse(asked.at(LOGIN) if asked.opens_page else LOGIN, status_code=303)
     return turned

@@ -36,7 +36,8 @@ def routes() -> APIRouter:
 
     @pages.get(LOGIN)
     async def form(request: Request) -> Response:
-        return RedirectResponse("/", 303) if request.scope["arboleda.login"] else _form(request)
+        known = request.scope["arboleda.login"]
+        return RedirectResponse(Asked(request.scope).at("/"), 303) if known else _form(request)
 
     @pages.post(LOGIN)
     async def log_in(request: Request) -> Response:
@@ -45,7 +46,7 @@ def routes() -> APIRouter:
         session = door.log_in(token) if token and not door.open else None
         if session is None:
             return _form(request, wrong=True)
-        answer = RedirectResponse("/", 303)
+        answer = RedirectResponse(Asked(request.scope).at("/"), 303)
         answer.set_cookie(value=session, max_age=int(SESSION_S), **_cookie(request))
         return answer
 
@@ -77,11 +78,12 @@ def _token(body: bytes) -> bytes:
 
 
 def _form(request: Request, *, wrong: bool = False) -> HTMLResponse:
-    spanish = request.headers.get("accept-language", "").lower().startswith("es")
-    language = "es" if spanish else "en"
+    asked = request.query_params.get("lang") or request.headers.get("accept-language", "")
+    language = "es" if asked.lower().startswith("es") else "en"
     words = {key: escape(value) for key, value in WORDS[language].items()}
     trouble = f'<p role="alert">{words["wrong"]}</p>' if wrong else ""
-    body = f"""<h1>{words["title"]}</h1>{trouble}<form method="post" action="{LOGIN}">
+    to = escape(Asked(request.scope).at(LOGIN))
+    body = f"""<h1>{words["title"]}</h1>{trouble}<form method="post" action="{to}">
 <p><label>{words["token"]}
 <input name="token" type="password" autocomplete="current-password" required autofocus></label></p>
 <p>{words["hint"]}</p><p><button>{words["enter"]}</button></p></form>"""

@@ -1,6 +1,7 @@
 // The task form: cell, path and station write the task text, which may also be typed.
 
 import { answer, send } from "./acts.js";
+import * as place from "./place.js";
 
 const words = window.arboledaPage.words;
 const chosen = { cell: null, recipe: "storage", path: null, station: null, from: null };
@@ -16,6 +17,13 @@ export function start() {
   show();
 }
 
+// Begin with this cell, unless somebody is writing a task already.
+export function offer(cell) {
+  if (!cell || document.getElementById("task-text").value) return;
+  choose("cell", cell);
+  show();
+}
+
 function clicked({ target }) {
   const button = target.closest("button");
   if (!button || button.id === "task-send") return;
@@ -26,6 +34,7 @@ function clicked({ target }) {
   if (node) walk(Number(node));
   show();
   write();
+  if (choice === "cell") place.go({ cell: value });
 }
 
 function choose(what, value) {

@@ -3,6 +3,8 @@
 import * as acts from "./acts.js";
 import * as form from "./form.js";
 import { apply, drawList, onChange, setRowFilter, value } from "./live.js";
+import * as place from "./place.js";
+import * as question from "./question.js";
 import * as tree from "./tree.js";
 
 const SILENT_MS = 4000;
@@ -23,35 +25,40 @@ window.arboleda = {
   answer: acts.answer,
 };
 
-const kept = {
-  get: (name) => sessionStorage.getItem(`arboleda-${name}`),
-  set: (name, what) => sessionStorage.setItem(`arboleda-${name}`, what),
-};
+const words = window.arboledaPage.words;
+const parts = () => all("[data-part]").map((part) => part.dataset.part);
+const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
 
-function choosePart(name) {
-  const known = all("[data-part]").map((part) => part.dataset.part);
-  const chosen = known.includes(name) ? name : known[0];
-  all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
-  all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
-  kept.set("part", chosen);
+function arrive({ tab, cell, lang }) {
+  if (!parts().includes(tab)) return place.settle({ tab: parts()[0] });
+  if (cell && !cells().includes(cell)) return acts.answer(words.no_cell.replace("{cell}", cell), false), place.settle({ cell: null });
+  if (lang !== window.arboledaPage.language) return place.settle({ lang: window.arboledaPage.language });
+  question.dismiss(); // it was asked elsewhere
+  showPart(tab);
+  showCell(cell ?? cells()[0]);
+  if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "", cell ? "cell" : "plant");
+  form.offer(cell);
   tree.refit();
 }
 
-function chooseCell(name) {
-  const names = all("[data-choose]").map((card) => card.dataset.choose);
-  const chosen = names.includes(name) ? name : names[0];
+function showPart(chosen) {
+  all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
+  all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
+}
+
+function showCell(chosen) {
   all(".cell").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
   all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
-  kept.set("cell", chosen);
-  tree.refit();
 }
 
 let scope = { of: "", kind: "plant" };
 
+const cellOf = (of) => all("[data-robots]").find((box) => box.dataset.robots === of || box.querySelector(`[data-scope="${CSS.escape(of)}"]`))?.dataset.robots ?? "";
+
 function chooseScope(of, kind) {
   scope = { of, kind };
   acts.setScope(of);
-  const cell = all("[data-robots]").find((box) => box.dataset.robots === of || box.querySelector(`[data-scope="${CSS.escape(of)}"]`))?.dataset.robots ?? "";
+  const cell = cellOf(of);
   all("[data-scope]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.scope === of || (each.dataset.kind === "cell" && each.dataset.scope === cell)));
   all("[data-robots]").forEach((box) => (box.hidden = box.dataset.robots !== cell));
   all("[data-advice]").forEach((line) => (line.hidden = line.dataset.advice !== cell));
@@ -99,7 +106,7 @@ function look(how) {
   document.documentElement.dataset.look = how;
   const button = document.querySelector(".look");
   button.dataset.look = how;
-  button.title = `${window.arboledaPage.words.look}: ${window.arboledaPage.words[`look_${how}`]}`;
+  button.title = `${words.look}: ${words[`look_${how}`]}`;
 }
 
 function nextLook() {
@@ -111,12 +118,11 @@ function nextLook() {
 function clicked(event) {
   const button = event.target.closest("button");
   if (!button) return;
-  const { tab, choose, scope: of, kind, filter, value: cell, language } = button.dataset;
-  if (tab) choosePart(tab);
-  if (choose) chooseCell(choose);
-  if (of !== undefined) chooseScope(of, kind);
+  const { choose, twinCell, scope: of, kind, filter, value: cell, language } = button.dataset;
+  if (choose ?? twinCell) place.go({ cell: choose ?? twinCell });
+  if (of !== undefined) chooseScope(of, kind), place.go({ cell: cellOf(of) || null });
   if (filter) filterBy(filter, cell);
-  if (language) cookie("language", language), location.reload();
+  if (language) cookie("language", language), location.assign(place.address({ lang: language }));
   if (button.classList.contains("look")) nextLook();
 }
 
@@ -143,9 +149,9 @@ function begin() {
   onChange(suggest);
   onChange(alarm);
   document.addEventListener("click", clicked);
-  choosePart(location.hash.slice(1) || kept.get("part"));
-  chooseCell(kept.get("cell"));
   chooseScope("", "plant");
+  place.start(arrive);
+  place.settle({});
   setInterval(watch, 1000);
 }
 

@@ -1,5 +1,6 @@
 // The twin on the page: asks for frames while somebody looks, and has them drawn.
 
+import { here } from "./place.js";
 import { Plant } from "./twin_plant.js";
 import { FlatView } from "./twin_flat.js";
 import { SolidView } from "./twin_solid.js";
@@ -60,6 +61,7 @@ async function make() {
   const [{ THREE, OrbitControls }, scene] = await Promise.all([import("nicegui-scene"), fetchScene()]);
   const made = new Plant(THREE, scene);
   show(made, solid(THREE, OrbitControls, made) ?? flat(THREE, made));
+  if (here().cell) view.visit(here().cell);
 }
 
 async function fetchScene() {

@@ -1,0 +1,44 @@
+// Where on the page somebody is, as its address says it: part, cell, language. Links and the browser's back lead there.
+
+const KEYS = ["tab", "cell", "lang"];
+let arrived = () => {};
+
+export function start(arrive) {
+  arrived = () => {
+    for (const link of document.querySelectorAll("a[data-go]")) link.href = address(JSON.parse(link.dataset.go));
+    arrive(here());
+  };
+  window.addEventListener("popstate", () => arrived());
+  document.addEventListener("click", followed);
+}
+
+export function here() {
+  const asked = new URLSearchParams(location.search);
+  return Object.fromEntries(KEYS.map((key) => [key, asked.get(key) || null]));
+}
+
+// The address of another place: what is not named stays as it is here, null leaves it out.
+export function address(changes) {
+  const there = { ...here(), ...changes };
+  return `/?${new URLSearchParams(KEYS.filter((key) => there[key] !== null).map((key) => [key, there[key]]))}`;
+}
+
+export function go(changes) {
+  const to = address(changes);
+  if (to !== location.pathname + location.search) history.pushState(null, "", to);
+  arrived();
+}
+
+// Say where this is more exactly, without a step that "back" would undo.
+export function settle(changes) {
+  history.replaceState(null, "", address(changes));
+  arrived();
+}
+
+// What a browser does with another button or key held (a new tab, say) stays the browser's.
+function followed(event) {
+  const link = event.target.closest?.("a[data-go]");
+  if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  event.preventDefault();
+  go(JSON.parse(link.dataset.go));
+}
