@@ -27,6 +27,7 @@ from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
     Home,
+    Interference,
     Journal,
     MoveJoints,
     OperatorAnswer,
@@ -330,11 +331,27 @@ def test_a_robot_on_ros_is_heard_on_its_own_topics(links):
     }
 
 
+def test_commands_of_others_to_a_robot_on_ros_are_told_with_their_sender(links):
+    side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.STATE))
+    own = [MOVE, MOVE, SetEffector(id="7-3", robot="ra1", on=True), HALT, DRIVE]
+    for command in own:
+        side.port.send(command)
+    stranger = Stranger(links(), "teach")
+    stranger.say("/ra1/joint_goals_q", Float32MultiArray(data=list(MOVE.q)))
+    stranger.say("/ra1/effector_cmd", UInt8(data=1))
+    eventually(lambda: len(side.events) == 2)
+    assert all(isinstance(event, Interference) and event.robot == "ra1" for event in side.events)
+    assert [event.sentence for event in side.events] == [
+        "ra1: joint_goals_q of /teach was sent to it",
+        "ra1: effector_cmd 1 of /teach was sent to it",
+    ]
+
+
 def test_a_person_answers_by_hand_at_evidence_state(links):
     side = Side(links(), "orchestrator", shipped("sis_a", link=Link.ROS, evidence=Evidence.STATE))
     person = Stranger(links(), "person")
     goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
-    eventually(lambda: side.port._commands["ra1", MoveJoints].get_subscription_count())
+    eventually(lambda: side.port._commands["ra1", MoveJoints].get_subscription_count() == 2)
     side.port.send(MOVE)
     eventually(lambda: goals)
     for code in (1, 7, 0):

@@ -11,16 +11,19 @@ from typing import TYPE_CHECKING, Any
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
 
 from arboleda.app import view_text
+from arboleda.app.seldom import Seldom
 from arboleda.core import view
 from arboleda.core.errors import ArboledaError, PayloadError
 from arboleda.core.messages import (
     Command,
     Event,
     Heartbeat,
+    Interference,
     Notice,
     OperatorAnswer,
     Report,
@@ -29,12 +32,15 @@ from arboleda.core.messages import (
     TaskRequest,
 )
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.wire import rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
 
 from . import convert, qos, statuses
 from .asking import Asker
 from .diagnostics import Diagnostic, Diagnostics
+from .overhear import OwnTopic
 from .port import NAMED, Port
+from .senders import Senders
 from .verbs import VerbServices
 
 if TYPE_CHECKING:  # it is there only where arboleda_interfaces is built
@@ -68,6 +74,14 @@ class OrchestratorPort(Port):
         self._commands = {
             (robot.name, kind): speak(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}")
             for robot in model.robots.values()
+            for kind in convert.commands_of(robot)
+        }
+        self._senders = Senders(node, clock)
+        self._others = Seldom()  # a stream of goals is one piece of news
+        self._own = {
+            (robot.name, kind): OwnTopic()
+            for robot in model.robots.values()
+            if robot.link is Link.ROS
             for kind in convert.commands_of(robot)
         }
         self._heartbeat = speak(UInt32, HEARTBEAT)
@@ -163,15 +177,25 @@ class OrchestratorPort(Port):
         if labelled is not None and not bridges and not listeners:
             raise NoBridge(f"no bridge listens to {labelled.topic_name}")
         if labelled is None or not bridges:
-            plain.publish(convert.command_message(command))
+            self._speak_plainly(command, plain)
             return
         copied = listeners > bridges  # a bridge listens to both
         labelled.publish(convert.labelled_message(command, copied=copied))
         if copied:
             plain.publish(convert.command_message(command, copy=True))
 
+    def _speak_plainly(self, command: Command, plain: Publisher) -> None:
+        message = convert.command_message(command)
+        own = self._own.get((command.robot, type(command)))
+        if own is not None:
+            own.say(message)
+        plain.publish(message)
+
     def _hear(self, robot: Robot) -> None:
-        """Subscribe to what a robot's link and evidence let it say."""
+        """Subscribe to what a robot's link and evidence let it say, and to what others say to it."""
+        for kind in convert.commands_of(robot) if robot.link is Link.ROS else ():
+            overhear = partial(self._on_command, robot, kind)
+            self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", overhear, qos.BEST_EFFORT)
         if isinstance(robot, Arm):
             self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS:
@@ -193,6 +217,16 @@ class OrchestratorPort(Port):
 
     def _reporting(self, read: Callable[[float, Any, Any], Report], robot: Robot) -> Callable[[Any], None]:
         return lambda message: self._on_event(read(self._clock(), robot, message))
+
+    def _on_command(self, robot: Robot, kind: type[Command], message: Any) -> None:
+        """A command on a topic of a robot that hears everybody: the plant's own, or somebody else's."""
+        if self._own[robot.name, kind].is_own(message):
+            return
+        command = convert.command(kind, robot, message)
+        sentence = rejections.overheard(command, self._senders.of(f"{robot.name}/{PLAIN[kind]}"))
+        if self._others.is_due(sentence, self._clock()):
+            self._log.warning(sentence)
+        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=sentence))
 
     def _on_request(self, message: String) -> None:
         self._on_event(TaskRequest(at=self._clock(), text=message.data))

@@ -11,6 +11,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
+    Interference,
     MoveJoints,
     OperatorRequest,
     Reason,
@@ -134,6 +135,15 @@ FAULTS: dict[str, tuple[Evidence, list[dict[str, Any]], Reason]] = {
     "state: link lost": (Evidence.STATE, [{"state": MotionState.NO_LINK}], Reason.LINK_LOST),
     "state: fault": (Evidence.STATE, [{"state": MotionState.FAULT}], Reason.DEVICE_FAULT),
 }
+
+
+def test_a_failure_names_what_somebody_else_sent_meanwhile(hand: Any) -> None:
+    plant, move = driven_to_the_arm(hand, Evidence.IDS)
+    sent = "ra1: joint_goals_q of /teach was sent to it"
+    plant.plant.step(plant.now, [Interference(at=plant.now, robot="ra1", sentence=sent)])
+    plant.tell("ra1", state=STILL, q=SHORT, accepted=move.id, done=move.id)
+    plant.wait(20)
+    assert last_change(plant).sentence.endswith(f"; {sent}")
 
 
 @pytest.mark.parametrize(("evidence", "reports", "reason"), FAULTS.values(), ids=FAULTS)

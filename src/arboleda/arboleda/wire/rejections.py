@@ -64,6 +64,11 @@ def obeyed(robot: Robot, command: Command, sender: str) -> str:
     return f"{robot.name}: {shown(command)} of {sender or SOMEBODY} was obeyed"
 
 
+def overheard(command: Command, sender: str) -> str:
+    """The sentence for a command of somebody else to a robot that hears everybody."""
+    return f"{command.robot}: {shown(command)} of {sender or SOMEBODY} was sent to it"
+
+
 def taken(robot: Robot, epoch: int, seq: int) -> str:
     """The sentence for a command that the board has from nobody but another MQTT client."""
     return f"{robot.name}: its board took a command of another MQTT client (epoca {epoch}, seq {seq})"

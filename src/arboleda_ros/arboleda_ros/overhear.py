@@ -1,0 +1,43 @@
+"""Commands of others to robots that speak ROS 2 themselves, with no bridge between: the plant listens."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import Any
+
+from std_msgs.msg import Float32MultiArray, UInt8
+
+Said = tuple[tuple[float, ...], tuple[str, ...]]
+KEPT = 20  # own messages that may be under way to our own ear; one that got lost must not be waited for
+
+
+class OwnTopic:
+    """A topic on which the plant speaks and listens: tells its own messages from those of others.
+
+    rclpy does not say whose a message is. What is heard as often as it was said is the plant's own.
+    """
+
+    def __init__(self) -> None:
+        self._said: deque[Said] = deque(maxlen=KEPT)
+        self._lock = threading.Lock()  # the plant speaks on its own thread, and hears on that of the link
+
+    def say(self, message: Float32MultiArray | UInt8) -> None:
+        """To be called before the message is published."""
+        with self._lock:
+            self._said.append(_content(message))
+
+    def is_own(self, message: Any) -> bool:
+        """Whether a heard message is one that was said; each is answered for once."""
+        with self._lock:
+            try:
+                self._said.remove(_content(message))
+            except ValueError:
+                return False
+            return True
+
+
+def _content(message: Float32MultiArray | UInt8) -> Said:
+    if isinstance(message, UInt8):
+        return (message.data,), ()
+    return tuple(message.data), tuple(dim.label for dim in message.layout.dim)
