@@ -54,10 +54,11 @@ firmware-robot:  ## write firmware/core/robot_scara.h anew from the robot's YAML
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
 	@scripts/install
 
-lint:  ## check style, format and the import rules
+lint:  ## check style, format, types and the import rules
 	@scripts/install test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+	$(BIN)/mypy
 	@PYTHONPATH=src/arboleda_bringup $(BIN)/lint-imports # pip does not install that one
 
 diagrams:  ## write docs/reference/states.md anew from the state tables of the core

@@ -105,5 +105,6 @@ def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:
     if isinstance(belief.robot, Arm):
         q = plant.dispatcher.reached.get(belief.robot.name)
         return {"q": list(q)} if q is not None else None
-    done = last is not None and last.state is State.DONE
-    return {"node": last.command.nodes[-1]} if done and isinstance(last.command, FollowPath) else None
+    if last is None or last.state is not State.DONE or not isinstance(last.command, FollowPath):
+        return None
+    return {"node": last.command.nodes[-1]}

@@ -44,7 +44,8 @@ def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
     A cell, its robots and its open tasks are of one moment. No row is older than `at`; zones, acts and tasks
     that have ended are those of the end.
     """
-    at, cells, robots, open_tasks = plant.now, [], [], {}
+    at, cells, robots = plant.now, [], []
+    open_tasks: dict[str, dict[str, Any]] = {}
     for cell in plant.cells.values():
         cells.append(_cell(plant, cell))
         robots += [_robot(plant, plant.dispatcher.beliefs[robot.name]) for robot in cell.cell.robots]

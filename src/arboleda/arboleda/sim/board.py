@@ -82,7 +82,7 @@ class Board:
         due_us = self._uplink.due_us
         if self.body.next_change_us is not None:
             due_us = min(due_us, self._next_motion_us())
-        return None if due_us == math.inf else due_us
+        return None if due_us == math.inf else int(due_us)
 
     def take(self) -> list[Publication]:
         """What the board published since the last call, in order."""

@@ -181,7 +181,7 @@ class Stepper:
 
 
 def _binary32(value: float) -> float:
-    return _load(_store(value))[0]
+    return float(_load(_store(value))[0])
 
 
 def _magnitude(value: float) -> float:

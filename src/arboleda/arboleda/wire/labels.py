@@ -104,7 +104,7 @@ class Labels:
         if heard == self._heard_refusal:
             return None
         self._heard_refusal = heard
-        if said.refusal is None or said.refused_seq is None or not self._concerns_us(said):
+        if said.refusal is None or said.refused_seq is None or not self._concerns_us(said, said.refused_seq):
             return None
         issued = self._issued[said.refused_seq]
         self.refuse(issued.command.id, said.refusal)
@@ -114,15 +114,15 @@ class Labels:
             self._raise_above(said.ack_epoch)
         return said.refused_seq
 
-    def _concerns_us(self, said: Telemetry) -> bool:
-        if said.refused_seq not in self._issued:
+    def _concerns_us(self, said: Telemetry, refused_seq: int) -> bool:
+        if refused_seq not in self._issued:
             return False
         if said.refusal != "viejo":
             return said.ack_epoch == self.epoch
         if said.ack_epoch != self.epoch:
             return said.ack_epoch is not None and said.ack_epoch > self.epoch
         # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way
-        return said.ack is not None and said.refused_seq < said.ack
+        return said.ack is not None and refused_seq < said.ack
 
     def _raise_above(self, epoch: int) -> None:
         self.epoch = min(epoch + 1, UINT32)
