@@ -220,7 +220,7 @@ def test_what_is_refused_says_why(open_page: Open) -> None:
     page.wait_for_selector(".verb[data-verb=reset] button:disabled")
     said = page.inner_text(".verb[data-verb=reset] p")
     assert said == "sis_a is idle; this needs a cell that is stopped"
-    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; this needs a cell that is execute"
+    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; this needs a cell that is in execute"
 
 
 def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: Open) -> None:

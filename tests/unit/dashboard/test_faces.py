@@ -49,7 +49,7 @@ def test_a_stop_goes_from_stopping_to_stopped(told: Callable[..., Any]) -> None:
     sentence, state = rig.face()["text/stop"]
     assert state == "stopping" and "ra1" in sentence
     rig.wait(3.0)
-    assert rig.face()["text/stop"] == ["Stopped: all 6 robots latched and still", "stopped"]
+    assert rig.face()["text/stop"] == ["All 6 robots latched and still", "stopped"]
 
 
 def test_only_what_changed_is_told() -> None:
@@ -104,7 +104,7 @@ def test_a_failed_task_says_why_and_offers_to_be_sent_again(told: Callable[..., 
     rig.wait(1.0)
     row = rig.face()[f"row/tasks/{task}"]
     assert row["state"] == "failed"
-    assert "Stopped: sis_a was stopped by the operator" in row["texts"]
+    assert "Stop (software): sis_a was stopped by the operator" in row["texts"]
     assert [(act["act"], act["of"]) for act in row["acts"]] == [("submit", "sis_a 0B 7")]
 
 
@@ -112,7 +112,7 @@ def test_the_panel_suggests_what_comes_next_and_says_what_would_be_refused(told:
     rig = told()
     assert rig.face()["text/suggested.plant"][0] == ""
     refused = json.loads(rig.face("es")["text/refused.sis_a"][0])
-    assert refused["reset"] == "sis_a está inactiva; para esto la celda debe estar liberada"
+    assert refused["reset"] == "sis_a está inactiva; para esto la celda debe estar parada"
     assert "home" not in refused and "home_by_hand" in json.loads(rig.face()["text/refused.ra1"][0])
     for verb, following in ((Verb.STOP, "clear"), (Verb.CLEAR, "reset"), (Verb.RESET, "resume")):
         rig.operate(verb, "sis_a")
@@ -163,9 +163,9 @@ def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None
     face = rig.face()
     (hand,) = ways(face)
     assert (hand["state"], hand["texts"], hand["acts"]) == ("hand", ["Bring ra1 back", "ra1 is offline"], [])
-    assert face["text/sis_a.state"] == ["blocked", "blocked"]
+    assert face["text/sis_a.state"] == ["idle, blocked", "blocked"]
     assert face["text/sis_a.trouble"] == ["ra1 is offline; bring ra1 back", "blocked"]
-    assert face["text/title"] == ["⚠ sis_a blocked - arboleda", "trouble"]
+    assert face["text/title"] == ["⚠ sis_a: idle, blocked - arboleda", "trouble"]
     assert face["text/sum"][1] == "blocked"
 
 

@@ -81,7 +81,7 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
         ("rm_sis_a is still homing", "rm_sis_a sigue buscando la referencia"),
         (
             "zone centre is held by ra1, which still reports; only a quarantined zone can be overridden",
-            "la zona centre está ocupada por ra1, que aún informa; solo se anula una zona en cuarentena",
+            "la zona centre está ocupada por ra1, que aún informa; solo se libera una zona en cuarentena",
         ),
         (
             "'0D' is not a path of sis_a; there are 0A, 0B; did you mean 0A?",

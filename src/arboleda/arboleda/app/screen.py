@@ -18,6 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.core import view
+from arboleda.core.cell_states import CellState
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.core.outside import plain
@@ -99,7 +100,7 @@ def logged(line: logging.LogRecord) -> Text:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """A row per cell: task, step, arm joints, mobile node, time; then the zones and what is in the way."""
+    """A row per cell: state, task, step, arm, mobile, time; then the zones and what is in the way."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     drawn = Table(
         title=_words(f"plant {snapshot['plant']}", "italic"),
@@ -107,7 +108,7 @@ def table(snapshot: dict[str, Any]) -> Group:
         box=SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
     )
-    for heading in ("cell", "task", "step", "arm, effector", "mobile", "elapsed"):
+    for heading in ("cell", "state", "task", "step", "arm, effector", "mobile", "time"):
         drawn.add_column(heading, no_wrap=True)
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
@@ -145,8 +146,9 @@ def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> l
     task = cell["task"]
     standing = view.standing(cell)
     style = {"idle": "", "execute": "cyan", "paused": "yellow", "blocked": "yellow"}.get(standing, "red")
-    queued = f" +{len(cell['queue'])}" if cell["queue"] else ""
-    words = (cell["name"], (task["text"] if task else standing) + queued, cell["step"] or "")
+    tasks = [task["text"].removeprefix(f"{cell['name']} ")] if task else []
+    tasks += [f"+{len(cell['queue'])}"] if cell["queue"] else []
+    words = (cell["name"], view.standing_said(cell), " ".join(tasks), cell["step"] or "")
     return [
         *(_words(word, style) for word in words),
         _of(arm, f"{joints(arm)}, {effector(arm)}"),
@@ -161,10 +163,17 @@ def _of(robot: dict[str, Any], said: str) -> Text:
 
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
-    held = [why for cell in snapshot["cells"] if (why := cell["held_by"] or cell["not_ready"])]
+    held = [why for cell in snapshot["cells"] if (why := _why(cell))]
     latched = [each["name"] for each in snapshot["robots"] if each.get("latched")]
     stopped = [f"stop (software) latched: {', '.join(latched)}; clear, then reset"] if latched else []
     return held + stopped + _obstacles(snapshot)
+
+
+def _why(cell: dict[str, Any]) -> str | None:
+    """What keeps a cell from working, and what to do; a latch is told of all robots together."""
+    if cell["state"] == CellState.STOPPED and cell["advice"]:
+        return f"{cell['name']} is {cell['state']}; {cell['advice'][0]['said']}"
+    return cell["held_by"] or cell["not_ready"]
 
 
 def _obstacles(snapshot: dict[str, Any]) -> list[str]:

@@ -72,7 +72,7 @@ class CellRun:
         if self.state is CellState.IDLE:
             return self.not_ready
         why = f" ({self.trouble.sentence})" if self.trouble else ""
-        return self.held_by or f"{name} is {self.state.value}{why}; {self._next()}"
+        return self.held_by or f"{name} is {self.state.said}{why}; {self._next()}"
 
     @property
     def not_ready(self) -> str | None:

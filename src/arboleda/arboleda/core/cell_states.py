@@ -11,7 +11,7 @@ from .errors import IllegalTransition
 
 
 class CellState(str, Enum):
-    """Where a cell is."""
+    """Where a cell is; the value is its one word on every screen and in every document."""
 
     IDLE = "idle"
     EXECUTE = "execute"
@@ -22,6 +22,11 @@ class CellState(str, Enum):
     CLEARING = "clearing"
     STOPPED = "stopped"
     RESETTING = "resetting"
+
+    @property
+    def said(self) -> str:
+        """The word as it stands in a sentence, after "the cell is"."""
+        return f"in {self.value}" if self is CellState.EXECUTE else self.value
 
 
 class Cause(str, Enum):
@@ -75,5 +80,5 @@ def after(state: CellState, cause: Cause, cell: str) -> CellState:
     """The next state; IllegalTransition where the table has no row."""
     found = TABLE.get((state, cause))
     if found is None:
-        raise IllegalTransition(f"{cell} is {state.value}: no {cause.value} there")
+        raise IllegalTransition(f"{cell} is {state.said}: no {cause.value} there")
     return found

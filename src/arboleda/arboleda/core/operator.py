@@ -224,7 +224,7 @@ class Operator:
 
     def _not_clearable(self, cell: CellRun, robots: set[str]) -> str | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
-            return f"{cell.cell.name} is {cell.state.value}; only a stopped (aborted) cell can be cleared"
+            return f"{cell.cell.name} is {cell.state.said}; only an aborted cell can be cleared"
         mine = [robot.name for robot in cell.cell.robots if robot.name in robots]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
         moving = [belief.robot.name for belief in beliefs if belief.online and not belief.still]
@@ -247,16 +247,14 @@ class Operator:
         if cell.state is CellState.IDLE:
             return None if cell.queue_paused else f"{cell.cell.name} is idle and its queue runs"
         if cell.state is not CellState.HELD:
-            return (
-                f"{cell.cell.name} is {cell.state.value}; only a held cell or a paused queue can be resumed"
-            )
+            return f"{cell.cell.name} is {cell.state.said}; only a held cell or a paused queue can be resumed"
         if cell.task is None or cell.trouble is not None or cell.stranded:
             return cell.held_by
         return None
 
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> str | None:
         if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
-            return f"{cell.cell.name} is {cell.state.value}; hold or stop it first"
+            return f"{cell.cell.name} is {cell.state.said}; hold or stop it first"
         if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
             return f"{cell.cell.mobile.name} has no effector"
         obstacle = self._dispatcher.obstacle_to_opening(cell.cell.arm.name)
@@ -282,8 +280,8 @@ def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], str | Non
     def check(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
         if cell.state in states:
             return None
-        allowed = " or ".join(state.value for state in states)
-        return f"{cell.cell.name} is {cell.state.value}; this needs a cell that is {allowed}"
+        allowed = " or ".join(state.said for state in states)
+        return f"{cell.cell.name} is {cell.state.said}; this needs a cell that is {allowed}"
 
     return check
 

@@ -210,6 +210,12 @@ def standing(cell: dict[str, Any]) -> str:
     return "paused" if only_paused else "blocked"
 
 
+def standing_said(cell: dict[str, Any]) -> str:
+    """The word of a cell's state, and behind it why one that is idle cannot work: `idle, blocked`."""
+    state, stands = str(cell["state"]), standing(cell)
+    return state if stands == state else f"{state}, {stands}"
+
+
 def _task(task: Task, now: float) -> dict[str, Any]:
     started = task.started_at
     ended = task.ended_at if task.ended_at is not None else now

@@ -65,6 +65,7 @@ def _json(content: Schema) -> Schema:
 
 def _shape(shape: Schema) -> str:
     about = f"<p>{escape(shape['description'])}</p>" if "description" in shape else ""
+    about += f"<p>One of: {escape(', '.join(shape['enum']))}.</p>" if "enum" in shape else ""
     rows = "".join(_field(name, field) for name, field in shape.get("properties", {}).items())
     return f"{about}<table>{rows}</table>"
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Verb
 
 
@@ -68,7 +69,7 @@ class Advice(_Told):
 
 class Cell(_Told):
     name: str
-    state: str
+    state: CellState = Field(description="By PackML's word, as everywhere; an idle one may have `not_ready`.")
     arm: str
     mobile: str
     task: Task | None

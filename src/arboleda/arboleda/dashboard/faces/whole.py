@@ -47,4 +47,4 @@ def _title(moment: Moment) -> list[str]:
     plant = moment.snapshot["plant"]
     if not bad:
         return [plant, "well"]
-    return [f"⚠ {', '.join(f'{name} {word}' for name, word in bad.items())} - {plant}", "trouble"]
+    return [f"⚠ {'; '.join(f'{name}: {word}' for name, word in bad.items())} - {plant}", "trouble"]

@@ -1,0 +1,112 @@
+"""A state of a cell has one word in English and one in Spanish, on every screen and in the docs."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from arboleda.adapters.web.schema import Cell
+from arboleda.app.screen import table
+from arboleda.core import view
+from arboleda.core.cell_states import CellState
+from arboleda.dashboard.wording import LANGUAGES, tree_of, words
+from arboleda.testing import Rig, shipped
+
+ROOT = Path(__file__).parents[2]
+STANDINGS = ("blocked", "paused")
+# A sentence that says the state of a cell, "{} is held ({}); {}"; a robot is "stopped (latched)".
+SAYS_STATE = re.compile(rf"\{{\}} is ({'|'.join(state.value for state in CellState)})\b(?! \(latched\))")
+OTHER_WORDS = (
+    "bloqueada",
+    "liberada",
+    "liberándose",
+    "parándose",
+    "detenida",
+    "cleared",
+    "halting",
+    "stopping",
+)
+
+
+def in_docs() -> dict[str, str]:
+    """The Spanish word of each English one, as the table of the operators' page has them."""
+    page = (ROOT / "docs/how-to/operate.md").read_text(encoding="utf-8")
+    section = page.partition("## The words for a cell\n")[2].partition("\n## ")[0]
+    rows: list[tuple[str, str]] = re.findall(r"^\| `(\w+)` \| ([^|]+) \|", section, re.MULTILINE)
+    assert len(rows) == len(dict(rows)), "a word stands there twice"
+    return dict(rows)
+
+
+def on_page(language: str) -> dict[str, str]:
+    return {state.value: words(language)(f"cell_state.{state.value}") for state in CellState}
+
+
+def test_the_docs_have_each_word_once() -> None:
+    assert in_docs() == on_page("es")
+
+
+def test_the_page_says_the_words_of_the_api() -> None:
+    assert on_page("en") == {state.value: state.value for state in CellState}
+    assert Cell.model_fields["state"].annotation is CellState
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_two_states_share_a_word(language: str) -> None:
+    assert len(set(on_page(language).values())) == len(CellState)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_an_idle_cell_that_cannot_work_is_called_idle(language: str) -> None:
+    said = words(language)
+    assert all(said(f"cell_state.{each}").startswith(f"{said('cell_state.idle')}, ") for each in STANDINGS)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("state", CellState)
+def test_what_stands_beside_a_state_begins_with_its_word_or_the_cell(state: CellState, language: str) -> None:
+    told = tree_of(language)["next"].get(state.value)
+    if told is None:
+        assert state in (CellState.IDLE, CellState.EXECUTE)
+        return
+    word = on_page(language)[state.value]
+    assert told.lower().startswith(f"{word}: ")
+
+
+@pytest.mark.parametrize("state", CellState)
+def test_the_plants_sentences_have_the_word_in_spanish(state: CellState) -> None:
+    assert words("es").say(state.said) == on_page("es")[state.value]
+
+
+def test_a_sentence_about_a_state_has_its_word_and_no_other_in_spanish() -> None:
+    spanish, found = on_page("es"), set()
+    for plant, ours in tree_of("es")["phrases"].items():
+        if state := SAYS_STATE.match(plant):
+            found.add(state[1])
+            said = {word for word in (*spanish.values(), *OTHER_WORDS) if re.search(rf"\b{word}\b", ours)}
+            assert said == {spanish[state[1]]}, plant
+    assert {"held", "aborted", "stopped", "clearing"} <= found
+
+
+def test_the_terminal_says_the_words_of_the_api() -> None:
+    snapshot = Rig(shipped()).snapshot()
+    for state in CellState:
+        assert (
+            drawn_state({**snapshot["cells"][0], "state": state.value, "not_ready": None}, snapshot) == state
+        )
+    blocked = {**snapshot["cells"][0], "not_ready": "ra1 is offline", "advice": []}
+    assert drawn_state(blocked, snapshot) == f"idle, {view.standing(blocked)}" == "idle, blocked"
+
+
+def drawn_state(cell: dict[str, Any], snapshot: dict[str, Any]) -> str:
+    """What stands under `state` in the row of the first cell."""
+    console = Console(file=io.StringIO(), width=120)
+    console.print(table({**snapshot, "cells": [cell, *snapshot["cells"][1:]]}))
+    lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    heading = next(line for line in lines if line.split()[:2] == ["cell", "state"])
+    row = next(line for line in lines if line.split()[:1] == [cell["name"]])
+    return str(row[heading.index("state") : heading.index("task")].strip())
