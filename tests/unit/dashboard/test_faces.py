@@ -83,7 +83,7 @@ def test_the_steps_are_told_in_spanish(told: Callable[..., Any]) -> None:
     rig = told()
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "move to pick-up")
-    assert rig.face("es")["text/sis_a.step"][0] == "mover a recogida"
+    assert rig.face("es")["text/sis_a.step"][0] == "ir a la recogida"
 
 
 def test_what_runs_stands_before_what_waits_before_what_ended() -> None:

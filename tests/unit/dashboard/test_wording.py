@@ -67,8 +67,8 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
 @pytest.mark.parametrize(
     ("plant", "spanish"),
     [
-        ("move to station 7", "mover a estación 7"),
-        ("recovery: move to home", "recuperación: mover a reposo"),
+        ("move to station 7", "ir a la estación 7"),
+        ("recovery: move to home", "recuperación: ir a reposo"),
         ("ra1 is offline", "ra1 está sin conexión"),
         (
             "rm_sis_a: no telemetry for 1.5 s while driving path 0B",
@@ -76,7 +76,7 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
         ),
         (
             "ra1: stopped before its target while moving to station 3",
-            "ra1: se paró antes de su destino mientras estaba moviendo a estación 3",
+            "ra1: se detuvo antes de su destino mientras estaba yendo a la estación 3",
         ),
         ("rm_sis_a is still homing", "rm_sis_a sigue buscando la referencia"),
         (
@@ -109,6 +109,26 @@ def test_a_sentence_that_nobody_knows_stays_as_it_is() -> None:
 
 def test_an_unknown_language_is_english() -> None:
     assert words("xx").language == "en"
+
+
+def spanish() -> dict[str, str]:
+    """Every Spanish text by its key, or by the sentence of the plant that it stands for."""
+    return keys("es") | tree_of("es")["phrases"]
+
+
+def test_spanish_frees_zones_and_nothing_else() -> None:
+    """ "Liberar" is the override of a zone; a latch is "desenclavar", a part "soltar"."""
+    frees = {key for key, text in spanish().items() if "liber" in text.lower()}
+    assert frees == {key for key in spanish() if "overrid" in key and key != "js.override_seen"}
+
+
+def test_nothing_about_the_stop_can_be_read_as_for_or_as_stops() -> None:
+    """In Spanish "para" is both: "Para todos los robots"."""
+    ambiguous = re.compile(r"\bpara\b", re.IGNORECASE)
+    about = {key: text for key, text in spanish().items() if re.search(r"\bstop|abort", key)}
+    assert len(about) > 20
+    assert [text for text in about.values() if ambiguous.search(text)] == []
+    assert [text for text in spanish().values() if ambiguous.match(text)] == []
 
 
 def test_a_missing_key_is_an_error() -> None:
