@@ -21,7 +21,11 @@ from .sources import MUTATED, PACKAGE, Sources
 
 TESTS = ("tests/unit", "tests/scenario")
 LEAST_CPU_S, TIMES = 20.0, 10.0  # what computes longer, and so much longer than it did, hangs
-ARGUMENTS = ("-q", "-x", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "--timeout=0")
+# pytest would load a package that has a plugin by itself, to rewrite its asserts, and so without the mutant
+ARGUMENTS = (
+    *("-q", "-x", "--no-header", "--assert=plain", "--timeout=0"),
+    *("-p", "no:cacheprovider", "-p", "no:xdist"),
+)
 
 
 def measure(root: Path, folders: Sequence[str], say: Say) -> dict[str, Any]:

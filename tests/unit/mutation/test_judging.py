@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,13 +50,7 @@ def test_a_mutant_is_imported_and_no_file_is_written(sources: Sources, tmp_path:
     mutant = next(each for each in sources.mutants if each.operator == "comparison")
 
     def look(say: object) -> dict[str, object]:
-        import sys
-
-        package = tmp_path / PACKAGE.parent
-        for name in [each for each in sys.modules if each.partition(".")[0] == "arboleda"]:
-            del sys.modules[name]
-        sys.path.insert(0, str(package))
-        sys.dont_write_bytecode = True
+        _import_from(tmp_path / PACKAGE.parent)
         plant(mutant, sources)
         from arboleda.core import sizes  # type: ignore[attr-defined]
 
@@ -64,6 +60,24 @@ def test_a_mutant_is_imported_and_no_file_is_written(sources: Sources, tmp_path:
     assert ended.said == {"fits": True, "shipped": False}
     written = {path.suffix for path in (tmp_path / PACKAGE).rglob("*") if path.is_file()}
     assert written == {".py"} and (tmp_path / PACKAGE / "core" / "sizes.py").read_text() == CORE
+
+
+def test_a_test_sees_the_mutant_though_pytest_wants_to_rewrite_its_module(
+    sources: Sources, tmp_path: Path
+) -> None:
+    (tmp_path / "conftest.py").write_text("import pytest\n\npytest.register_assert_rewrite('arboleda')\n")
+    (tmp_path / "test_sizes.py").write_text(
+        "from arboleda.core import sizes\n\ndef test_limit():\n    assert not sizes.fits(3)\n"
+    )
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --import-mode=importlib\n")
+    mutant = next(each for each in sources.mutants if each.operator == "comparison")
+
+    def judge(say: Any) -> dict[str, Any]:
+        _import_from(tmp_path / PACKAGE.parent)
+        return by_tests.judge(sources, mutant, [("test_sizes.py::test_limit", 0.1)], say)
+
+    ended = _in_a_child(judge, tmp_path)
+    assert ended.said == {"killed": True, "by": "test_sizes.py::test_limit", "ran": 1}
 
 
 def test_a_child_that_dies_says_by_what_and_where(tmp_path: Path) -> None:
@@ -93,6 +107,14 @@ def test_nothing_is_left_of_children_that_are_not_awaited(tmp_path: Path) -> Non
         next(iter(children.run([("waits", wait), ("ends", look)])))
     with pytest.raises(ProcessLookupError):
         os.kill(int(noted.read_text()), 0)
+
+
+def _import_from(folder: Path) -> None:
+    """Have this process import `arboleda` from there, anew, and write nothing."""
+    for name in [each for each in sys.modules if each.partition(".")[0] == "arboleda"]:
+        del sys.modules[name]
+    sys.path.insert(0, str(folder))
+    sys.dont_write_bytecode = True
 
 
 def _in_a_child(work: object, tmp_path: Path) -> object:
