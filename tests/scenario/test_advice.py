@@ -8,10 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.core.advice import Advice, Hand, sentence
-from arboleda.core.messages import OperatorRequest, Reason, Verb
+from arboleda.core.messages import OperatorRequest, Reason, Stop, StopMode, TaskState, Verb
 from arboleda.core.model import Evidence
+from arboleda.simulator.world import BRIDGE
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.testing.following import advised, follow, works
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 Stage = Callable[..., tuple[Rig, Witness]]
@@ -180,6 +182,37 @@ def test_what_somebody_else_stopped_is_stopped_and_cleared(stage: Stage) -> None
     rig.wait(2.0)
     assert cell(rig).not_ready == "ra1 is stopped (latched)"
     assert advised(rig, "sis_a") == ["stop sis_a", "clear sis_a", "reset sis_a"]
+
+
+def stopped_at_its_bridge(evidence: Evidence) -> Rig:
+    """A cell of robots without a stop; somebody stopped the arm, and its next move was refused for that."""
+    rig = Rig(shipped("sis_a", evidence=evidence, has_stop=False))
+    rig.wait(0.5)
+    stop = Stop(id="", robot="ra1", mode=StopMode.LATCH)
+    rig.broker.clients[BRIDGE].inbox.append(FromPlant(at=rig.now, message=stop, sender="/stranger"))
+    rig.wait(0.5)
+    rig.submit("sis_a palletizing")
+    assert rig.wait(60.0, until=lambda: cell(rig).task is None)
+    assert rig.changes[-1].sentence == "ra1: refused the command for moving to home (paro)"
+    return rig
+
+
+@levels
+def test_a_robot_that_cannot_say_that_it_is_stopped_is_stopped_and_cleared_too(evidence: Evidence) -> None:
+    rig = stopped_at_its_bridge(evidence)
+    assert rig.plant.dispatcher.obstacle("ra1").sentence == "ra1 is stopped (latched)"
+    assert advised(rig, "sis_a") == ["stop sis_a", "clear sis_a", "reset sis_a"]
+    assert follow(rig, "sis_a") == ["stop sis_a", "clear sis_a", "reset sis_a", "resume sis_a"]
+    rig.submit("sis_a palletizing")
+    assert rig.wait(60.0, until=lambda: rig.changes[-1].state is TaskState.DONE)
+
+
+def test_a_bridge_that_restarted_has_forgotten_the_stop_of_a_robot_without_one() -> None:
+    rig = stopped_at_its_bridge(Evidence.IDS)
+    rig.crash(BRIDGE)
+    rig.wait(2.0)
+    assert rig.plant.dispatcher.obstacle("ra1") is None
+    assert advised(rig, "sis_a")[0] == "retry sis_a"
 
 
 @pytest.mark.parametrize("trouble", [None, reboot], ids=["working", "waiting"])

@@ -300,6 +300,47 @@ FOUND = {
                 stations: {0: {deg: [10, 10], mm: 20}}
         """,
     ),
+    "a round trip was cut short by a node that was older than the end of the drive before it": Found(
+        seed=620,
+        seconds=40.0,
+        faults=(),
+        file="""
+            name: drawn_620
+            paths: {XZ: [5, 2, 1, 2, 5], ZX: [2, 1, 4, 1]}
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: ros, evidence: state}
+                mobile: {name: mobile_1, link: none, evidence: state, grid: {pitch_mm: 1}}
+                home: {deg: [40.7, 23.6], mm: 69.3}
+                pickup: {deg: [-31.6, -23.3], mm: 65.2}
+                stations:
+                  columns_q1_deg: [-49.1, 141.7, 145.7]
+                  rows_q2_deg: [-100.2, -66.9, 35.7]
+                  mm: 50.0
+        """,
+    ),
+    "a robot without a stop was tried again and again though its bridge kept it stopped": Found(
+        seed=63,
+        seconds=90.0,
+        faults=(
+            Fault(kind="foreign_command", at=47.38, target="arm_1", word="stop"),
+            Fault(kind="reorder", at=59.384, seconds=2.104, target="arm_1_board", amount=0.132, word="up"),
+        ),
+        file="""
+            name: drawn_63
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: state, mqtt: arm_1_board, stop: none}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [50.1, 31.5], mm: 74.8}
+                pickup: {deg: [-101.9, 34.0], mm: 25.6}
+                paths: {'44': [5, 8, 7, 4, 7, 6]}
+                stations:
+                  columns_q1_deg: [29.5, 72.3, 96.6]
+                  rows_q2_deg: [-2.7, -14.1, -29.1]
+                  mm: 32.4
+        """,
+    ),
 }
 
 

@@ -28,6 +28,7 @@ class Belief:
 
     `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
     `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
+    `barred`: its bridge has refused a command because of a stop, which a robot without one cannot tell.
     """
 
     def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
@@ -57,6 +58,7 @@ class Belief:
         self.piece_at = 0.0
         self.piece_since = 0.0
         self.displaced = False
+        self.barred = False
         self._rested_from = 0  # of two equal positions in a row the first, by number and by time
         self._rested_at = 0.0
         self.homed: bool | None = None
@@ -78,6 +80,8 @@ class Belief:
     def merge(self, report: Report) -> None:
         """Take over what the report says; what it leaves out stays."""
         self._count(report)
+        if report.epoch is not None and report.epoch != self.epoch:
+            self.barred = False  # a bridge that restarted knows of no stop
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
@@ -233,6 +237,8 @@ class Belief:
         if not self.answered:
             return self._unanswered()
         trouble = TROUBLES.get(self.state)
+        if self.barred and trouble is None:
+            return STOPPED
         return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
 
 

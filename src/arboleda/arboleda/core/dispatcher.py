@@ -147,6 +147,7 @@ class Dispatcher:
     def unlatch(self, robot: str) -> None:
         """Clear a robot's stop; it moves nothing, and the cell still needs its reset."""
         self.latched.discard(robot)
+        self.beliefs[robot].barred = False
         if not self.beliefs[robot].online:
             self.unheard_clears.add(robot)
         self.remember(Fact.LATCH, robot, CLEARED)
@@ -437,6 +438,8 @@ class Dispatcher:
     def _reject(self, robot: str, failure: Failure | None) -> None:
         count, _ = self.rejected.get(robot, (0, ""))
         self.rejected[robot] = (count + 1, failure.sentence if failure else "")
+        stopped = failure is not None and failure.reason is Reason.STOPPED
+        self.beliefs[robot].barred |= stopped and not self.model.robots[robot].has_stop
 
     def _done(self, command: Command) -> None:
         if isinstance(command, SetEffector):

@@ -61,25 +61,35 @@ class Act(Leaf):
     A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
     that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
     its last move.
-    `guard`, where given, is asked at every tick; what it returns fails the command at once. So does an
-    effector that opened unbidden while it held a part.
+    `anew`, where given, makes the command once it has left before. `guard`, where given, is asked at every
+    tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
+    a part.
     """
 
     def __init__(
-        self, name: str, context: Context, make: Make, doing: str, *, guard: Guard | None = None
+        self,
+        name: str,
+        context: Context,
+        make: Make,
+        doing: str,
+        *,
+        anew: Make | None = None,
+        guard: Guard | None = None,
     ) -> None:
         super().__init__(name)
         self.context = context
         self.make = make
+        self.anew = anew or make
         self.doing = doing
         self.guard = guard
         self.entry: Entry | None = None
+        self.left = False  # whether its robot may have got the command
         self.tries = 0
         self.again_at: float | None = None
         self.patient_until = 0.0
 
     def initialise(self) -> None:
-        self.tries = 0
+        self.tries, self.left = 0, False
         self.send()
 
     def send(self) -> None:
@@ -90,7 +100,8 @@ class Act(Leaf):
         self._give()
 
     def _give(self) -> None:
-        self.entry = self.context.send(self.make, self.doing)
+        self.entry = self.context.send(self.anew if self.left else self.make, self.doing)
+        self.left = self.left or self.entry.left
         if self.entry.too_early:
             self.context.wake_at(self.patient_until)
 

@@ -80,6 +80,7 @@ class Entry:
         self.deadline = deadline
         self.origin: tuple[float, ...] | int | None = None  # where its robot was believed to stand then
         self.settles_at: float | None = None
+        self.left = True  # False: its robot was not ready for it
         self.too_early = False  # it never left, because its robot was still moving
         self.state = State.SENT
         self.accepted_at: float | None = None
@@ -100,7 +101,7 @@ class Entry:
 
     def refuse(self, failure: Failure, *, too_early: bool = False) -> None:
         """End a command that never left: it must not be opened in a ledger."""
-        self.state, self.failure, self.too_early = State.FAILED, failure, too_early
+        self.state, self.failure, self.left, self.too_early = State.FAILED, failure, False, too_early
 
 
 class Ledger:

@@ -119,7 +119,7 @@ def _settle(context: Context) -> Behaviour:
 
 def _drive(context: Context, path: Path) -> list[Behaviour]:
     start = path.nodes[0]
-    follow = _follow(context, f"drive path {path.code}", path.nodes)
+    follow = _follow(context, f"drive path {path.code}", path.nodes, whole=True)
     known = context.node()
     if known is None or known == start:
         return [follow]
@@ -137,17 +137,24 @@ def _not_at_start(context: Context, path: Path) -> Failure | None:
     return Failure(reason=Reason.REJECTED, sentence=sentence)
 
 
-def _follow(context: Context, name: str, nodes: tuple[int, ...]) -> Behaviour:
-    """Drive over nodes; given anew after a hold or a failure, only over what remains of them."""
+def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool = False) -> Behaviour:
+    """Drive over nodes; given anew after a hold or a failure, only over what remains of them.
+
+    `whole`: given for the first time all of them, as the robot stands where they begin: the last node that
+    it told may be older than the end of its last drive, and a round trip comes by there once more.
+    """
     mobile = context.cell.mobile.name
     doing = name.replace("drive", "driving", 1)
 
-    def make(id: str) -> FollowPath:
+    def all_of_it(id: str) -> FollowPath:
+        return FollowPath(id=id, robot=mobile, nodes=nodes)
+
+    def rest_of_it(id: str) -> FollowPath:
         node = context.node()
         rest = nodes[nodes.index(node) :] if node in nodes else nodes
         return FollowPath(id=id, robot=mobile, nodes=rest)
 
-    return Act(name, context, make, doing)
+    return Act(name, context, all_of_it if whole else rest_of_it, doing, anew=rest_of_it)
 
 
 def _visit(context: Context, way: Sequence[Pose], visits: list[Visit]) -> list[Behaviour]:

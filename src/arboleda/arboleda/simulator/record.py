@@ -285,7 +285,7 @@ class Record:
             self.proofs.hear(report, known)
             if known.hear(report):
                 self.anew.append(report)
-                self.commands.hear(report)
+                self.commands.hear(report, known)
 
     def _ask(self, asked: list[Any]) -> None:
         for event in asked:
@@ -351,6 +351,7 @@ class Record:
             verbs |= self._missed(command, known, verbs)
         self.commands.take(SentCommand(command, self._plant.now, obstacles, verbs, known.halts), known)
         if isinstance(command, Stop) and command.mode is StopMode.CLEAR:
+            known.barred = False
             known.stop = Stopped.CLEARED if known.stop is Stopped.LATCHED else known.stop
 
     def _missed(self, command: Stop, known: KnownRobot, verbs: frozenset[Verb]) -> frozenset[Verb]:

@@ -143,6 +143,8 @@ def obstacle(known: KnownRobot, now: float, plant: int) -> str | None:
         return "bridge"
     if known.state in (MotionState.FAULT, MotionState.STOP_LATCHED):
         return "fault" if known.state is MotionState.FAULT else "stopped"
+    if known.barred and known.state is not MotionState.MOVING:
+        return "stopped"
     if known.unhomed:
         return "not homed"
     if not known.robot.says_homed:

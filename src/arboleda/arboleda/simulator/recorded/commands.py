@@ -95,11 +95,12 @@ class Commands:
         elif not isinstance(command, SetEffector):
             self.goals.setdefault(command.robot, deque(maxlen=RECENT)).append(command)
 
-    def hear(self, report: Report) -> None:
+    def hear(self, report: Report, known: KnownRobot) -> None:
         """A report names the command that was rejected last."""
         rejected = self.open.get(report.rejected or "")
         if rejected is not None:
             rejected.rejected = True
+            known.barred |= report.refusal == "paro" and not known.robot.has_stop
 
     def follow(self, ledger: Ledger, now: float) -> bool:
         """Compare with the ledger what was open; whether anything changed."""

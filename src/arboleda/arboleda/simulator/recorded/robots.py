@@ -56,6 +56,7 @@ class KnownRobot:
         self.effector: bool | None = None
         self.piece: bool | None = None
         self.displaced = False  # it cannot report its homing, and has booted
+        self.barred = False  # it has no stop, and its bridge refused a command because of one
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
 
     def hear(self, report: Report) -> bool:
@@ -74,6 +75,7 @@ class KnownRobot:
         if report.boot_id is not None:
             self._hear_boot(report)
         if report.epoch is not None:
+            self.barred &= report.epoch == self.epoch
             self.epoch, self.plant = report.epoch, report.plant
         if report.homed is not None:
             self.homed = report.homed
@@ -128,6 +130,6 @@ OBSTACLES: dict[Obstacle, Callable[[KnownRobot, float, int], bool]] = {
     Obstacle.UNHOMED: lambda known, now, epoch: known.unhomed,
     Obstacle.FAULTED: lambda known, now, epoch: known.state is MotionState.FAULT,
     Obstacle.LATCHED: lambda known, now, epoch: (
-        known.stop is Stopped.LATCHED or known.state is MotionState.STOP_LATCHED
+        known.stop is Stopped.LATCHED or known.state is MotionState.STOP_LATCHED or known.barred
     ),
 }
