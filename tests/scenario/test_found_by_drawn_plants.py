@@ -341,6 +341,27 @@ FOUND = {
                   mm: 32.4
         """,
     ),
+    "a mobile robot that came home while its board did nothing was blamed for moving unhomed": Found(
+        seed=482,
+        faults=(
+            Fault(kind="reboot", at=32.693, target="mobile_2_board", word="will"),
+            Fault(kind="bridge_stall", at=41.104, seconds=0.604, target="bridge"),
+            Fault(kind="board_stall", at=41.163, seconds=7.025, target="mobile_2_board"),
+        ),
+        file="""
+            name: drawn_482
+            timing: {stale_after_s: 0.5}
+            stations: {columns_q1_deg: [-2.1, 6.9], rows_q2_deg: [3.0, 3.3]}
+            cells:
+              cell_2:
+                arm: {name: arm_2, model: scara, link: none, evidence: ids}
+                mobile: {name: mobile_2, link: none, evidence: ids, mqtt: mobile_2_board, speed_mm_s: 156.4}
+                home: {deg: [-141.7, -11.5], mm: 21.6}
+                pickup: {deg: [63.9, 54.7], mm: 38.4}
+                paths: {ab: [6, 3, 4]}
+                drive_to_start: false
+        """,
+    ),
 }
 
 

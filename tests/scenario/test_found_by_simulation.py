@@ -241,6 +241,56 @@ FOUND = {
             Fault(kind="opened_effector", at=29.613, target="ra_1", seed=1929225998),
         ),
     ),
+    "an arm that rose, as its recovery begins, to where home is seemed to go there without its zones": Found(
+        seed=652,
+        seconds=61,
+        faults=(
+            Fault(kind="broker_restart", at=52.736, seconds=2.078, target="broker"),
+            Fault(kind="broker_restart", at=57.166, seconds=3.149, target="broker"),
+            Fault(
+                kind="lying_telemetry",
+                at=60.0,
+                seconds=5.337,
+                target="arm_back",
+                amount=37.489,
+                word="q3_mov",
+            ),
+        ),
+    ),
+    "a bridge that had heard no plant for long obeyed a copy that came before its original": Found(
+        seed=830,
+        seconds=123,
+        faults=(
+            Fault(kind="no_part", at=83.56, seconds=3.2, target="arm_left"),
+            Fault(kind="bridge_restart", at=89.909, seconds=1.603, target="bridge"),
+            Fault(
+                kind="plant_freeze", at=113.207, seconds=2.043, target="plant", amount=3564.123, word="plant"
+            ),
+            Fault(kind="hop_partition", at=113.843, seconds=8.24, target="plant", word="to bridge, held"),
+            Fault(kind="hop_partition", at=114.956, seconds=0.412, target="plant", word="to bridge, held"),
+        ),
+    ),
+    "an effector that opened late was judged by a command that left in the same step": Found(
+        seed=914,
+        seconds=40,
+        faults=(
+            Fault(kind="brown_out", at=10.21, seconds=5.753, target="mobile_right", amount=4.305),
+            Fault(kind="brown_out", at=12.101, seconds=1.138, target="scara_7", amount=3.213),
+            Fault(kind="brown_out", at=20.028, seconds=19.113, target="mobile_back", amount=0.607),
+            Fault(
+                kind="hop_reorder",
+                at=31.638,
+                seconds=3.786,
+                target="plant",
+                amount=0.617,
+                word="to plant",
+                seed=1465144477,
+            ),
+            Fault(kind="operator_cancel", at=31.909, target="left"),
+            Fault(kind="brown_out", at=36.914, seconds=4.485, target="mobile_left", amount=2.446),
+            Fault(kind="hop_partition", at=38.184, seconds=1.523, target="plant", word="to bridge, held"),
+        ),
+    ),
 }
 
 

@@ -53,6 +53,7 @@ from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped, slowed
 from arboleda.wire import board as wire_board
+from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
@@ -187,6 +188,25 @@ def test_bridge_obeys_only_its_plant(bites, command):
 def test_bridge_obeys_only_its_plant__in_stops():
     watch = Watch()
     other(watch, Stop(id="", robot="ra1", mode=StopMode.HALT))
+    assert watch.found == {}
+
+
+def silence(watch: Watch) -> None:
+    """No beat of the plant reaches the bridge for longer than it takes it to be there."""
+    watch.world.to_bridge.troubles.append(lambda message: () if isinstance(message, Heartbeat) else (0.0,))
+    watch.wait(PLANT_GONE_S)
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_nothing_is_found_where_a_bridge_without_a_plant_obeys_a_copy_before_its_original(on):
+    watch = Watch()
+    silence(watch)
+    other(watch, SetEffector(id="", robot="ra1", on=on))
+    original = SetEffector(id=f"{watch.world.plant.epoch}-901", robot="ra1", on=on)
+    said = FromPlant(at=watch.world.now, message=original, copied=True)
+    watch.world.broker.clients[BRIDGE].inbox.append(said)
+    watch.wait(0.01)
+    assert watch.world.boards["ra_1"].body.effector is on
     assert watch.found == {}
 
 

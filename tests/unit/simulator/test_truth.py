@@ -6,13 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import Verb
+from arboleda.core.messages import StopMode, Verb
 from arboleda.core.model import Crossing, PlantModel
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
 from arboleda.simulator.world import World
-from arboleda.testing import shipped
-from arboleda.wire.payloads import JointsGoal
+from arboleda.testing import shipped, slowed
+from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
 from arboleda.wire.units import to_wire
 
 ARM, MOBILE = "ra_1", "rm_sis_a"
@@ -247,3 +249,25 @@ def test_a_restarted_plant_runs_no_task(stage):
     stage.world.crash()
     stage.world.advance(0.1)
     assert stage.truth.cells["sis_a"].task is None
+
+
+@pytest.mark.parametrize(("stalled_s", "at_home"), [(0.2, False), (30.0, True)])
+@pytest.mark.parametrize("board", [ARM, MOBILE])
+def test_who_came_home_before_its_board_hears_a_stop_is_homed(
+    board: str, stalled_s: float, at_home: bool
+) -> None:
+    stage = Stage(slowed(shipped(), 4))
+    world = stage.world
+    stage.ask("sis_a 0B 7", 6.0)
+    world.crash(board)
+    world.advance(10.0)
+    for channel, goal in (
+        (Channel.HOME, HomeGoal(seq=1, epoch=9999)),
+        (Channel.STOP, StopGoal(mode=StopMode.HALT, seq=2, epoch=9999)),
+    ):
+        world.publish(Publication(topic=topic(board, channel), payload=encode(goal)))
+        world.advance(0.1)
+        world.stall(board, stalled_s)
+    world.advance(60.0)
+    robot = next(each for each in stage.truth.cells["sis_a"].cell.robots if each.mqtt == board)
+    assert stage.truth.robot(robot.name).homed is at_home is world.boards[board].homed

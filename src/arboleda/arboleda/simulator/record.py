@@ -304,15 +304,15 @@ class Record:
             self.waiting = [cell for cell in self._cells if cell.cell.arm.name in robots]
         for cell in self.waiting if not self.away else ():
             cell.wait(plant.now - self.stepped_at)
-        goals: dict[str, list[Any]] = {}
+        moves: dict[str, list[SentCommand]] = {}
         for each in self.commands.new:
             if each.entry is not None and each.entry.cancelled_at is None:  # halted at once: the work's last
-                of_cell = goals.setdefault(each.entry.cell, [])
-                of_cell += [each.command.q] if isinstance(each.command, MoveJoints) else []
+                of_cell = moves.setdefault(each.entry.cell, [])
+                of_cell += [each] if isinstance(each.command, MoveJoints) else []
         holders = plant.zones.robots
         for cell in self._cells:
-            if cell.name in goals:
-                cell.watch_recovery(goals[cell.name])
+            if cell.name in moves:
+                cell.watch_recovery(moves[cell.name])
             cell.holds_zones = cell.cell.arm.name in holders
 
     def _look_at_cells(self) -> bool:

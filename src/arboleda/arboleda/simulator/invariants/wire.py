@@ -170,9 +170,11 @@ def _heard(known: Any) -> bool:
 
 @invariant(When.PUBLISHED)
 def bridge_obeys_only_its_plant(look: Look) -> Iterable[str]:
-    """Each motion, effector and clear that the bridge publishes is one command with an id that it took in."""
+    """Each motion, effector and clear that the bridge publishes is one command with an id that it took in, or
+    one of others where it had heard no plant for so long that it obeys anybody.
+    """
     taken = [each.message for each in look.moment.taken if not isinstance(each.message, Heartbeat)]
-    given = [command for command in taken if command.id]
+    given = [command for command in taken if command.id] + look.record.bridges.of_others
     for client, publication in look.moment.published:
         if client != BRIDGE:
             continue

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import dropwhile
 
+from arboleda.core.ledger import State
 from arboleda.core.messages import MoveJoints
 from arboleda.core.model import Arm, Cell, Evidence
 
@@ -25,7 +27,7 @@ def recovery_takes_its_zones(look: Look) -> Iterator[str]:
         cell = look.record.cells[sent.entry.cell] if sent.entry else None
         if cell is None or not cell.cell.zones or not isinstance(sent.command, MoveJoints):
             continue
-        if cell.run.run.recovering and _sets_out(cell, sent.command.q) and not _is_seen(look, cell.cell):
+        if cell.run.run.recovering and _sets_out(cell, sent) and not _is_seen(look, cell.cell):
             yield from _lacking(look, cell, sent)
 
 
@@ -45,11 +47,16 @@ def _of_any_way(cell: Cell) -> frozenset[str]:
     return cell.pickup.zones.union(cell.home.zones, *crossed)
 
 
-def _sets_out(cell: KnownCell, q: tuple[float, ...]) -> bool:
-    """Whether this is where its recovery goes first after it took its zones; it rises before."""
-    pickup, home = cell.cell.pickup, cell.cell.home
-    way = [goal for goal in cell.recovery_goals if goal in (pickup.q, pickup.above, home.q)]
-    return way == [q]
+def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
+    """Whether this is where its recovery goes first after it took its zones.
+
+    Where poses have an approach height it rises before: its first move, and all that repeat that one.
+    """
+    pickup, home, moves = cell.cell.pickup, cell.cell.home, cell.recovery_moves
+    if any(pose.above for pose in cell.cell.poses):
+        moves = [*dropwhile(lambda each: each.state is not State.DONE, moves)][1:]
+    goals = [each.command.q for each in moves if isinstance(each.command, MoveJoints)]
+    return [goal for goal in goals if goal in (pickup.q, pickup.above, home.q)] == [sent.command.q]
 
 
 def _is_seen(look: Look, cell: Cell) -> bool:

@@ -35,6 +35,7 @@ EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
 MOVING = MotionState.MOVING.value
 LINGER_S = 1.0  # for which a board that names no command has to say that it stands still
+PLANT_GONE_S = 5.0  # after its last heartbeat the bridge obeys whoever commands
 COPIES_S, EARLY_S = 5.0, 0.2  # how late after its original, and how early before it a copy may come
 SLACK = 1e-6  # rad or m: what a goal at its limit may lose on its way
 FOREIGN_TO_ARMS, FOREIGN_TO_MOBILES = ("nodo",), ("efector", "pieza", "q1_mov")
@@ -51,10 +52,15 @@ Motions = (MoveJoints, FollowPath, Home)
 
 
 class Bridges:
-    """Follows every bridge of the plant; `wrong` is what was wrong in this pass: rule -> sentences."""
+    """Follows every bridge of the plant.
+
+    Of the last pass in which it did something: `wrong` is what was wrong, rule -> sentences; `of_others` are
+    the commands without an id that it took in while it heard no plant, and so obeys.
+    """
 
     def __init__(self, model: PlantModel) -> None:
         self.wrong: defaultdict[str, list[str]] = defaultdict(list)
+        self.of_others: list[Command] = []
         self._model = model
         self._bridge: Any = None
         self._known: _Bridge | None = None
@@ -66,11 +72,13 @@ class Bridges:
 
     def look(self, passed: Iterable[Passed]) -> None:
         self.wrong.clear()
+        self.of_others.clear()
         for each in passed:
             if each.bridge is not self._bridge:
                 self._bridge, self._known = each.bridge, _Bridge(self._model, self.wrong)
             if self._known is not None:
                 self._known.take(each)
+                self.of_others += self._known.of_others
 
 
 class _Bridge:
@@ -86,8 +94,12 @@ class _Bridge:
             for channel in ("sensores", "conexion")
         }
         self._plant: int | None = None  # whose heartbeat it hears
+        self._patience_s = model.timing.stale_after_s
+        self._beat_at = -math.inf
+        self.of_others: list[Command] = []
 
     def take_over(self, now: float, beliefs: Mapping[str, Belief]) -> None:
+        self._beat_at = now
         for name, board in self._boards.items():
             board.take_over(now, beliefs[name])
             self._plant = beliefs[name].plant
@@ -104,15 +116,16 @@ class _Bridge:
                 self._boards[message.robot].reject(message)
             elif isinstance(message, ForeignCommand):
                 self._boards[message.robot].obey_foreign()
+        self.of_others.clear()
         for event in passed.events:
-            self._event(event)
+            self._event(event, passed.now)
         late = any(event.at < passed.now for event in passed.events)
         for name, board in self._boards.items():
             mqtt = board.robot.mqtt
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
 
-    def _event(self, event: Any) -> None:
+    def _event(self, event: Any, now: float) -> None:
         if isinstance(event, Delivery):
             board, channel = self._by_topic.get(event.topic, (None, ""))
             if board is not None:
@@ -121,21 +134,23 @@ class _Bridge:
             for board in self._boards.values():
                 board.connect(event.up)
         elif isinstance(event, FromPlant) and isinstance(event.message, Heartbeat):
-            self._beat(event.message.epoch, event.unix_s)
+            self._beat(event.at, event.message.epoch, event.unix_s)
         elif isinstance(event, FromPlant) and event.message.robot in self._boards:
             board = self._boards[event.message.robot]
             if not event.message.id:
-                board.hear_others(event.at, event.message)
+                is_alone = event.at >= self._beat_at + PLANT_GONE_S and now - event.at <= self._patience_s
+                self.of_others += [event.message] if is_alone else []
+                board.hear_others(event.at, event.message, is_alone=is_alone)
                 return
             if event.copied:
                 board.expect_copy(event.at, event.message)
             board.command(event.message, self._plant)
 
-    def _beat(self, epoch: int, unix_s: int | None) -> None:
+    def _beat(self, at: float, epoch: int, unix_s: int | None) -> None:
         if epoch > (YEAR_2100 if unix_s is None else unix_s + AHEAD_S):
             return
         if self._plant is None or epoch >= self._plant:
-            self._plant = epoch
+            self._plant, self._beat_at = epoch, at
             for board in self._boards.values():
                 board.hear_plant(epoch)
 
@@ -288,8 +303,10 @@ class _Board:
         else:
             self._early.remove(early)
 
-    def hear_others(self, at: float, command: Command) -> None:
-        """A command without an id: nothing where it is a copy, and an order where it is a stop."""
+    def hear_others(self, at: float, command: Command, *, is_alone: bool) -> None:
+        """A command without an id: nothing where it is a copy, and an order where it is a stop, or where the
+        bridge hears no plant.
+        """
         self.touched = True
         self._copies = [each for each in self._copies if each[0] + COPIES_S > at]
         copy = next((each for each in self._copies if each[1] == command), None)
@@ -298,9 +315,7 @@ class _Board:
             return
         self._early.append((at, command))
         stops = isinstance(command, Stop) and command.mode is not StopMode.CLEAR
-        if stops:
-            self._latched |= command.mode is StopMode.LATCH
-        if stops and self._up and self.robot.has_stop:
+        if (stops or is_alone) and not self._word_against(command):
             self._orders.append((command, ""))
 
     def command(self, command: Command, plant: int | None) -> None:
@@ -312,17 +327,20 @@ class _Board:
             self._orders.append((command, "old_epoch"))
             return
         self._seen.add(command.id)
+        self._orders.append((command, self._word_against(command)))
+
+    def _word_against(self, command: Command) -> str:
+        """The word that refuses a command that is for the board, or ""; a stop is kept, whatever it is."""
         if isinstance(command, Stop) and command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
-        word = "" if self._up else "no_link"
-        if not word and isinstance(command, Stop) and not self.robot.has_stop:
-            word = "no_stop"
-        if not word and not self._is_within(command):
-            word = "limite"
+        if not self._up:
+            return "no_link"
+        if isinstance(command, Stop) and not self.robot.has_stop:
+            return "no_stop"
+        if not self._is_within(command):
+            return "limite"
         grips = isinstance(command, SetEffector) and command.on
-        if not word and self._latched and (isinstance(command, Motions) or grips):
-            word = "paro"
-        self._orders.append((command, word))
+        return "paro" if self._latched and (isinstance(command, Motions) or grips) else ""
 
     def _is_within(self, command: Command) -> bool:
         """Whether the robot can reach the goal: where an arm lies, a way up may lead beyond its limits."""

@@ -14,6 +14,8 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.leaves import Act, TakeZones
 from arboleda.core.model import Cell
 
+from .commands import SentCommand
+
 LOOK_S = 1.0  # a tree that sends nothing is looked through this often
 PAUSED = (CellState.HOLDING, CellState.HELD)
 
@@ -42,7 +44,7 @@ class KnownCell:
         self.again = 0
         self.holds_zones = False  # after the last step
         self.held_before_recovery = False
-        self.recovery_goals: list[Any] = []  # of the recovery that runs, or ran last
+        self.recovery_moves: list[SentCommand] = []  # of the recovery that runs, or ran last
         self._recovering: Behaviour | None = None
         self.leaves: list[Any] = []
         self.looked = False
@@ -111,14 +113,14 @@ class KnownCell:
         self.frozen_s = 0.0 if away else max(lag_s - self._lag_s, 0.0)
         self._lag_s = math.inf if self.state in PAUSED else lag_s
 
-    def watch_recovery(self, goals: list[Any]) -> None:
-        """Commands of its tree left; `goals` are where its arm goes."""
+    def watch_recovery(self, moves: list[SentCommand]) -> None:
+        """Commands of its tree left; `moves` are those of its arm."""
         if not self.run.run.recovering:
             self._recovering = None
         elif self._recovering is not self.run.tree:
             self._recovering, self.held_before_recovery = self.run.tree, self.holds_zones
-            self.recovery_goals = []
-        self.recovery_goals += goals
+            self.recovery_moves = []
+        self.recovery_moves += moves
 
     def look(self, sent: set[str]) -> None:
         """Look up the leaves that run, and count the commands of this step, by id, that are theirs."""

@@ -94,6 +94,10 @@ class ArmTruth(RobotTruth):
         return not self.moving and not any(self.intended)
 
     @property
+    def _came_home(self) -> bool:
+        return not any(self.body.position)
+
+    @property
     def outside(self) -> str | None:
         """The first joint that stands beyond its limits by more than lost steps and a ramp explain."""
         rows = zip(self.arm.joints, self.true, self.lost, strict=True)

@@ -37,7 +37,8 @@ class Books:
 
     def __init__(self, world: World) -> None:
         self.ended: list[Booked] = []
-        self.late: set[str] = set()  # robots whose last command was late
+        self.late: set[str] = set()  # robots whose last command, before this step, was late
+        self._in_time: set[str] = set()  # robots that got one in this step that was not
         self._world = world
         self._open: dict[str, Booked] = {}
 
@@ -49,6 +50,8 @@ class Books:
         """See which of the open commands are open no more since the last step."""
         if self.ended:
             self.ended = []
+        if self._in_time:
+            self.late, self._in_time = self.late - self._in_time, set()
         entries = self._world.plant.dispatcher.ledger.entries
         if not self._open.keys() <= entries.keys():
             self.ended = [self._open.pop(id) for id in [*self._open] if id not in entries]
@@ -58,7 +61,10 @@ class Books:
         entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
         if entry is not None:
             late = self._is_late(command.robot)
-            self.late = self.late | {command.robot} if late else self.late - {command.robot}
+            if late:
+                self.late.add(command.robot)
+            else:
+                self._in_time.add(command.robot)
             self._open[command.id] = Booked(entry=entry, sent_at=self._world.now, late=late)
 
     def _is_late(self, robot: str) -> bool:

@@ -36,7 +36,11 @@ class MobileTruth(RobotTruth):
 
     @property
     def at_reference(self) -> bool:
-        return not self.moving and self.node == self.cell.paths[0].nodes[0]
+        return not self.moving and self._came_home
+
+    @property
+    def _came_home(self) -> bool:
+        return self.body.true_node == self.cell.paths[0].nodes[0]
 
     def _follow(self, was_moving: bool) -> None:
         still = not (was_moving or self.moving or self.lost_power)

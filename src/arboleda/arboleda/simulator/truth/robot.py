@@ -125,6 +125,8 @@ class RobotTruth:
         if self.board.boot_id != self._boot:
             self._boot_up(now_us)
         told = self.stopping
+        if self._homing and due is not None and due <= now_us:
+            self._end_homing()
         if self._ahead or self._executed:
             self._hear()
         was_moving, self.moving = self.moving, self.body.moving
@@ -170,6 +172,11 @@ class RobotTruth:
         """Whether it truly stands where homing ends."""
         raise NotImplementedError
 
+    @property
+    def _came_home(self) -> bool:
+        """Whether the body is where its homing routine ends, wherever it sets out for in this step."""
+        raise NotImplementedError
+
     def _boot_up(self, now_us: int) -> None:
         self._boot, self.booted_us = self.board.boot_id, now_us
         self.lost_power = True
@@ -208,6 +215,11 @@ class RobotTruth:
             self.homed, self._homing = False, True
         if isinstance(goal, StopGoal) and goal.mode is not StopMode.HALT:
             self.latched = goal.mode is StopMode.LATCH
+
+    def _end_homing(self) -> None:
+        """It may have come home before a board that did nothing for long finds a stop in its inbox."""
+        if self._came_home:
+            self.homed, self._homing = True, False
 
     def _follow_homing(self) -> None:
         if self._homing and not self.moving:
