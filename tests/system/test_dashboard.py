@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from arboleda.adapters.store import Store
 from arboleda.core.messages import Fact, Remember
@@ -343,6 +344,89 @@ def test_a_link_leads_to_part_cell_and_language(open_page: Open) -> None:
     assert "cell=sis_b" in page.url and "lang=en" in page.url
     page.go_back()
     page.wait_for_selector("html[lang=es]")
+
+
+def test_an_idle_page_offers_to_send_a_task(open_page: Open, tmp_path: Path) -> None:
+    with running(tmp_path) as address:
+        page = open_page(at=address, locale="en")
+        page.click("[data-choose=sis_b]")
+        page.click(".cell.chosen a:has-text('Send a task to sis_b'):visible")
+        page.wait_for_selector("[data-maps=sis_b]:visible")
+        page.click("[data-maps=sis_b] [data-path='2A']")
+        page.click("[data-maps=sis_b] [data-station='4']")
+        page.click("#task-send")
+        task = taken(page, "sis_b 2A 4")
+        wait_for_task(page, task, "done")
+        page.go_back()
+        page.wait_for_selector(".tree-tools a:has-text('Send a task to sis_b'):visible")
+
+
+def test_an_ended_task_is_looked_at_again(open_page: Open, tmp_path: Path) -> None:
+    with running(tmp_path, "--rate", "1", "sis_a 0B 7 #lot1") as address:
+        page = open_page("tasks", at=address, locale="en")
+        wait_for_task(page, "lot1", "running")
+        page.click('[data-row="lot1"] a')
+        page.wait_for_selector("#task:has-text('It runs now')")
+        page.click("#stop")
+        page.wait_for_selector('#task [data-live="task.state"][data-s=failed]')
+        assert "stopped by the operator" in page.inner_text("#task .trouble")
+        assert "task=lot1" in page.url
+        page.click("#task g.node.is-failure[data-path=root]")
+        assert page.inner_text("#node-name") == "sis_a 0B 7 #lot1 · storage"
+        page.keyboard.press("Escape")
+        page.click("#task a:has-text('Close')")
+        page.wait_for_selector("#task", state="hidden")
+        page.go_back()
+        page.wait_for_selector("#task:visible")
+
+
+def test_a_link_to_a_task_shows_the_leaf_that_failed(open_page: Open, tmp_path: Path) -> None:
+    plant = yaml.safe_load(SHIPPED.read_text())
+    plant["cells"]["sis_c"]["drive_to_start"] = False
+    file = tmp_path / "plant.yaml"
+    file.write_text(yaml.safe_dump(plant))
+    with running(tmp_path, "--plant", str(file), "sis_c 2A 5 #lot42") as address:
+        page = open_page("tasks", at=address, locale="en")
+        wait_for_task(page, "lot42", "failed")
+        page.goto(f"{address}/?task=lot42")
+        page.wait_for_selector("#task g.node.is-failure:has-text('at start')")
+        assert 'Failed in step "at start": rm_sis_c stands on node 0' in page.inner_text("#task .trouble")
+        page.goto(f"{address}/?task=lot43")
+        page.wait_for_selector("#task:has-text('knows no such task')")
+
+
+def test_the_tree_stands_beside_the_twin(open_page: Open) -> None:
+    page = open_page("twin", locale="en")
+    page.click("[data-twin-cell=sis_b]")
+    task = send(page, "sis_b 1B 2")
+    show(page, "twin")
+    page.wait_for_selector(".beside.chosen[data-cell=sis_b] g.node.current")
+    show(page, "tasks")
+    wait_for_task(page, task, "done")
+    show(page, "twin")
+    page.wait_for_selector(".beside.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
+    beside, twin = (page.locator(of).bounding_box() for of in (".beside.chosen", ".twin"))
+    assert beside["x"] >= twin["x"] + twin["width"] and beside["y"] == twin["y"]
+
+
+PLAN = """() => {
+  const at = (path) => document.querySelector(`.cell.chosen g.node[data-path="${path}"]`).getCTM();
+  const [root, work, recovery] = ["root", "0", "1"].map(at);
+  return [root.e === work.e, root.f === work.f, work.e === recovery.e, work.f === recovery.f];
+}"""
+
+
+@pytest.mark.parametrize("width", [1280, 1366, 1700, 1920])
+def test_a_tree_is_drawn_the_same_way_in_every_language(width: int, open_page: Open) -> None:
+    plans = []
+    for language in ("en", "es"):
+        page = open_page(f"cells&lang={language}", viewport={"width": width, "height": 800})
+        if not plans:
+            wait_for_task(page, send(page, "sis_a 0B 1"), "done")
+            show(page, "cells")
+        page.wait_for_selector(".cell.chosen g.node[data-path=root]")
+        plans.append(page.evaluate(PLAN))
+    assert plans[0] == plans[1]
 
 
 def test_a_tab_is_a_link_to_be_opened_elsewhere(open_page: Open) -> None:

@@ -213,12 +213,12 @@ def keep(page: Any, what: str) -> Callable[[], list[Any]]:
 
 def submit(page: Any, *texts: str) -> None:
     for text in texts:
-        answer = page.request.post(f"{page.url.partition('#')[0]}api/tasks", data={"text": text})
+        answer = page.request.post(f"{page.url.partition('?')[0]}api/tasks", data={"text": text})
         assert answer.ok, answer.text()
 
 
 def ended(page: Any, count: int) -> bool:
-    tasks = page.request.get(f"{page.url.partition('#')[0]}api/plant").json()["tasks"]
+    tasks = page.request.get(f"{page.url.partition('?')[0]}api/plant").json()["tasks"]
     return len([task for task in tasks if task["state"] == "done"]) >= count
 
 

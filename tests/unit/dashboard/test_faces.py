@@ -52,6 +52,45 @@ def test_a_stop_goes_from_stopping_to_stopped(told: Callable[..., Any]) -> None:
     assert rig.face()["text/stop"] == ["All 6 robots latched and still", "stopped"]
 
 
+def test_an_idle_cell_that_can_work_asks_for_a_task(told: Callable[..., Any]) -> None:
+    rig = told()
+    assert rig.face()["text/sis_a.offer"] == ["Send a task to sis_a", ""]
+    rig.submit("sis_a 0B 7")
+    rig.wait(0.2)
+    assert rig.face()["text/sis_a.offer"] == ["", ""]
+    rig.operate(Verb.STOP, "sis_b")
+    rig.wait(3.0)
+    assert rig.face()["text/sis_b.offer"] == ["", ""]
+
+
+def test_a_task_shows_how_it_stands_and_how_it_ended(told: Callable[..., Any]) -> None:
+    rig = told()
+    first, second = (rig.submit(text).task for text in ("sis_a 0B 7", "sis_a 0B 3"))
+    rig.wait_for("sis_a", "drive path 0B")
+    assert "It waits for its cell" in rig.story.task_face(second, "en")["text/task.note"][0]
+    running = rig.story.task_face(first, "en")
+    assert "It runs now" in running["text/task.note"][0] and running["tree/#task"]["nodes"] == []
+    rig.lost = lambda publication: publication.topic == "rm_sis_a/sensores"
+    assert rig.wait(60.0, until=lambda: first in rig.story.ended)
+    face = rig.story.task_face(first, "en")
+    assert face["text/task.title"][0] == f"sis_a 0B 7 #{first}"
+    assert face["text/task.state"] == ["failed", "failed"] and face["text/task.note"][0] == ""
+    assert face["text/task.cause"][0].startswith('Failed in step "drive path 0B": rm_sis_a')
+    leaf = next(node["path"] for node in face["tree/#task"]["nodes"] if node["name"] == "drive path 0B")
+    assert face[f"node/#task/{leaf}"]["state"] == "failure"
+    assert "Falló el paso" in rig.story.task_face(first, "es")["text/task.cause"][0]
+
+
+def test_a_task_that_never_ran_or_is_not_known_says_so(told: Callable[..., Any]) -> None:
+    rig = told()
+    _, second = (rig.submit(text).task for text in ("sis_a 0B 7", "sis_a 0B 3"))
+    rig.operate(Verb.CANCEL, second)
+    face = rig.story.task_face(second, "en")
+    assert face["text/task.state"][1] == "cancelled" and "before it had a tree" in face["text/task.note"][0]
+    unknown = rig.story.task_face("nix", "en")
+    assert unknown["text/task.title"][0] == "#nix" and "knows no such task" in unknown["text/task.note"][0]
+
+
 def test_only_what_changed_is_told() -> None:
     assert changed({"a": 1, "b": [1]}, {"a": 1, "b": [2], "c": None}) == {"b": [2], "c": None}
 
@@ -75,7 +114,7 @@ def test_the_current_leaf_is_marked_with_its_times(told: Callable[..., Any]) -> 
     assert len(current) == 1 and current[0]["feedback"] == "moving to pick-up"
     assert (current[0]["since"], current[0]["left"]) == ("1 s", "9 s")
     assert face["text/sis_a.step"][0] == "move to pick-up"
-    assert face["text/sis_a.left"][0] == "9 s until it is given up"
+    assert face["text/sis_a.left"][0] == "at most 9 s more"
     assert 0 < face["bar/sis_a.progress"] < 1
 
 
@@ -188,7 +227,7 @@ def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Cal
     rig.wait_for("sis_a", "drive path 0B")
     rig.crash("rm_sis_a")
     rig.wait(10.0)
-    said = "Failed in drive path 0B: rm_sis_a: the link was lost while driving path 0B"
+    said = 'Failed in step "drive path 0B": rm_sis_a: the link was lost while driving path 0B'
     assert rig.face()["text/sis_a.cause"] == [said, "failed"]
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         rig.operate(verb, "sis_a")

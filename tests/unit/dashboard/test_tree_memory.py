@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.messages import Verb
-from arboleda.dashboard.tree_memory import TreeMemory, ancestors, judged, parent
+from arboleda.dashboard.tree_memory import EndedTree, TreeMemory, ancestors, judged, parent
 from arboleda.testing import Rig, shipped
 
 
@@ -54,8 +54,7 @@ def test_a_step_that_failed_between_two_snapshots_shows_it() -> None:
     rig.wait_for("sis_a", "system start/dwell")
     for seconds in (0.0, 5.0):
         rig.wait(seconds)
-        snapshot = rig.snapshot()
-        memory.see(snapshot["cells"][0], snapshot["tasks"], 1000.0 + rig.now)
+        see(memory, rig)
     statuses = {row["name"]: memory.statuses[row["path"]] for row in memory.rows}
     assert statuses["storage"] == statuses["main"] == statuses["at start"] == "failure"
     assert statuses["system start"] == "success" and statuses["drive path 2A"] == "idle"
@@ -74,6 +73,85 @@ def test_what_a_stop_interrupts_is_called_interrupted(told: Callable[..., Any]) 
     assert pickup  # the changes tell of it
     names = {(change.name, change.status) for change in rig.story.trees["sis_a"].changes}
     assert ("move to pick-up", "halted") in names and ("drive path 0B", "success") in names
+
+
+def test_the_changes_tell_of_steps_each_once(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "effector on/dwell")
+    told_of = [(change.name, change.status) for change in rig.story.trees["sis_a"].changes]
+    done = [(name, "success") for name in ("system start", "drive path 0B", "move to pick-up")]
+    assert told_of == [*done, ("effector on", "running")]
+
+
+def test_the_changes_name_the_leaf_that_failed_within_a_step() -> None:
+    memory = TreeMemory()
+    rows = [
+        row("root", "RUNNING", kind="selector") | {"name": "storage"},
+        row("0", "RUNNING", kind="sequence") | {"name": "main"},
+        row("0.0", "RUNNING", kind="sequence") | {"name": "grip"},
+        row("0.0.0", "RUNNING") | {"name": "switch"},
+    ]
+    failed = [each | {"status": "FAILURE"} if each["path"] != "root" else each for each in rows]
+    for number, tree in enumerate((rows, failed)):
+        memory.see({"tree": tree, "task": {"id": "t"}, "state": "execute"}, [], float(number))
+    assert [(change.name, change.status) for change in memory.changes] == [
+        ("grip", "failure"),
+        ("switch", "failure"),
+    ]
+
+
+def test_the_tree_of_an_ended_task_stays_while_the_task_is_shown(told: Callable[..., Any]) -> None:
+    rig = told()
+    first = rig.submit("sis_a 0B 7").task
+    assert rig.wait(60.0, until=lambda: first in rig.story.ended)
+    kept = rig.story.ended[first]
+    assert set(kept.statuses.values()) == {"success", "idle"}
+    rig.submit("sis_a 0B 3")
+    rig.wait_for("sis_a", "move to station 3")
+    assert rig.story.ended[first] == kept
+    snapshot = rig.snapshot()
+    rig.story.see(snapshot | {"tasks": [row for row in snapshot["tasks"] if row["id"] != first]}, 0.0)
+    assert rig.story.ended == {}
+
+
+def test_a_tree_that_ended_between_two_snapshots_is_kept_though_the_next_one_runs() -> None:
+    rig, memory = Rig(shipped()), TreeMemory()
+    rig.wait(0.5)
+    first = rig.submit("sis_a 0B 7").task
+    rig.submit("sis_a 0B 3")
+    rig.wait_for("sis_a", "move to home")
+    assert see(memory, rig) is None
+    rig.wait_for("sis_a", "drive to node 0")
+    ended = see(memory, rig)
+    assert ended is not None and ended.task == first
+    assert set(ended.statuses.values()) == {"success", "idle"}
+    assert memory.task != first and "drive to node 0" in {row["name"] for row in memory.rows}
+
+
+@pytest.mark.parametrize(("verb", "came_to"), [(Verb.ABANDON, "failure"), (Verb.CANCEL, "halted")])
+def test_a_recovery_of_its_own_ends_as_a_part_of_the_work_that_it_ended(
+    verb: Verb, came_to: str, told: Callable[..., Any]
+) -> None:
+    rig = told()
+    task = rig.submit("sis_a 0B 7").task
+    rig.wait_for("sis_a", "move to station 7")
+    if verb is Verb.ABANDON:
+        rig.operate(Verb.HOLD, "sis_a")
+        assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "held")
+    assert rig.operate(verb, "sis_a") is None
+    assert rig.story.trees["sis_a"].rows[0]["name"] == "recovery"
+    assert rig.wait(60.0, until=lambda: task in rig.story.ended)
+    statuses = rig.statuses()
+    assert statuses["drive path 0B"] == statuses["recovery"] == statuses["carry back"] == "success"
+    assert (statuses["storage"], statuses["main"]) == (came_to, "halted")
+    assert statuses["move to station 7"] == "halted"
+    assert rig.story.ended[task].statuses == rig.story.trees["sis_a"].statuses
+
+
+def see(memory: TreeMemory, rig: Rig) -> EndedTree | None:
+    snapshot = rig.snapshot()
+    return memory.see(snapshot["cells"][0], snapshot["tasks"], 1000.0 + rig.now)
 
 
 def test_a_new_task_begins_with_a_fresh_tree(told: Callable[..., Any]) -> None:

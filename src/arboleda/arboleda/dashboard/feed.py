@@ -61,6 +61,11 @@ class Feed:
         """The time line, the newest event last."""
         return list(self._story.chronicle.events) if self._story else []
 
+    def task_face(self, id: str, language: str) -> Face:
+        """What a page shows of one task, besides its row."""
+        self._take_in()
+        return self._story.task_face(id, language) if self._story else {}
+
     def add(self, viewer: Viewer) -> None:
         """A page was opened, or is back: it will be told everything."""
         self._viewers[viewer] = Seen()
@@ -108,14 +113,17 @@ class Feed:
         story = self._story
         if story is None:
             return
-        while self._told:
-            unix_s, snapshot = self._told.popleft()
-            story.see(snapshot, unix_s)
+        self._take_in()
         languages = {viewer.language for viewer in self._viewers}
         links = self._plant.links() if languages else {}
         self._shown = {language: self._shown.get(language, {}) for language in languages}
         for language in languages:
             self._send(language, story.face(language, links))
+
+    def _take_in(self) -> None:
+        while self._told and self._story is not None:
+            unix_s, snapshot = self._told.popleft()
+            self._story.see(snapshot, unix_s)
 
     def _send(self, language: str, face: Face) -> None:
         patch = changed(self._shown[language], face)

@@ -11,6 +11,7 @@ from functools import cache
 from importlib import resources
 
 from fastapi import FastAPI, Request
+from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
 
 from arboleda.adapters.web.api import refuse
@@ -50,6 +51,7 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
     _keep_running(feed, show)
     window.serve(server, plant, show)
     layout = plant.layout()
+    _serve_tasks(server, feed)
     app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
 
     @ui.page("/", title=f"{layout['plant']} · Arboleda")
@@ -72,6 +74,15 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
         show_welcome_message=False,
         favicon=str(resources.files(__package__).joinpath("assets", "tree.svg")),
     )
+
+
+def _serve_tasks(server: FastAPI, feed: Feed) -> None:
+    """One task for whom its row does not suffice: the tree of one that has ended is sent on demand only."""
+
+    async def one_task(request: Request, id: str) -> JSONResponse:
+        return JSONResponse(feed.task_face(id, language_of(request)))
+
+    server.add_api_route("/task.json", one_task, include_in_schema=False)
 
 
 def language_of(request: Request) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from .chronicle import Chronicle
-from .faces import Face, whole
+from .faces import Face, task, whole
 from .faces.moment import Moment
-from .tree_memory import TreeMemory
+from .tree_memory import EndedTree, TreeMemory
 from .wording import words
 
 Row = dict[str, Any]
@@ -20,6 +20,7 @@ class Story:
         self.layout = layout
         self.chronicle = Chronicle(past_acts)
         self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
+        self.ended: dict[str, EndedTree] = {}  # by task; of those that the snapshot still shows
         self._offset_s: float | None = None  # unix s less the plant's clock, so that shown times stay put
         self._snapshot: Row | None = None
 
@@ -29,22 +30,33 @@ class Story:
             self._offset_s = unix_s - snapshot["at"]
         at = snapshot["at"] + self._offset_s
         for cell in snapshot["cells"]:
-            self.trees[cell["name"]].see(cell, snapshot["tasks"], at)
+            ended = self.trees[cell["name"]].see(cell, snapshot["tasks"], at)
+            if ended is not None:
+                self.ended[ended.task] = ended
+        shown = {task["id"] for task in snapshot["tasks"]}
+        self.ended = {id: tree for id, tree in self.ended.items() if id in shown}
         self.chronicle.see(snapshot, at)
         self._snapshot = snapshot
 
     def face(self, language: str, links: Row) -> Face:
         """What a page in this language shows now; empty before the first snapshot."""
+        moment = self._moment(language, links)
+        return {} if moment is None else whole.face(moment)
+
+    def task_face(self, id: str, language: str) -> Face:
+        """What a page in this language shows of one task, known or not; empty before the first snapshot."""
+        moment = self._moment(language, {})
+        return {} if moment is None else task.face(moment, id, self.ended.get(id))
+
+    def _moment(self, language: str, links: Row) -> Moment | None:
         if self._snapshot is None or self._offset_s is None:
-            return {}
-        return whole.face(
-            Moment(
-                snapshot=self._snapshot,
-                layout=self.layout,
-                links=links,
-                trees=self.trees,
-                events=self.chronicle.events,
-                words=words(language),
-                unix_s=self._snapshot["at"] + self._offset_s,
-            )
+            return None
+        return Moment(
+            snapshot=self._snapshot,
+            layout=self.layout,
+            links=links,
+            trees=self.trees,
+            events=self.chronicle.events,
+            words=words(language),
+            unix_s=self._snapshot["at"] + self._offset_s,
         )

@@ -26,9 +26,11 @@ def live(name: str, key: str, *, classes: str = "", **attributes: Any) -> Elemen
     return tag(name, classes=classes, data_live=key, **attributes)
 
 
-def link(label: str, *, tab: str, cell: str | None = None, classes: str = "", **attributes: Any) -> Element:
-    """A link to another place of the page; without a cell the chosen one stays."""
-    there = {"tab": tab} | ({} if cell is None else {"cell": cell})
+def link(
+    label: str | None, *, tab: str, cell: str | None = None, classes: str = "", **attributes: Any
+) -> Element:
+    """A link to another place of the page, no task in particular; without a cell the chosen one stays."""
+    there = {"tab": tab, "task": None} | ({} if cell is None else {"cell": cell})
     return tag("a", label, classes=classes, href=f"/?tab={tab}", data_go=json.dumps(there), **attributes)
 
 

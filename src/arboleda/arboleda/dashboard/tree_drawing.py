@@ -7,14 +7,37 @@ from typing import Any
 
 from arboleda.drawing.layout import Layout, Line, Node, columns, outline, wide
 
+from .wording import LANGUAGES, Words, words
+
 Drawing = dict[str, Any]
+Named = tuple[str, str, str]  # path, the plant's name, kind
+WAYS = {"wide": wide, "columns": columns, "narrow": outline}  # the widest first
+SIGNS = {"selector": "? ", "sequence": "→ ", "parallel": "⇉ "}  # as behaviour trees are drawn everywhere
+
+
+def drawing(nodes: tuple[Named, ...], words: Words) -> Drawing:
+    """By way {w, h, at: {path: [x, y, w]}, lines: {path: d}}; `need`, how wide each gets in any language."""
+    return {**_drawing(_labelled(nodes, words)), "need": _need(nodes)}
+
+
+def label(name: str, kind: str, words: Words) -> str:
+    """What stands on a node."""
+    return SIGNS.get(kind, "") + words.say(name)
+
+
+def _labelled(nodes: tuple[Named, ...], words: Words) -> tuple[Node, ...]:
+    return tuple((path, label(name, kind, words)) for path, name, kind in nodes)
 
 
 @lru_cache(maxsize=256)
-def drawing(nodes: tuple[Node, ...]) -> Drawing:
-    """The widest first, each {w, h, at: {path: [x, y, w]}, lines: {path: d}}."""
-    ways = {"wide": wide, "columns": columns, "narrow": outline}
-    return {name: _plain(way(nodes)) for name, way in ways.items()}
+def _drawing(nodes: tuple[Node, ...]) -> Drawing:
+    return {name: _plain(way(nodes)) for name, way in WAYS.items()}
+
+
+@lru_cache(maxsize=256)
+def _need(nodes: tuple[Named, ...]) -> dict[str, float]:
+    drawn = [_drawing(_labelled(nodes, words(language))) for language in LANGUAGES]
+    return {name: max(each[name]["w"] for each in drawn) for name in WAYS}
 
 
 def _plain(layout: Layout) -> Drawing:

@@ -11,23 +11,33 @@ from arboleda.drawing.layout import parent
 IDLE, RUNNING, SUCCESS, FAILURE, HALTED = "idle", "running", "success", "failure", "halted"
 SEEN = {"RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE}
 CHANGES = 30  # kept of each cell
-RECOVERY = "recovery"
+PHASES = MAIN, RECOVERY = "main", "recovery"
 
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """A node got another status, at unix s."""
+    """A step began or ended, at unix s; its end takes the place of its beginning."""
 
     number: int
     at: float
+    path: str
     name: str
     status: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class EndedTree:
+    """The tree of a task that has ended, and what each node came to."""
+
+    task: str
+    rows: list[Row]
+    statuses: dict[str, str]
+
+
 class TreeMemory:
-    """The last tree of one cell: its rows, what each node came to, and the last changes."""
+    """The last tree of one cell: its rows, what each node came to, and the last changes of its steps."""
 
     def __init__(self) -> None:
         self.rows: list[Row] = []
@@ -35,14 +45,19 @@ class TreeMemory:
         self.changes: deque[Change] = deque(maxlen=CHANGES)
         self.task: str | None = None
         self.over = True
+        self._work: tuple[list[Row], dict[str, str]] | None = None  # before a recovery of its own
+        self._steps: set[str] = set()
+        self._leaves: set[str] = set()
         self._count = 0
 
-    def see(self, cell: Row, tasks: list[Row], unix_s: float) -> None:
-        """Take in a cell of a snapshot, and what became of its tasks."""
+    def see(self, cell: Row, tasks: list[Row], unix_s: float) -> EndedTree | None:
+        """Take in a cell of a snapshot, and what became of its tasks; the tree that ended with one."""
+        ended = None
+        if not self.over and (not cell["tree"] or _task_of(cell) != self.task):
+            ended = self._finish(cell, tasks, unix_s)
         if cell["tree"]:
             self._follow(cell, unix_s)
-        elif not self.over:
-            self._finish(cell, tasks, unix_s)
+        return ended
 
     @property
     def leaf(self) -> Row | None:
@@ -53,18 +68,39 @@ class TreeMemory:
         return running[-1] if running else None
 
     def _follow(self, cell: Row, unix_s: float) -> None:
-        rows, task = cell["tree"], cell["task"]["id"] if cell["task"] else None
-        if self.over or task != self.task or _shape(rows) != _shape(self.rows):
-            self.statuses, self.task = {}, task
+        rows = cell["tree"]
+        if self.over or _shape(rows) != _shape(self.rows):
+            self._work = None if self.over else self._work or (self.rows, self.statuses)
+            self._show(rows, {})
+            self.task = _task_of(cell)
         self.rows, self.over = rows, False
         names = {row["path"]: row["name"] for row in rows}
         for path, status in judged(rows, self.statuses).items():
             self._become(path, names[path], status, unix_s)
 
-    def _finish(self, cell: Row, tasks: list[Row], unix_s: float) -> None:
+    def _finish(self, cell: Row, tasks: list[Row], unix_s: float) -> EndedTree | None:
         """The tree is gone: what ran in it came to the end of its task."""
         task = next((task for task in tasks if task["id"] == self.task), {})
-        recovered = cell["state"] == "idle"
+        recovered = cell["state"] in ("idle", "execute")
+        work, self._work = self._work, None
+        if work is not None:
+            # the task names a leaf of its work, not of this recovery
+            self._conclude(task | {"failed_in": None}, unix_s, recovered=recovered)
+            rows, statuses = work
+            self._show(rows, statuses | _within(rows, self.statuses))
+        self._conclude(task, unix_s, recovered=recovered)
+        self.over = True
+        if self.task is None:
+            return None
+        return EndedTree(task=self.task, rows=self.rows, statuses=dict(self.statuses))
+
+    def _show(self, rows: list[Row], statuses: dict[str, str]) -> None:
+        """Another tree, as far as it has come."""
+        inner = {parent(row["path"]) for row in rows}
+        self.rows, self.statuses = rows, statuses
+        self._steps, self._leaves = set(steps(rows)), {row["path"] for row in rows} - inner
+
+    def _conclude(self, task: Row, unix_s: float, *, recovered: bool) -> None:
         after = self.statuses | {
             row["path"]: last_status(row, self.rows, task.get("state"), recovered=recovered)
             for row in self.rows
@@ -73,7 +109,6 @@ class TreeMemory:
         self._blame(task, after)
         for row in self.rows:
             self._become(row["path"], row["name"], after[row["path"]], unix_s)
-        self.over = True
 
     def _blame(self, task: Row, after: dict[str, str]) -> None:
         """Show the leaf that failed the task as failed, also where no snapshot said so in time."""
@@ -88,10 +123,37 @@ class TreeMemory:
                 _conclude(above, list(kinds), after)
 
     def _become(self, path: str, name: str, status: str, unix_s: float) -> None:
-        if self.statuses.get(path, IDLE) != status:
+        told = path in self._steps or (status == FAILURE and path in self._leaves)
+        if told and self.statuses.get(path, IDLE) != status:
             self._count += 1
-            self.changes.append(Change(number=self._count, at=unix_s, name=name, status=status))
+            begun = [each for each in self.changes if each.path == path and each.status == RUNNING]
+            for each in begun:
+                self.changes.remove(each)
+            now = Change(number=self._count, at=unix_s, path=path, name=name, status=status)
+            self.changes.append(now)
         self.statuses[path] = status
+
+
+def _task_of(cell: Row) -> str | None:
+    return cell["task"]["id"] if cell["task"] else None
+
+
+def _within(rows: list[Row], recovery: dict[str, str]) -> dict[str, str]:
+    """What a recovery of its own came to, as that of the recipe whose rows these are."""
+    place = next((row["path"] for row in rows if row["name"] == RECOVERY), None)
+    moved = {place if path == "root" else f"{place}.{path}": status for path, status in recovery.items()}
+    return {row["path"]: moved[row["path"]] for row in rows if row["path"] in moved}
+
+
+def phases(rows: list[Row]) -> list[Row]:
+    """The work and the recovery of a recipe; none of a tree that is built otherwise."""
+    return [row for row in rows if row["name"] in PHASES]
+
+
+def steps(rows: list[Row]) -> list[str]:
+    """What people follow: the steps of the phases, else those of the root, not what they are made of."""
+    above = {row["path"] for row in phases(rows)} or {"root"}
+    return [row["path"] for row in rows if parent(row["path"]) in above]
 
 
 def judged(rows: list[Row], before: dict[str, str]) -> dict[str, str]:

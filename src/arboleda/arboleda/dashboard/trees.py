@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .plant_side import Layout
-from .tags import live, rows, tag
+from .tags import link, live, rows, tag
 from .wording import Words
 
 MANY = 4  # cells; more than these are shown one tree at a time on a wall screen too
@@ -15,8 +17,23 @@ def build(layout: Layout, words: Words) -> None:
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
                 _card(cell["name"], words)
-                _tree(cell["name"], words)
+                tree_box(cell, words)
+                with tag("div", classes="changes"):
+                    tag("h2", words("cells.changes", cell=cell["name"]))
+                    rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
     _detail(words)
+
+
+def beside(layout: Layout, words: Words) -> None:
+    """The tree of the chosen cell, for where something else of the cell is looked at."""
+    for cell in layout["cells"]:
+        name = cell["name"]
+        with tag("article", classes="box beside", data_cell=name):
+            with tag("div", classes="card-head"):
+                tag("h2", name)
+                live("span", f"{name}.state", classes="pill")
+            live("p", f"{name}.task", classes="task")
+            tree_box(cell, words)
 
 
 def _card(cell: str, words: Words) -> None:
@@ -39,27 +56,30 @@ def _card(cell: str, words: Words) -> None:
     rows(f"ways.{cell}", ["", ""], classes="ways")
 
 
-def _tree(cell: str, words: Words) -> None:
+def tree_box(layout: dict[str, Any], words: Words) -> None:
+    """Where a cell's tree is drawn; what an idle one offers stands above it."""
+    cell, example = layout["name"], f"{layout['name']} {next(iter(layout['paths']))} {layout['stations'] - 1}"
     with tag("div", classes="tree-box"):
         with tag("div", classes="tree-tools"):
             live("span", f"{cell}.feedback", classes="feedback")
-            for name in ("smaller", "larger", "fit"):
-                sign = {"smaller": "−", "larger": "+", "fit": "⤢"}[name]  # noqa: RUF001 - a minus sign
-                label = words(f"cells.{name}")
-                tag(
-                    "button",
-                    sign,
-                    type="button",
-                    classes="tool",
-                    data_zoom=name,
-                    title=label,
-                    aria_label=label,
-                )
-        tag("p", words("cells.no_tree"), classes="empty")
+            _offer(cell, classes="act offer")
+            zooms(words)
+        with tag("div", classes="empty"):
+            tag("p", words("cells.no_tree"))
+            tag("p", words("cells.welcome", text=example), classes="example")
+            _offer(cell, classes="act primary offer")
         tag("div", classes="tree", data_tree=cell, role="tree", aria_label=words("cells.tree", cell=cell))
-    with tag("div", classes="changes"):
-        tag("h3", words("cells.changes"))
-        rows(f"changes.{cell}", ["", "", ""], classes="small")
+
+
+def _offer(cell: str, classes: str) -> None:
+    link(None, tab="tasks", cell=cell, classes=classes, data_live=f"{cell}.offer")
+
+
+def zooms(words: Words) -> None:
+    """The tools of the tree that stands in the same box."""
+    for name, sign in {"smaller": "−", "larger": "+", "fit": "⤢"}.items():  # noqa: RUF001 - a minus sign
+        label = words(f"cells.{name}")
+        tag("button", sign, type="button", classes="tool", data_zoom=name, title=label, aria_label=label)
 
 
 def _detail(words: Words) -> None:

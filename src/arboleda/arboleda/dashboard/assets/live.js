@@ -1,5 +1,7 @@
 // Puts the plant's frames on the page. Whatever comes from the plant is text, never HTML.
 
+import { address } from "./place.js";
+
 const known = new Map(); // key -> value, as in faces/__init__.py
 const listeners = [];
 let rowFilter = () => true;
@@ -71,6 +73,7 @@ function drawRow(list, id, row, columns) {
   row.className = "row";
   row.setAttribute("role", "row");
   const cells = told.texts.map((text, n) => cell(text, columns[n], n));
+  if (told.link) cells[told.link.column].replaceChildren(link(told.texts[told.link.column], told.link.to));
   if (told.acts) cells.push(acts(told.acts));
   keepingFocus(() => row.replaceChildren(...cells));
   return row;
@@ -81,6 +84,14 @@ function cell(text, label, number) {
   made.setAttribute("role", "cell");
   made.className = `column-${number}`;
   if (label) made.dataset.label = label;
+  made.textContent = text;
+  return made;
+}
+
+function link(text, to) {
+  const made = document.createElement("a");
+  made.dataset.go = JSON.stringify(to);
+  made.href = address(to);
   made.textContent = text;
   return made;
 }

@@ -5,6 +5,7 @@ import * as form from "./form.js";
 import { apply, drawList, onChange, setRowFilter, value } from "./live.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
+import * as task from "./task.js";
 import * as tree from "./tree.js";
 
 const SILENT_MS = 4000;
@@ -29,7 +30,8 @@ const words = window.arboledaPage.words;
 const parts = () => all("[data-part]").map((part) => part.dataset.part);
 const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
 
-function arrive({ tab, cell, lang }) {
+function arrive({ tab, cell, task: named, lang }) {
+  if (named && tab !== "tasks") return place.settle({ tab: "tasks" });
   if (!parts().includes(tab)) return place.settle({ tab: parts()[0] });
   if (cell && !cells().includes(cell)) return acts.answer(words.no_cell.replace("{cell}", cell), false), place.settle({ cell: null });
   if (lang !== window.arboledaPage.language) return place.settle({ lang: window.arboledaPage.language });
@@ -38,6 +40,7 @@ function arrive({ tab, cell, lang }) {
   showCell(cell ?? cells()[0]);
   if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "", cell ? "cell" : "plant");
   form.offer(cell);
+  task.show(named);
   tree.refit();
 }
 
@@ -47,7 +50,7 @@ function showPart(chosen) {
 }
 
 function showCell(chosen) {
-  all(".cell").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
+  all("article[data-cell]").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
   all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
 }
 
@@ -145,6 +148,7 @@ function begin() {
   setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
   acts.start();
   form.start();
+  task.start();
   tree.start();
   onChange(suggest);
   onChange(alarm);

@@ -1,6 +1,6 @@
-// Where on the page somebody is, as its address says it: part, cell, language. Links and the browser's back lead there.
+// Where on the page somebody is, as its address says it: part, cell, task, language. Links and the browser's back lead there.
 
-const KEYS = ["tab", "cell", "lang"];
+const KEYS = ["tab", "cell", "task", "lang"];
 let arrived = () => {};
 
 export function start(arrive) {

@@ -15,7 +15,8 @@ const SIGNS = {
   halted: "M-4 -5V5M4 -5V5",
 };
 const COMPOSITES = ["selector", "sequence", "parallel"];
-const drawn = new Map(); // cell -> {box, tree, svg, nodes, plan, zoom}
+const drawn = new Map(); // box -> {cell, tree, svg, nodes, plan, zoom}; a cell may be drawn in more than one box
+const drawings = (cell) => [...drawn.values()].filter((one) => one.cell === cell);
 let chosen = null; // {cell, path}
 
 export function start() {
@@ -26,52 +27,52 @@ export function start() {
   });
   document.addEventListener("click", clicked);
   document.addEventListener("keydown", pressed);
-  new ResizeObserver(() => drawn.forEach((_, cell) => fit(cell))).observe(document.querySelector(".cells"));
+  new ResizeObserver(refit).observe(document.getElementById("parts"));
 }
 
-export const refit = () => drawn.forEach((_, cell) => fit(cell));
+export const refit = () => drawn.forEach(fit);
 
 function draw(cell) {
-  const box = document.querySelector(`[data-tree="${CSS.escape(cell)}"]`);
   const tree = value(`tree/${cell}`);
-  if (!box || !tree) return;
-  box.parentElement.classList.toggle("is-empty", tree.nodes.length === 0);
-  drawn.set(cell, { box, tree, nodes: new Map(), plan: null, zoom: drawn.get(cell)?.zoom ?? 1 });
   if (chosen?.cell === cell) close();
-  fit(cell);
+  for (const box of document.querySelectorAll(`[data-tree="${CSS.escape(cell)}"]`)) {
+    box.parentElement.classList.toggle("is-empty", tree.nodes.length === 0);
+    drawn.set(box, { box, cell, tree, nodes: new Map(), plan: null, zoom: drawn.get(box)?.zoom ?? 1 });
+    fit(drawn.get(box));
+  }
 }
 
 // From left to right where that fits at a readable size, else as outlines; a phone is scrolled. On a wall nobody
 // scrolls: there the whole tree is in sight, as large as that allows.
-function fit(cell) {
-  const one = drawn.get(cell);
+function fit(one) {
   if (one.tree.nodes.length === 0) return one.box.replaceChildren();
   if (one.box.clientWidth === 0) return;
   const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
-  const wall = matchMedia("(min-width: 1800px)").matches && document.querySelector(".cells.few");
+  const wall = matchMedia("(min-width: 1800px)").matches && one.box.closest(".cells.few");
   const room = { w: one.box.clientWidth / unit, h: (innerHeight - top(one.box) - MARGIN) / unit };
   const [name, scale] = wall ? largest(one.tree, room) : readable(one.tree, room);
-  if (one.plan !== name) lay(cell, one, name);
+  if (one.plan !== name) lay(one, name);
   one.svg.setAttribute("width", one.tree[name].w * scale * unit * one.zoom);
   one.svg.setAttribute("height", one.tree[name].h * scale * unit * one.zoom);
 }
 
 const top = (box) => box.getBoundingClientRect().top + scrollY;
 
+// Which way it is drawn goes by the language that needs most room: it must not change with the language.
 function largest(tree, room) {
-  const scales = PLANS.map((name) => [name, Math.min(1.5, room.w / tree[name].w, room.h / tree[name].h)]);
-  const [name, scale] = scales.reduce((best, one) => (one[1] > best[1] ? one : best));
-  return [name, Math.max(0.5, scale)];
+  const scale = (name, width) => Math.min(1.5, room.w / width, room.h / tree[name].h);
+  const name = PLANS.reduce((best, one) => (scale(one, tree.need[one]) > scale(best, tree.need[best]) ? one : best));
+  return [name, Math.max(0.5, scale(name, tree[name].w))];
 }
 
 function readable(tree, room) {
   const least = matchMedia("(max-width: 760px)").matches ? 1 : 0.85;
-  const name = PLANS.find((name) => room.w / tree[name].w >= least) ?? PLANS.at(-1);
+  const name = PLANS.find((name) => room.w / tree.need[name] >= least) ?? PLANS.at(-1);
   const high = Math.max(0.9, room.h / tree[name].h);
   return [name, Math.max(least, Math.min(1.3, room.w / tree[name].w, high))];
 }
 
-function lay(cell, one, name) {
+function lay(one, name) {
   const plan = one.tree[name];
   one.plan = name;
   one.svg = make("svg", { viewBox: `0 0 ${plan.w} ${plan.h}`, role: "group" });
@@ -81,14 +82,14 @@ function lay(cell, one, name) {
     if (line) one.svg.append(line);
     one.nodes.set(node.path, { line });
   }
-  for (const node of one.tree.nodes) one.svg.append(drawNode(cell, one, node, plan.at[node.path]));
+  for (const node of one.tree.nodes) one.svg.append(drawNode(one, node, plan.at[node.path]));
   one.box.replaceChildren(one.svg);
-  for (const node of one.tree.nodes) show(`${cell}/${node.path}`, value(`node/${cell}/${node.path}`));
+  for (const node of one.tree.nodes) mark(one, node.path, value(`node/${one.cell}/${node.path}`));
 }
 
-function drawNode(cell, one, node, [x, y, w]) {
+function drawNode(one, node, [x, y, w]) {
   const group = make("g", { transform: `translate(${x} ${y})`, role: "treeitem", tabindex: one.nodes.size && node.path !== "root" ? -1 : 0 });
-  Object.assign(group.dataset, { cell, path: node.path, kind: node.kind });
+  Object.assign(group.dataset, { cell: one.cell, path: node.path, kind: node.kind });
   const round = COMPOSITES.includes(node.kind) ? HEIGHT / 2 : 5;
   const sign = make("path", { class: "sign", transform: `translate(15 ${HEIGHT / 2})` });
   const name = make("text", { x: 28, y: HEIGHT / 2 + 4.5 });
@@ -100,18 +101,21 @@ function drawNode(cell, one, node, [x, y, w]) {
 
 function show(where, now) {
   const [cell, path] = split(where);
-  const node = drawn.get(cell)?.nodes.get(path);
+  for (const one of drawings(cell)) mark(one, path, now);
+}
+
+function mark(one, path, now) {
+  const node = one.nodes.get(path);
   if (!node?.group || !now) return;
   node.group.setAttribute("class", `node is-${now.state}${now.current ? " current" : ""}`);
   node.group.setAttribute("aria-label", `${node.name}: ${now.word}`);
   node.sign.setAttribute("d", SIGNS[now.state]);
   node.line?.setAttribute("class", `line is-${now.state}`);
-  if (now.current) follow(cell, node.group);
+  if (now.current) follow(one.box, node.group);
 }
 
 // Keep the current leaf in sight where the tree is larger than its box.
-function follow(cell, group) {
-  const box = drawn.get(cell).box;
+function follow(box, group) {
   if (box.scrollWidth <= box.clientWidth && box.scrollHeight <= box.clientHeight) return;
   if (box.matches(":hover, :focus-within")) return;
   const [at, view] = [group.getBoundingClientRect(), box.getBoundingClientRect()];
@@ -123,14 +127,13 @@ function clicked(event) {
   if (node) return choose(node);
   if (event.target.closest("#node-close")) return close();
   const zoom = event.target.closest("[data-zoom]");
-  if (zoom) zoomBy(zoom.closest("article").dataset.cell, zoom.dataset.zoom);
+  if (zoom) zoomBy(drawn.get(zoom.closest(".tree-box").querySelector(".tree")), zoom.dataset.zoom);
 }
 
-function zoomBy(cell, how) {
-  const one = drawn.get(cell);
+function zoomBy(one, how) {
   if (!one) return;
   one.zoom = how === "fit" ? 1 : Math.min(3, Math.max(0.4, one.zoom * (how === "larger" ? 1.25 : 0.8)));
-  fit(cell);
+  fit(one);
 }
 
 function pressed(event) {
@@ -163,10 +166,11 @@ function close() {
 }
 
 function describe() {
-  const fixed = value(`tree/${chosen.cell}`).nodes.find((node) => node.path === chosen.path);
+  const tree = value(`tree/${chosen.cell}`);
+  const fixed = tree.nodes.find((node) => node.path === chosen.path);
   const now = value(`node/${chosen.cell}/${chosen.path}`);
   const { words } = window.arboledaPage;
-  set("name", `${chosen.cell} · ${fixed.name}`);
+  set("name", `${tree.title} · ${fixed.name}`);
   set("state", now.word).dataset.s = now.state;
   set("about", fixed.about);
   const since = now.since && words.since.replace("{time}", now.since);

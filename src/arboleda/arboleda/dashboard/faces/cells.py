@@ -7,15 +7,13 @@ from typing import Any
 from arboleda.core.view import standing
 from arboleda.drawing.layout import parent
 
-from ..tree_drawing import drawing
-from ..tree_memory import FAILURE, RUNNING, SUCCESS, TreeMemory
+from ..tree_drawing import drawing, label
+from ..tree_memory import FAILURE, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
 from . import Face
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
-PHASES = ("main", "recovery")
-SIGNS = {"selector": "? ", "sequence": "→ ", "parallel": "⇉ "}  # as behaviour trees are drawn everywhere
 GIVEN_UP = ("command", "await")  # what ends by itself has no deadline
 Row = dict[str, Any]
 
@@ -25,7 +23,8 @@ def face(moment: Moment) -> Face:
     for cell in moment.snapshot["cells"]:
         memory = moment.trees[cell["name"]]
         found.update(_card(moment, cell, memory))
-        found.update(_tree(moment, cell["name"], memory))
+        leaf = memory.leaf["path"] if memory.leaf else None
+        found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf))
         found.update(_changes(moment, cell["name"], memory))
     return found
 
@@ -47,6 +46,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.elapsed": [seconds(cell["task"]["elapsed_s"]) if cell["task"] else "", ""],
         f"text/{name}.left": [_left(moment, leaf), ""],
         f"text/{name}.queue": [_queue(moment, cell), "paused" if cell["paused"] else ""],
+        f"text/{name}.offer": [_offered(words, cell, stands), ""],
         f"text/{name}.trouble": [trouble(moment, cell), state],
         f"bar/{name}.progress": progress(memory.rows, memory.statuses) if cell["task"] else None,
     }
@@ -54,9 +54,13 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
     """Why the last task failed, and in which step; until the cell is at work again."""
-    if cell["state"] == "execute" or task is None or task["state"] != "failed":
-        return ""
-    step = next((row["name"] for row in memory.rows if row["path"] == task["failed_in"]), None)
+    over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
+    return failed_in(words, task, memory.rows) if over and task else ""
+
+
+def failed_in(words: Words, task: Row, rows: list[Row]) -> str:
+    """Why a task failed, and in which step of its tree."""
+    step = next((row["name"] for row in rows if row["path"] == task["failed_in"]), None)
     why = words.say(task["sentence"])
     return why if step is None else words("cells.failed_in", step=words.say(step), why=why)
 
@@ -133,6 +137,12 @@ def trouble(moment: Moment, cell: Row) -> str:
     return words.say(cell["not_ready"]) if cell["not_ready"] else ""
 
 
+def _offered(words: Words, cell: Row, stands: str) -> str:
+    """What an idle cell that can work asks for."""
+    free = stands == "idle" and cell["task"] is None and not cell["queue"]
+    return words("cells.offer", cell=cell["name"]) if free else ""
+
+
 def _left(moment: Moment, leaf: Row | None) -> str:
     if leaf is None or leaf["deadline_s"] is None or leaf["kind"] not in GIVEN_UP:
         return ""
@@ -149,41 +159,37 @@ def _queue(moment: Moment, cell: Row) -> str:
 
 def progress(rows: list[Row], statuses: dict[str, str]) -> float:
     """The share of the steps of the work that are done; of the recovery's once that runs."""
-    phases = [row for row in rows if row["name"] in PHASES]
-    active = [row for row in phases if statuses.get(row["path"]) == RUNNING] or phases[:1]
+    found = phases(rows)
+    active = [row for row in found if statuses.get(row["path"]) == RUNNING] or found[:1]
     steps = [row["path"] for phase in active for row in rows if parent(row["path"]) == phase["path"]]
     done = sum(statuses.get(path) == SUCCESS for path in steps)
     return round(done / len(steps), 3) if steps else 0.0
 
 
-def _tree(moment: Moment, cell: str, memory: TreeMemory) -> Face:
-    names = [moment.words.say(row["name"]) for row in memory.rows]
-    labels = [SIGNS.get(row["kind"], "") + name for name, row in zip(names, memory.rows, strict=True)]
+def tree_face(
+    words: Words, name: str, tree: TreeMemory | EndedTree, *, leaf: str | None = None, title: str = ""
+) -> Face:
+    """A tree under this name; `leaf` is the path of the one that runs."""
     nodes = [
         {
             "path": row["path"],
-            "name": name,
-            "label": label,
+            "name": words.say(row["name"]),
+            "label": label(row["name"], row["kind"], words),
             "kind": row["kind"],
-            "about": _about(moment, row),
+            "about": row["description"] or words.of("kind", row["kind"]),
         }
-        for name, label, row in zip(names, labels, memory.rows, strict=True)
+        for row in tree.rows
     ]
-    drawn = drawing(tuple(zip((row["path"] for row in memory.rows), labels, strict=True)))
-    leaf = memory.leaf["path"] if memory.leaf else None
-    found: Face = {f"tree/{cell}": {"task": memory.task, "nodes": nodes, **drawn}}
-    for row in memory.rows:
-        found[f"node/{cell}/{row['path']}"] = _node(moment, row, memory, leaf)
+    drawn = drawing(tuple((row["path"], row["name"], row["kind"]) for row in tree.rows), words)
+    found: Face = {f"tree/{name}": {"task": tree.task, "title": title or name, "nodes": nodes, **drawn}}
+    for row in tree.rows:
+        found[f"node/{name}/{row['path']}"] = _node(words, row, tree, leaf)
     return found
 
 
-def _about(moment: Moment, row: Row) -> str:
-    return row["description"] or moment.words.of("kind", row["kind"])
-
-
-def _node(moment: Moment, row: Row, memory: TreeMemory, leaf: str | None) -> Row:
-    words, status = moment.words, memory.statuses.get(row["path"], "idle")
-    running = status == RUNNING and not memory.over
+def _node(words: Words, row: Row, tree: TreeMemory | EndedTree, leaf: str | None) -> Row:
+    status = tree.statuses.get(row["path"], "idle")
+    running = status == RUNNING and leaf is not None
     return {
         "state": status,
         "word": words.of("status", status),

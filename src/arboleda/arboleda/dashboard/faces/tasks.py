@@ -47,6 +47,7 @@ def _row(moment: Moment, task: Row) -> Row:
             why(moment, task),
             f"#{task['id']}",
         ],
+        "link": {"column": 1, "to": {"tab": "tasks", "task": task["id"]}},
         "acts": _acts(words, task),
     }
 

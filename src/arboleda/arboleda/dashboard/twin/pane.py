@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..plant_side import Layout
 from ..tags import tag
+from ..trees import beside
 from ..wording import Words
 
 TOOLS = {"reset": "⌂", "top": "▦", "in": "+", "out": "−"}  # noqa: RUF001 - a minus sign
@@ -20,6 +21,7 @@ def build(layout: Layout, words: Words) -> None:
             tag("p", words("twin.loading"), id="twin-note", role="status", data_flat=words("twin.flat"))
         _legend(layout, words)
         tag("ul", id="twin-robots", classes="twin-robots", aria_label=words("twin.robots"))
+    beside(layout, words)
 
 
 def _cells(layout: Layout, words: Words) -> None:
