@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -118,6 +119,17 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
         return start(sys.executable, "-c", main, verb, *args, *state, env={"PYTHONPATH": paths()})
 
     return go
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """A chromium that shows nothing on a screen."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        yield made
+        made.close()
 
 
 @pytest.fixture

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
-import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,15 +14,14 @@ import yaml
 from arboleda.adapters.store import Store
 from arboleda.core.messages import Fact, Remember
 
-from .conftest import SHIPPED, Process, paths
+from .conftest import SHIPPED
+from .page import PARTS, PATIENCE_MS, connected, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
-PATIENCE_MS = 20_000
 LAPTOP = {"viewport": {"width": 1366, "height": 768}, "locale": "en"}
 PHONE = {"viewport": {"width": 360, "height": 740}, "has_touch": True}
 WALL = {"viewport": {"width": 1920, "height": 1080}, "locale": "en"}
-PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
 EVERY_CELL = (
     "state => [...document.querySelectorAll('.scopes .pill')].every(pill => pill.dataset.s === state)"
 )
@@ -33,35 +29,10 @@ STOPS = "document.querySelector('[data-rows=events]').textContent.split('stop pl
 Open = Callable[..., Any]
 
 
-@contextmanager
-def running(state: Path, *args: str) -> Iterator[str]:
-    """A plant and its page's address."""
-    main = "from arboleda.app.cli import main; main()"
-    command = ("up", "--no-ros", "--rate", "10", "--state", str(state), *args)
-    plant = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
-    try:
-        plant.wait_for("HTTP API")
-        yield next(line.split()[-1] for line in plant.lines if line.startswith("Page:"))
-        assert plant.interrupt() == 0, plant.output
-        assert "Traceback" not in plant.output, plant.output
-    finally:
-        plant.kill()
-
-
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with running(tmp_path_factory.mktemp("state")) as found:
         yield found
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        yield made
-        made.close()
 
 
 @pytest.fixture(scope="module")
@@ -98,14 +69,6 @@ def open_page(browser: Any, household: Any, address: str) -> Iterator[Open]:
     for each in opened:
         each.close()
     assert troubles == []
-
-
-def connected(page: Any) -> None:
-    page.wait_for_function("document.getElementById('connection')?.hidden")
-
-
-def show(page: Any, part: str) -> None:
-    page.click(f"[data-tab={part}]")
 
 
 def send(page: Any, text: str) -> str:
@@ -285,6 +248,33 @@ def test_news_that_no_longer_come_are_told(open_page: Open) -> None:
     assert "what you see is old" in page.inner_text("#connection")
 
 
+def test_a_plant_where_nothing_happens_is_not_called_silent(open_page: Open, tmp_path: Path) -> None:
+    shared = str(SHIPPED.with_name("shared.yaml"))
+    with running(tmp_path, "--plant", shared, "--boards", "real", "--rate", "1") as address:
+        page = open_page(at=address)
+        page.evaluate("""() => {
+            const live = arboleda.live;
+            window.empty = 0;
+            arboleda.live = (number, patch) => {
+                live(number, patch);
+                empty += Object.keys(patch).length === 0;
+            };
+        }""")
+        page.wait_for_function("empty > 5")
+        assert page.is_hidden("#connection") and page.locator(".silent").count() == 0
+
+
+def test_a_button_stays_while_its_row_changes(open_page: Open, tmp_path: Path) -> None:
+    with running(tmp_path, "--rate", "1", "sis_a 0B 7 #lot1") as address:
+        page = open_page("tasks", at=address)
+        wait_for_task(page, "lot1", "running")
+        button = page.query_selector("[data-row=lot1] button[data-act=cancel]")
+        button.focus()
+        page.wait_for_selector("[data-row=lot1] .column-4:has-text('2 s')")
+        page.wait_for_selector("[data-row=lot1] .column-4:has-text('3 s')")
+        assert button.evaluate("button => document.activeElement === button")
+
+
 def test_the_language_is_switched_and_remembered(open_page: Open) -> None:
     page = open_page("tasks", locale="en")
     page.click("[data-language=es]")
@@ -372,6 +362,7 @@ def test_an_ended_task_is_looked_at_again(open_page: Open, tmp_path: Path) -> No
         assert "stopped by the operator" in page.inner_text("#task .trouble")
         assert "task=lot1" in page.url
         page.click("#task g.node.is-failure[data-path=root]")
+        page.wait_for_selector("#node-name:visible")
         assert page.inner_text("#node-name") == "sis_a 0B 7 #lot1 · storage"
         page.keyboard.press("Escape")
         page.click("#task a:has-text('Close')")
@@ -399,9 +390,6 @@ def test_the_tree_stands_beside_the_twin(open_page: Open) -> None:
     page = open_page("twin", locale="en")
     page.click("[data-twin-cell=sis_b]")
     task = send(page, "sis_b 1B 2")
-    show(page, "twin")
-    page.wait_for_selector(".beside.chosen[data-cell=sis_b] g.node.current")
-    show(page, "tasks")
     wait_for_task(page, task, "done")
     show(page, "twin")
     page.wait_for_selector(".beside.chosen[data-cell=sis_b] g.node.is-success[data-path=root]")
@@ -539,9 +527,8 @@ def test_the_time_line_is_filtered_and_downloaded(open_page: Open) -> None:
 
 def test_the_links_say_who_is_heard(open_page: Open) -> None:
     page = open_page("links")
-    page.wait_for_selector('[data-row=ra1][data-s="online"]')
-    row = page.inner_text("[data-row=ra1]")
-    assert re.search(r"\d+\.\d Hz", row) and "ready" in row
+    page.wait_for_selector('[data-row=ra1][data-s="online"]:has-text("ready")')
+    page.wait_for_function(r"/\d+\.\d Hz/.test(document.querySelector('[data-row=ra1]').textContent)")
     assert "connected" in page.inner_text("[data-live=broker]")
 
 

@@ -82,6 +82,14 @@ def test_nothing_new_is_not_told(feed: Feed) -> None:
     assert len(viewer.frames) == 1
 
 
+def test_a_beat_is_told_though_nothing_is_new(feed: Feed) -> None:
+    viewer = Viewer()
+    feed.add(viewer)
+    feed.turn()
+    feed.turn(beat=True)
+    assert viewer.frames[1:] == [(2, {})]
+
+
 def test_each_page_is_told_in_its_language(side: Side, feed: Feed) -> None:
     english, spanish = Viewer(), Viewer("es")
     feed.add(english)

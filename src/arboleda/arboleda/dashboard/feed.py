@@ -16,6 +16,7 @@ from .plant_side import PlantSide
 from .story import Story
 
 FRAMES_HZ = 10.0
+BEAT_S = 1.0  # after so long without news the plant is asked, and pages are told that it answers
 BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
 WAITING = 200  # snapshots between two frames; past that the oldest are dropped
 
@@ -95,10 +96,14 @@ class Feed:
         """Send frames until cancelled."""
         assert self._news is not None
         while True:
-            await self._news.wait()
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._news.wait(), BEAT_S)
+            quiet = not self._news.is_set()
             self._news.clear()
             try:
-                self.turn()
+                if quiet and self._viewers:
+                    self._told.append((time.time(), self._plant.snapshot()))
+                self.turn(beat=quiet)
             except Exception:  # one frame that cannot be made does not end the page
                 log.exception("a frame of the page failed")
             await asyncio.sleep(1 / FRAMES_HZ)
@@ -108,8 +113,8 @@ class Feed:
             self._unwatch()
             self._unwatch = None
 
-    def turn(self) -> None:
-        """Take in what was told, and send each viewer what it has not been told."""
+    def turn(self, *, beat: bool = False) -> None:
+        """Take in what was told, and send each viewer what it has not been told; with `beat` also nothing."""
         story = self._story
         if story is None:
             return
@@ -118,14 +123,14 @@ class Feed:
         links = self._plant.links() if languages else {}
         self._shown = {language: self._shown.get(language, {}) for language in languages}
         for language in languages:
-            self._send(language, story.face(language, links))
+            self._send(language, story.face(language, links), beat=beat)
 
     def _take_in(self) -> None:
         while self._told and self._story is not None:
             unix_s, snapshot = self._told.popleft()
             self._story.see(snapshot, unix_s)
 
-    def _send(self, language: str, face: Face) -> None:
+    def _send(self, language: str, face: Face, *, beat: bool) -> None:
         patch = changed(self._shown[language], face)
         self._shown[language] = face
         text, everything = json.dumps(patch), ""
@@ -134,7 +139,7 @@ class Feed:
                 continue
             if seen.whole:
                 everything = everything or json.dumps(face)
-            elif not patch:
+            elif not patch and not beat:
                 continue
             seen.sent += 1
             viewer.show(seen.sent, everything if seen.whole else text)

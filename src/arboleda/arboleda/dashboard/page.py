@@ -111,6 +111,7 @@ def open_page(client: Client, desk: Desk, feed: Feed, layout: Layout, said: Word
                 label = said(f"tab.{name}")
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
                     build(layout, said)
+        trees.detail(said)
 
 
 def head(said: Words) -> str:

@@ -50,7 +50,7 @@ def build(layout: Layout, words: Words) -> None:
         _suggestions(layout)
     with tag("div", classes="box"):
         tag("h2", words("zones.title"))
-        columns = [*(words(f"column.{name}") for name in ("zone", "state", "robot", "waiting")), ""]
+        columns = [words(f"column.{name}") for name in ("zone", "state", "robot", "waiting", "acts")]
         rows("zones", columns, empty=words("zones.none"))
 
 

@@ -48,13 +48,20 @@ def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", *
     )
 
 
-def rows(name: str, columns: list[str], *, empty: str = "", classes: str = "") -> Element:
-    """A list whose rows come with the frames, as `rows/<name>`; `empty` stands where there is none."""
-    with tag("div", classes=f"table {classes}", role="table") as table:
+def rows(name: str, columns: list[str], *, empty: str = "", classes: str = "") -> None:
+    """A table, or a list where no column has a name; its rows come with the frames, as `rows/<name>`.
+
+    `empty` stands where there is none.
+    """
+    here = {"classes": "rows", "data_rows": name, "data_columns": "|".join(columns)}
+    with tag("div", classes=f"table {classes}"):
         if any(columns):
-            with tag("div", classes="row head", role="row"):
-                for column in columns:
-                    tag("span", column, role="columnheader")
-        tag("div", classes="rows", role="rowgroup", data_rows=name, data_columns="|".join(columns))
+            with tag("div", classes="filled", role="table"):
+                with tag("div", classes="row head", role="row"):
+                    for column in columns:
+                        tag("span", column, role="columnheader")
+                tag("div", role="rowgroup", **here)
+        else:
+            with tag("div", classes="filled"):
+                tag("div", role="list", **here)
         tag("p", empty, classes="empty")
-    return table

@@ -21,7 +21,6 @@ def build(layout: Layout, words: Words) -> None:
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))
                     rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
-    _detail(words)
 
 
 def beside(layout: Layout, words: Words) -> None:
@@ -82,11 +81,11 @@ def zooms(words: Words) -> None:
         tag("button", sign, type="button", classes="tool", data_zoom=name, title=label, aria_label=label)
 
 
-def _detail(words: Words) -> None:
+def detail(words: Words) -> None:
     """What a click on a node shows; the script fills it."""
     with tag("aside", id="node", hidden="true", aria_live="polite", aria_label=words("node.title")):
         tag("button", "×", type="button", id="node-close", classes="tool", aria_label=words("node.close"))  # noqa: RUF001
-        tag("h3", id="node-name")
+        tag("h2", id="node-name")
         tag("p", id="node-state", classes="pill")
         tag("p", id="node-about")
         tag("p", id="node-times")

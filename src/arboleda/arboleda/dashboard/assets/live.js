@@ -55,7 +55,7 @@ export function drawList(list) {
   const rows = ids.map((id) => drawRow(list, id, before.get(id), box.dataset.columns.split("|")));
   if (rows.length !== box.children.length || rows.some((row, n) => box.children[n] !== row))
     keepingFocus(() => box.replaceChildren(...rows));
-  box.parentElement.classList.toggle("is-empty", rows.length === 0);
+  box.closest(".table").classList.toggle("is-empty", rows.length === 0);
 }
 
 function keepingFocus(change) {
@@ -64,27 +64,36 @@ function keepingFocus(change) {
   if (focused?.isConnected) focused.focus({ preventScroll: true });
 }
 
+// Only what has changed is drawn anew: a button that somebody is pressing must not go away under the finger.
 function drawRow(list, id, row, columns) {
   const told = known.get(`row/${list}/${id}`) ?? { state: "", texts: [] };
   const print = JSON.stringify(told);
   if (row?.dataset.print === print) return row;
   row ??= document.createElement("div");
-  Object.assign(row.dataset, { row: id, print, s: told.state });
   row.className = "row";
-  row.setAttribute("role", "row");
-  const cells = told.texts.map((text, n) => cell(text, columns[n], n));
-  if (told.link) cells[told.link.column].replaceChildren(link(told.texts[told.link.column], told.link.to));
-  if (told.acts) cells.push(acts(told.acts));
-  keepingFocus(() => row.replaceChildren(...cells));
+  Object.assign(row.dataset, { row: id, print, s: told.state });
+  const titled = columns.some(Boolean);
+  row.setAttribute("role", titled ? "row" : "listitem");
+  const cells = told.texts.map((text, n) => ({ text, label: columns[n], name: `column-${n}`, to: told.link?.column === n && told.link.to }));
+  if (told.acts) cells.push({ acts: told.acts, name: "acts" });
+  cells.forEach((said, n) => {
+    const before = row.children[n];
+    if (before?.dataset.print === JSON.stringify(said)) return;
+    const made = cell(said);
+    made.dataset.print = JSON.stringify(said);
+    if (titled) made.setAttribute("role", "cell");
+    keepingFocus(() => (before ? before.replaceWith(made) : row.append(made)));
+  });
+  while (row.children.length > cells.length) row.lastChild.remove();
   return row;
 }
 
-function cell(text, label, number) {
+function cell({ text, label, name, to, acts }) {
   const made = document.createElement("span");
-  made.setAttribute("role", "cell");
-  made.className = `column-${number}`;
+  made.className = name;
   if (label) made.dataset.label = label;
-  made.textContent = text;
+  if (acts) made.append(...acts.map(offerButton));
+  else made.append(to ? link(text, to) : text);
   return made;
 }
 
@@ -93,14 +102,6 @@ function link(text, to) {
   made.dataset.go = JSON.stringify(to);
   made.href = address(to);
   made.textContent = text;
-  return made;
-}
-
-function acts(offers) {
-  const made = document.createElement("span");
-  made.setAttribute("role", "cell");
-  made.className = "acts";
-  made.append(...offers.map(offerButton));
   return made;
 }
 

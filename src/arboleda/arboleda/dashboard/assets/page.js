@@ -41,6 +41,7 @@ function arrive({ tab, cell, task: named, lang }) {
   if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "", cell ? "cell" : "plant");
   form.offer(cell);
   task.show(named);
+  tree.close();
   tree.refit();
 }
 

@@ -159,7 +159,7 @@ function choose(group) {
   describe();
 }
 
-function close() {
+export function close() {
   chosen = null;
   document.getElementById("node").hidden = true;
   document.querySelectorAll("g.chosen").forEach((each) => each.classList.remove("chosen"));

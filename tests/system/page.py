@@ -1,0 +1,37 @@
+"""What tests do on the page, in a real chromium."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from .conftest import Process, paths
+
+PATIENCE_MS = 20_000
+PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
+
+
+@contextmanager
+def running(state: Path, *args: str) -> Iterator[str]:
+    """A plant and its page's address."""
+    main = "from arboleda.app.cli import main; main()"
+    command = ("up", "--no-ros", "--rate", "10", "--state", str(state), *args)
+    plant = Process(sys.executable, "-c", main, *command, env={"PYTHONPATH": paths()})
+    try:
+        plant.wait_for("HTTP API")
+        yield next(line.split()[-1] for line in plant.lines if line.startswith("Page:"))
+        assert plant.interrupt() == 0, plant.output
+        assert "Traceback" not in plant.output, plant.output
+    finally:
+        plant.kill()
+
+
+def connected(page: Any) -> None:
+    page.wait_for_function("document.getElementById('connection')?.hidden")
+
+
+def show(page: Any, part: str) -> None:
+    page.click(f"[data-tab={part}]")
