@@ -598,3 +598,14 @@ def test_the_queue_is_paused_after_a_stop_until_resume(stage: Stage, evidence: E
     act(rig, Verb.RESUME)
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.FAILED, TaskState.DONE]
+
+
+@pytest.mark.parametrize(("limit", "waiting"), [(1, "1 task waiting"), (2, "2 tasks waiting")])
+def test_a_full_queue_is_counted_in_words_for_one_and_for_many(limit: int, waiting: str) -> None:
+    model = shipped("sis_a")
+    rig = Rig(replace(model, cells=(replace(model.cells[0], queue_limit=limit),)))
+    rig.wait(1.0)
+    for _ in range(limit + 1):
+        rig.submit(TASK)
+        rig.wait(0.1)
+    assert rig.submit(TASK).sentence == f"sis_a has {waiting}, its limit; send it again later"

@@ -9,6 +9,7 @@ from dataclasses import replace
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
 
+from arboleda.core.counting import counted
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, Report, SetEffector, Stop, StopMode
 from arboleda.core.model import Arm, Mobile, MotionState, Robot
@@ -157,7 +158,8 @@ def _unlabelled(message: Float32MultiArray, robot: str) -> tuple[str, tuple[floa
 
 def _joints(arm: Arm, values: tuple[float, ...]) -> tuple[float, ...]:
     if len(values) != len(arm.joints):
-        raise PayloadError(f"{arm.name} has {len(arm.joints)} joints, but the goal has {len(values)} numbers")
+        joints, numbers = counted(len(arm.joints), "joint"), counted(len(values), "number")
+        raise PayloadError(f"{arm.name} has {joints}, but the goal has {numbers}")
     return values
 
 
@@ -181,7 +183,11 @@ def _one_of(message: UInt8, allowed: Sequence[int]) -> int:
 def _positions(names: tuple[str, ...], message: JointState) -> tuple[float, ...]:
     """The positions of `names`, wherever they stand in the message."""
     if len(message.name) != len(message.position):
-        raise PayloadError(f"{len(message.name)} joint names but {len(message.position)} positions")
+        named, positions = (
+            counted(len(message.name), "joint name"),
+            counted(len(message.position), "position"),
+        )
+        raise PayloadError(f"{named} but {positions}")
     found = dict(zip(message.name, message.position, strict=True))
     missing = [name for name in names if name not in found]
     if missing:

@@ -93,7 +93,7 @@ def test_sockets_are_limited_in_number_and_the_api_still_answers(serve):
     with ExitStack() as open_pages:
         pages = [open_pages.enter_context(join(local, local.origin)) for _ in range(3)]
         assert [page.recv() for page in pages] == ["operator"] * 3
-        assert refused(local, local.origin) == (503, "3 pages are open already; close one.")
+        assert refused(local, local.origin) == (503, "No more than 3 may be open at a time; close a page.")
         assert local.client().post("/api/plant/stop").status_code == 200
     with join(local, local.origin) as page:
         assert page.recv() == "operator"

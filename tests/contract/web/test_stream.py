@@ -112,7 +112,7 @@ def test_streams_are_limited_in_number(serve) -> None:
         answer = web.get("/api/events")
         assert (answer.status_code, answer.json()["sentence"]) == (
             503,
-            "1 readers listen already; close one.",
+            "No more than 1 may listen at a time; close one.",
         )
 
 

@@ -47,6 +47,7 @@ def test_palletizing_is_asked_for_by_cell_or_arm(name: str) -> None:
         ("sis_a 0B 9", ["'9'", "0, 1, 2"]),
         ("sis_a 0B ٧", ["station"]),
         ("sis_a 0B 07", ["'07'"]),
+        ("sis_a", ["the task has 1 word; "]),
         ("sis_a 0B", ["2 words"]),
         ("sis_a 0B 7 8", ["4 words"]),
         ("sis_a paletizing", ["'paletizing'", "palletizing"]),

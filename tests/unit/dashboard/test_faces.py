@@ -91,6 +91,20 @@ def test_a_task_that_never_ran_or_is_not_known_says_so(told: Callable[..., Any])
     assert unknown["text/task.title"][0] == "#nix" and "knows no such task" in unknown["text/task.note"][0]
 
 
+@pytest.mark.parametrize(
+    ("count", "said"),
+    [
+        (1, "1 message of an unknown robot was rejected: ra_9"),
+        (2, "2 messages of unknown robots were rejected; the last one: ra_9"),
+    ],
+)
+def test_strays_are_counted_in_words_for_one_and_for_many(
+    told: Callable[..., Any], count: int, said: str
+) -> None:
+    face = told().face(refused={"": {"count": count, "last": "ra_9"}})
+    assert face["text/strays"] == [said, "warning"]
+
+
 def test_only_what_changed_is_told() -> None:
     assert changed({"a": 1, "b": [1]}, {"a": 1, "b": [2], "c": None}) == {"b": [2], "c": None}
 

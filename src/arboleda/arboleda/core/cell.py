@@ -13,6 +13,7 @@ from .advice import Advice
 from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
 from .context import Context
+from .counting import counted
 from .errors import QueueFull
 from .ledger import State
 from .messages import Failure, Reason, TaskState
@@ -58,8 +59,8 @@ class CellRun:
     def enqueue(self, task: Task) -> None:
         """Take a task in; QueueFull at the limit."""
         if len(self.queue) >= self.cell.queue_limit:
-            text = f"{self.cell.name} has {len(self.queue)} tasks waiting, its limit; send it again later"
-            raise QueueFull(text)
+            waiting = counted(len(self.queue), "task")
+            raise QueueFull(f"{self.cell.name} has {waiting} waiting, its limit; send it again later")
         self.queue.append(task)
 
     def waiting_for(self) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .counting import counted
 from .messages import Report
 from .model import Arm, Mobile, Robot
 
@@ -17,7 +18,7 @@ def _of_arm(arm: Arm, report: Report) -> str | None:
     if report.node is not None:
         return f"node is {report.node}; {arm.name} is an arm and stands on no node"
     if report.q is not None and len(report.q) != len(arm.joints):
-        return f"q has {len(report.q)} values; {arm.name} has {len(arm.joints)} joints"
+        return f"q has {counted(len(report.q), 'value')}; {arm.name} has {counted(len(arm.joints), 'joint')}"
     return None
 
 

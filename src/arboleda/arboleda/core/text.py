@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from .counting import counted
 from .errors import TextError
 from .model import Cell, Link, PlantModel, Robot
 from .outside import LINE, quoted
@@ -32,7 +33,7 @@ def parse(text: str, plant: PlantModel) -> Order:
     if len(words) == 2 and _known(words[1], _path_codes(cell)) is None:
         raise TextError(f"{quoted(words[1])} is neither a path of {cell.name} nor 'palletizing'; {form}")
     if len(words) != 3:
-        raise TextError(f"the task has {len(words)} words; {form}")
+        raise TextError(f"the task has {counted(len(words), 'word')}; {form}")
     return _storage(cell, words[1], words[2], task_id)
 
 

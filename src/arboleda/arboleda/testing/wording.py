@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from arboleda.app.simulate.words import counted, told
+from arboleda.app.simulate.words import told
 from arboleda.core import view
+from arboleda.core.counting import counted
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.run import Result
 from arboleda.simulator.watched import Broken, Watched
@@ -63,7 +64,7 @@ def timeline(lines: list[str]) -> list[str]:
     """The last of the lines, under a heading."""
     shown = [LONG_NUMBER.sub(_rounded, line) for line in lines[-LAST:]]
     older = f"; sim.timeline() has {len(lines)}" if len(lines) > len(shown) else ""
-    return [f"the last {len(shown)} things that happened, with the time in s{older}:", *shown]
+    return [f"the last {counted(len(shown), 'thing')} that happened, with the time in s{older}:", *shown]
 
 
 def _broken(broken: Broken, seconds: float, invariants: Iterable[Invariant]) -> str:

@@ -36,7 +36,8 @@ class Sockets:
     async def run(self, scope: Scope, receive: Receive, send: Send, login: Login) -> None:
         """One websocket until its end; Turned where too many are open."""
         if self._open >= self._most:
-            raise Turned(503, f"{self._most} pages are open already; close one.", retry_after=limits.LATER_S)
+            many = f"No more than {self._most} may be open at a time; close a page."
+            raise Turned(503, many, retry_after=limits.LATER_S)
         one = _Socket(receive, send, login, self._pace())
         self._open += 1
         try:

@@ -34,7 +34,7 @@ def routes(side: PlantSide, most: int) -> APIRouter:
     async def events(request: Request, last_event_id: Annotated[str, Header()] = "") -> StreamingResponse:
         """Changes as they happen (server-sent events)."""
         if len(changes) >= most:
-            sentence = f"{most} readers listen already; close one."
+            sentence = f"No more than {most} may listen at a time; close one."
             raise HTTPException(503, sentence, {"retry-after": limits.LATER_S})
         told = tell(changes, last_event_id, request.scope["arboleda.login"].alive)
         return StreamingResponse(told, media_type="text/event-stream", headers={"x-accel-buffering": "no"})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import copysign
 
+from arboleda.core.counting import counted
 from arboleda.wire.topics import Channel
 from arboleda.wire.units import to_wire
 
@@ -50,7 +51,8 @@ def rhythm(bench: Bench) -> Steps:
     before = len(bench.said)
     yield Wait(seconds=LISTEN_S)
     times = [said.at for said in bench.said[before:]]
-    demand(len(times) >= LEAST_REPORTS, f"{len(times)} reports in {LISTEN_S:g} s; 10 a second are needed")
+    heard = f"{counted(len(times), 'report')} in {LISTEN_S:g} s"
+    demand(len(times) >= LEAST_REPORTS, f"{heard}; 10 a second are needed")
     gap = max(after - at for at, after in pairwise(times))
     demand(gap <= LONGEST_GAP_S, f"{gap:.2f} s between two reports; 0.1 s are needed")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from arboleda.core.counting import counted
 from arboleda.core.model import Joint, Pose
 
 from .document import Document, Place
@@ -81,7 +82,8 @@ class PoseReader:
     def _spread(self, shape: PositionShape, place: Place) -> tuple[float, ...] | None:
         turning = [joint for joint in self.joints if joint.unit == "rad"]
         if len(shape.deg) != len(turning):
-            counts = f"has {len(shape.deg)} values; the {self.model} has {len(turning)} turning joints"
+            needed = counted(len(turning), "turning joint")
+            counts = f"has {counted(len(shape.deg), 'value')}; the {self.model} has {needed}"
             self.problem((*place, "deg"), counts)
             return None
         if not self.mm_fits(place, needed=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from itertools import product
 
+from arboleda.core.counting import counted
 from arboleda.core.model import Palletizing, Pose
 
 from .document import Place, shown
@@ -61,7 +62,8 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
         return []
     columns, rows = shape.columns_q1_deg, shape.rows_q2_deg
     if len(columns) * len(rows) > MOST:
-        count = f"{len(rows)} rows x {len(columns)} columns are more than {MOST} stations"
+        size = f"{counted(len(rows), 'row')} x {counted(len(columns), 'column')}"
+        count = f"{size} are more than {MOST} stations"
         reader.problem(place, count)
         return []
     height = millimetres(shape.mm) if reader.document.has((*place, "mm")) else None

@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
+from arboleda.core.counting import counted
 from arboleda.simulator.run import Result
 
 from . import report, story, summary
@@ -17,7 +18,7 @@ from .screen import progress
 from .search import Shrunk, shrunk
 from .setting import Tick
 from .tally import Tally
-from .words import counted, short
+from .words import short
 from .workers import Workers
 
 HELD, BROKEN, INTERRUPTED = 0, 1, 130  # exit statuses
@@ -76,11 +77,11 @@ class Many:
         tally, count = self._tally, self._request.count
         done = len(tally.rows)
         said = [
-            f"{done:,} of {count:,} seeds" if count else counted(done, "seed"),
+            f"{done:,} of {counted(count, 'seed')}" if count else counted(done, "seed"),
             f"{minutes:,} min",
-            f"{tally.cycles:,} cycles",
+            counted(tally.cycles, "cycle"),
             f"{tally.cycles / self._since():,.0f}/s",
-            f"{tally.faults.total():,} faults",
+            counted(tally.faults.total(), "fault"),
             *([f"{short(tally.checks)} checks"] if tally.checks else []),
             *([f"{len(tally.broken)} BROKEN"] if tally.broken else []),
         ]
@@ -92,11 +93,12 @@ class Many:
             return
         injected = len(lowest.faults)
         with progress(self._console, f"shrinking seed {lowest.seed}", None) as show:
-            show(f"{counted(injected, 'fault')}", 0)
+            all_of_them = counted(injected, "fault")
+            show(all_of_them, 0)
             self._shrunk = shrunk(
                 self._request.setting,
                 lowest,
-                lambda runs, left: show(f"{left} of {injected} faults left after {runs} runs", runs),
+                lambda runs, left: show(f"{left} of {all_of_them} left after {counted(runs, 'run')}", runs),
             )
 
     def _report(self) -> None:

@@ -8,9 +8,11 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from arboleda.core.counting import counted
+
 from .setting import rules
 from .tally import Tally
-from .words import counted, seeds, short
+from .words import seeds, short
 
 ONE_COLUMN = 8  # kinds of faults; more are drawn in two
 

@@ -7,12 +7,13 @@ import re
 from rich.console import Console
 from rich.text import Text
 
+from arboleda.core.counting import counted
 from arboleda.simulator.run import Result
 
 from .drawn import as_yaml
 from .plants import Plant, notes
 from .setting import rules
-from .words import counted, told
+from .words import told
 
 LINES = 40  # of the timeline
 LONG_NUMBER = re.compile(r"-?\d+\.\d{5,}(?:e-?\d+)?")

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from arboleda.core.counting import counted
 from arboleda.simulator.faults import Fault
-
-
-def counted(number: int, thing: str) -> str:
-    """`1 seed`, `1,200 seeds`."""
-    return f"{number:,} {thing}{'' if number == 1 else 's'}"
 
 
 def seeds(done: Collection[int]) -> str:

@@ -43,7 +43,8 @@ def _strays(moment: Moment) -> list[str]:
     stray = moment.links["refused"].get("", {"count": 0, "last": None})
     if not stray["count"]:
         return ["", ""]
-    return [moment.words("links.strays", count=stray["count"], last=stray["last"] or ""), "warning"]
+    key = "links.stray" if stray["count"] == 1 else "links.strays"
+    return [moment.words(key, count=stray["count"], last=stray["last"] or ""), "warning"]
 
 
 def _row(moment: Moment, robot: Row) -> Row:
