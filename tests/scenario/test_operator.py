@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Command, Fact, Journal, OperatorRequest, Reason, TaskState, Verb
-from arboleda.core.model import Evidence
+from arboleda.core.messages import Command, Fact, Home, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.core.model import Evidence, Link, PlantModel
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication
 
@@ -598,6 +598,50 @@ def test_the_queue_is_paused_after_a_stop_until_resume(stage: Stage, evidence: E
     act(rig, Verb.RESUME)
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert [change.state for change in rig.outcomes().values()] == [TaskState.FAILED, TaskState.DONE]
+
+
+def drawn_mobile(**changes: Any) -> PlantModel:
+    """sis_a with a mobile robot that is only drawn."""
+    model = shipped("sis_a", **changes)
+    (only,) = model.cells
+    return replace(model, cells=(replace(only, mobile=replace(only.mobile, link=Link.NONE)),))
+
+
+@pytest.mark.parametrize("scope", ["sis_a", "plant"])
+def test_home_of_a_cell_leaves_out_what_is_only_drawn(scope: str) -> None:
+    rig = Rig(drawn_mobile())
+    rig.wait(1.0)
+    assert rig.operate(Verb.HOME, scope) is None
+    assert [each.robot for each in rig.sent if isinstance(each, Home)] == ["ra1"]
+
+
+@pytest.mark.parametrize("by_hand", [False, True])
+def test_home_of_a_robot_that_is_only_drawn_says_so(by_hand: bool) -> None:
+    rig = Rig(drawn_mobile(assume_homed=True))
+    rig.wait(1.0)
+    refusal = rig.operate(Verb.HOME, "rm_sis_a", by_hand=by_hand)
+    assert refusal == "rm_sis_a is only drawn (link: none)"
+
+
+def test_cancel_of_an_unknown_task_says_so_and_which_tasks_are_open() -> None:
+    rig = Rig(shipped("sis_a"))
+    none = rig.operate(Verb.CANCEL, "lot42")
+    assert none == (
+        "there is no task 'lot42'; open tasks: none; cells and robots of this plant: sis_a, ra1, rm_sis_a"
+    )
+    for number in range(12):
+        rig.submit(f"sis_a 0B 7 #n{number}")
+    assert "open tasks: n0, n1, n2, n3, n4, n5, n6, n7, n8, n9 and 2 more;" in str(
+        rig.operate(Verb.CANCEL, "#lot42")
+    )
+
+
+def test_cancel_knows_a_cell_in_any_case_as_the_other_verbs_do() -> None:
+    rig = Rig(shipped("sis_a"))
+    rig.wait(1.0)
+    rig.submit(TASK)
+    rig.wait(1.0)
+    assert rig.operate(Verb.CANCEL, "SIS_A") is None
 
 
 @pytest.mark.parametrize(("limit", "waiting"), [(1, "1 task waiting"), (2, "2 tasks waiting")])

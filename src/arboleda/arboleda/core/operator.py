@@ -23,6 +23,7 @@ class Refused(ArboledaError):
 
 
 ACTS_KEPT = 20  # what a screen shows of them; the journal has all
+SHOWN = 10  # tasks that a sentence names
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,7 @@ class Operator:
         self._intake = intake
         self._clock = clock
         self.acts: deque[OperatorAct] = deque(maxlen=ACTS_KEPT)
+        self._reached = {robot.name for cell in cells.values() for robot in cell.cell.reached}
 
     def act(self, request: OperatorRequest) -> None:
         """Do it and journal it; Refused says why nothing was done."""
@@ -79,6 +81,8 @@ class Operator:
             return self._planned_override(scope)
         if request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
             return self._planned_cancel(scope.lstrip("#"), _cancelled_by(request))
+        if request.verb is Verb.CANCEL:
+            scope = self._known_scope(scope)
         robots = self._robots(scope)
         if request.verb is Verb.HOME:
             return self._planned_homing(robots, by_hand=request.by_hand)
@@ -108,6 +112,19 @@ class Operator:
             raise
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._broke(cell.cell.name, error)
+
+    def _known_scope(self, scope: str) -> str:
+        """The plant, a cell or a robot, where it could be a task too; Refused names the tasks there are."""
+        name, names = scope.lower(), self._dispatcher.beliefs
+        if name in ("", "plant") or name in self._cells or name in names:
+            return name
+        open_tasks = [id for id, task in self._intake.tasks.items() if task.ended_at is None]
+        more = f" and {len(open_tasks) - SHOWN} more" if len(open_tasks) > SHOWN else ""
+        there = f"{', '.join(open_tasks[:SHOWN]) or 'none'}{more}"
+        known = ", ".join([*self._cells, *names])
+        raise Refused(
+            f"there is no task {quoted(scope)}; open tasks: {there}; cells and robots of this plant: {known}"
+        )
 
     def _robots(self, scope: str) -> set[str]:
         """The robots of a scope: the plant, a cell, or one robot."""
@@ -155,6 +172,8 @@ class Operator:
         return partial(cell.cancel, failure)
 
     def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
+        """What is only drawn is left out; asked for alone, it is refused."""
+        robots = self._reached & robots or robots
         for name in sorted(robots):
             obstacle = self._not_homeable(name, by_hand=by_hand)
             if obstacle:
@@ -201,6 +220,8 @@ class Operator:
         belief = self._dispatcher.beliefs[name]
         if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
             return refusal
+        if name not in self._reached:
+            return f"{name} is only drawn (link: none)"
         if motion := self._dispatcher.motion_of(name):
             return f"{name} is still {motion.doing}"
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS

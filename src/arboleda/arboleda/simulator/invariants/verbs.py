@@ -19,7 +19,7 @@ from arboleda.core.messages import (
     TaskState,
     Verb,
 )
-from arboleda.core.model import Arm, Evidence
+from arboleda.core.model import Arm, Evidence, Link
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped
@@ -111,6 +111,7 @@ def _refused(look: Look, request: OperatorRequest) -> bool | None:
 def _not_so(look: Look, request: OperatorRequest) -> bool:
     """Whether a robot of the scope is not homed in this way."""
     robots = [look.world.model.robots[name] for name in look.record.scopes.robots(request.scope)]
+    robots = [robot for robot in robots if robot.link is not Link.NONE] or robots
     if request.by_hand:
         return any(robot.says_homed for robot in robots)
     return any(robot.evidence is not Evidence.IDS for robot in robots)
