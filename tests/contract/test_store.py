@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,7 +22,7 @@ from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import Fact, Journal, Remember, Verb
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
-ACT = Journal(verb=Verb.OVERRIDE, scope="mesa", sentence="mesa is free: ra1 was carried away")
+ACT = Journal(verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence="mesa is free: ra1 was carried away")
 NOBODY = 65534
 AT_FULL = """
 import os, sys, time
@@ -32,7 +33,7 @@ store = Store(Path(sys.argv[1]))
 store.open()
 for fact in Fact:
     store.keep(Remember(fact=fact, name="ra1", value="on"))
-store.journal(Journal(verb=Verb.STOP, scope="", sentence="everything stopped"), 5.0)
+store.journal(Journal(verb=Verb.STOP, scope="", cell=None, sentence="everything stopped"), 5.0)
 print("kept", flush=True)
 time.sleep(60)
 """
@@ -123,12 +124,14 @@ def test_the_last_word_on_each_fact_counts(facts):
 
 def test_the_journal_is_read_newest_first(path):
     with Store(path) as store:
-        store.journal(Journal(verb=Verb.STOP, scope="sis_a", sentence="ra1 and rm_sis_a stopped"), 1000.25)
+        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence="ra1 stopped")
+        store.journal(stopped, 1000.25)
         store.journal(ACT, 999.5)
     with Store(path) as store:
         newest, oldest = store.entries()
         assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
-        assert (newest.scope, newest.sentence) == (ACT.scope, ACT.sentence)
+        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, ACT.sentence)
+        assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
         assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
         assert store.entries(limit=1) == [newest]
 
@@ -217,6 +220,20 @@ def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
     assert modes == ["FULL", "NORMAL", "FULL"]
 
 
+def test_a_file_of_the_first_format_is_brought_up_and_keeps_what_it_has(path):
+    with changed(path, "ALTER TABLE journal DROP COLUMN cell") as store:
+        store.close()
+    db = sqlite3.connect(path)
+    db.execute("PRAGMA user_version = 1")
+    db.close()
+    with Store(path) as store:
+        assert store.facts(Fact.LATCH) == {"ra1": "on"}
+        (old,) = store.entries()
+        assert (old.sentence, old.cell) == (ACT.sentence, None)
+        store.journal(replace(ACT, cell="sis_a"), 6.0)
+        assert store.entries()[0].cell == "sis_a"
+
+
 def test_a_file_of_a_newer_arboleda_is_left_as_it_is(path):
     db = sqlite3.connect(path)
     db.execute(f"PRAGMA user_version = {VERSION + 1}")
@@ -291,7 +308,9 @@ def test_a_fact_that_is_no_text_is_one_sentence(path, value):
         store.facts(Fact.LATCH)
 
 
-@pytest.mark.parametrize("change", ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'"])
+@pytest.mark.parametrize(
+    "change", ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'", "cell = x'00'"]
+)
 def test_an_entry_that_is_no_entry_is_one_sentence(path, change):
     gone = "move it away"
     with changed(path, f"UPDATE journal SET {change}") as store, pytest.raises(ArboledaError, match=gone):

@@ -86,7 +86,8 @@ TASKS = (
         edit(
             Operator.act,
             "self._planned(request, scope)()",
-            'self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=""))\n'
+            "act = Journal(verb=request.verb, scope=scope, cell=None, sentence='')\n"
+            "    self._dispatcher.outbox.append(act)\n"
             "    self._planned(request, scope)()",
         ),
     ),

@@ -644,6 +644,18 @@ def test_cancel_knows_a_cell_in_any_case_as_the_other_verbs_do() -> None:
     assert rig.operate(Verb.CANCEL, "SIS_A") is None
 
 
+def test_an_act_and_its_journal_entry_name_the_cell() -> None:
+    rig = Rig(shipped())
+    rig.wait(1.0)
+    rig.submit("sis_b 0B 7 #sis_c")
+    rig.wait(1.0)
+    for verb, scope in ((Verb.CANCEL, "sis_c"), (Verb.STOP, "ra1"), (Verb.STOP, "SIS_C"), (Verb.STOP, "")):
+        assert rig.operate(verb, scope) is None
+    cells = ["sis_b", "sis_a", "sis_c", None]
+    assert [act["cell"] for act in rig.snapshot()["acts"]] == cells
+    assert [each.cell for each in rig.sent if isinstance(each, Journal)] == cells
+
+
 @pytest.mark.parametrize(("limit", "waiting"), [(1, "1 task waiting"), (2, "2 tasks waiting")])
 def test_a_full_queue_is_counted_in_words_for_one_and_for_many(limit: int, waiting: str) -> None:
     model = shipped("sis_a")

@@ -533,7 +533,7 @@ def test_notices_reach_other_nodes(links):
     for publisher in (side.port._start, side.port._heartbeat, side.port._diagnostics):
         eventually(publisher.get_subscription_count)
     silent = ("arboleda: ra1", "ra_1", STALE, "silent", {"node": "4"})
-    side.port.send(Journal(verb=Verb.STOP, scope="", sentence="kept in the plant's own process"))
+    side.port.send(Journal(verb=Verb.STOP, scope="", cell=None, sentence="kept in the plant's own process"))
     side.port.send(SystemStart(cell="sis_a"))
     side.port.send(Heartbeat(epoch=7))
     assert len(list(side.port.publish_diagnostics([silent]))) == 1

@@ -34,7 +34,7 @@ from arboleda.testing.plants import shipped
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 ON = SetEffector(id="7-1", robot="ra1", on=True)
-ACT = Journal(verb=Verb.STOP, scope="", sentence="everything stopped")
+ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence="everything stopped")
 
 
 class Script(Plant):

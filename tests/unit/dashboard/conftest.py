@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
@@ -16,10 +16,10 @@ LINKS: dict[str, Any] = {"broker": {"address": "here:1883", "connected": True}, 
 class Told(Rig):
     """A plant whose story is told at every step, as the page's feed does."""
 
-    def __init__(self, **changes: Any) -> None:
+    def __init__(self, *, past_acts: Sequence[dict[str, Any]] = (), **changes: Any) -> None:
         self.story: Story | None = None
         super().__init__(shipped(**changes))
-        self.story = Story(view.layout(self.plant.model), [])
+        self.story = Story(view.layout(self.plant.model), list(past_acts))
         self.wait(0.5)
 
     def _keep(self) -> None:

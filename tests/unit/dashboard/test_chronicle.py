@@ -1,10 +1,21 @@
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
-from arboleda.core.messages import Verb
+import pytest
+
+from arboleda.app.parts.orchestrator import act_line
+from arboleda.core.messages import Journal, Verb
 from arboleda.dashboard.chronicle import EVENTS, Chronicle
+from arboleda.dashboard.faces.moment import clock
+
+
+def act(**said: Any) -> dict[str, Any]:
+    """An act of an operator, at unix s."""
+    return said
 
 
 def told_of(rig: Any, kind: str) -> list[tuple[str, str, str]]:
@@ -49,11 +60,40 @@ def test_a_plant_that_does_nothing_has_nothing_to_tell_of_its_cells(told: Callab
 
 
 def test_what_operators_did_before_this_start_comes_first() -> None:
-    chronicle = Chronicle([{"at": 5.0, "scope": "", "sentence": "stop plant"}])
-    assert [(event["at"], event["sentence"]) for event in chronicle.events] == [(5.0, "stop plant")]
+    chronicle = Chronicle([act(at=5.0, scope="lot42", cell="sis_b", sentence="cancel lot42")])
+    (event,) = chronicle.events
+    assert (event["at"], event["cell"], event["sentence"]) == (5.0, "sis_b", "cancel lot42")
+
+
+def test_an_act_keeps_its_cell_and_its_date_on_every_later_start(told: Callable[..., Any]) -> None:
+    at = 86_400.0 * 365
+    rig = told(past_acts=[act(at=at, scope="ra1", cell="sis_a", sentence="home ra1")])
+    row = rig.face()["row/events/1"]
+    assert row["cell"] == "sis_a" and row["texts"][1] == "sis_a"
+    assert row["texts"][0] == time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(at))
+
+
+def test_an_act_of_today_is_told_with_its_own_time_and_the_cell_of_its_task(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_b 0B 7 #lot42")
+    rig.wait_for("sis_b", "move to pick-up")
+    rig.operate(Verb.CANCEL, "lot42")
+    at = 1000.0 + rig.now
+    rig.wait(2.0)
+    rig.operate(Verb.STOP)
+    whole, one = [event for event in reversed(rig.story.chronicle.events) if event["kind"] == "operator"]
+    assert (one["cell"], one["at"], whole["cell"]) == ("sis_b", pytest.approx(at), None)
+    assert rig.face()[f"row/events/{one['number']}"]["texts"][0] == clock(at)
+
+
+def test_the_log_line_of_an_act_names_its_cell_once() -> None:
+    home = Journal(verb=Verb.HOME, scope="ra1", cell="sis_a", sentence="home ra1")
+    assert act_line(home) == "home ra1 (sis_a)"
+    assert act_line(replace(home, scope="sis_a", sentence="home sis_a")) == "home sis_a"
+    assert act_line(replace(home, scope="", cell=None, sentence="stop plant")) == "stop plant"
 
 
 def test_the_time_line_is_bounded() -> None:
-    acts = [{"at": float(n), "scope": "", "sentence": "stop plant"} for n in range(EVENTS + 5)]
+    acts = [act(at=float(n), scope="", cell=None, sentence="stop plant") for n in range(EVENTS + 5)]
     events = Chronicle(acts).events
     assert len(events) == EVENTS and events[-1]["number"] == EVENTS + 5

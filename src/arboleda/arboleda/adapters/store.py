@@ -11,13 +11,14 @@ from pathlib import Path
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import Fact, Journal, Remember
 
-VERSION = 1
+VERSION = 2
 SCHEMA = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name)) WITHOUT ROWID",
     "CREATE TABLE journal (id INTEGER PRIMARY KEY, unix_s REAL NOT NULL, verb TEXT NOT NULL,"
-    " scope TEXT NOT NULL, sentence TEXT NOT NULL)",
+    " scope TEXT NOT NULL, sentence TEXT NOT NULL, cell TEXT)",
     f"PRAGMA user_version = {VERSION}",
 )
+FROM_1 = ("ALTER TABLE journal ADD COLUMN cell TEXT", f"PRAGMA user_version = {VERSION}")
 IN_MEMORY = Path(":memory:")
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 
@@ -38,13 +39,17 @@ ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
 
 @dataclass(frozen=True, kw_only=True)
 class JournalEntry:
-    """One act of an operator; `id` grows by one, `unix_s` is what the clock of the plant's machine said."""
+    """One act of an operator; `id` grows by one, `unix_s` is what the clock of the plant's machine said.
+
+    `cell` is None where the act was for more than one, or is older than this column.
+    """
 
     id: int
     unix_s: float
     verb: str
     scope: str
     sentence: str
+    cell: str | None
 
 
 class Store:
@@ -102,18 +107,19 @@ class Store:
 
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
-        row = (unix_s, entry.verb.value, entry.scope, entry.sentence)
-        insert = "INSERT INTO journal (unix_s, verb, scope, sentence) VALUES (?, ?, ?, ?)"
+        row = (unix_s, entry.verb.value, entry.scope, entry.sentence, entry.cell)
+        insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell) VALUES (?, ?, ?, ?, ?)"
         self._commit(insert, row, durable=True)
 
     def entries(self, limit: int = 100) -> list[JournalEntry]:
         """The last acts, the newest first."""
-        columns = "id", "unix_s", "verb", "scope", "sentence"
+        columns = "id", "unix_s", "verb", "scope", "sentence", "cell"
         query = f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?"
         with self._explained(ArboledaError):
             rows = self._db.execute(query, (limit,)).fetchall()
-        for _, unix_s, *texts in rows:
-            if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in texts):
+        for _, unix_s, *texts, cell in rows:
+            known = [*texts, cell or ""]
+            if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in known):
                 raise self._damaged()
         return [JournalEntry(**dict(zip(columns, row, strict=True))) for row in rows]
 
@@ -150,12 +156,14 @@ class Store:
                     f"The plant's memory {self.path} has lost its content, or is another program's: "
                     f"put a copy of it in its place, or {MOVE_AWAY}."
                 )
-            _lay_out(db)
+            _carry_out(db, SCHEMA)
         db.execute("PRAGMA journal_mode = WAL")
         with db:
             db.execute("BEGIN IMMEDIATE")  # refused where another program writes, or nobody may
         if db.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
             raise sqlite3.DatabaseError("database disk image is malformed")
+        if version == 1:
+            _carry_out(db, FROM_1)
 
     def _damaged(self) -> ArboledaError:
         return ArboledaError(
@@ -179,7 +187,7 @@ class Store:
         fresh.unlink(missing_ok=True)
         db = sqlite3.connect(fresh, isolation_level=None)
         try:
-            _lay_out(db)
+            _carry_out(db, SCHEMA)
             db.close()
             fresh.replace(self.path)
         finally:
@@ -201,10 +209,11 @@ class Store:
             raise kind(f"The plant's memory {self.path} cannot be used ({what}).") from error
 
 
-def _lay_out(db: sqlite3.Connection) -> None:
+def _carry_out(db: sqlite3.Connection, statements: tuple[str, ...]) -> None:
+    """All of them, or none."""
     with db:
         db.execute("BEGIN IMMEDIATE")
-        for statement in SCHEMA:
+        for statement in statements:
             db.execute(statement)
 
 

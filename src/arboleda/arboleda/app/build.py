@@ -287,7 +287,10 @@ def _nothing() -> None: ...
 def _acts(store: Store) -> list[dict[str, Any]]:
     """What operators did before this start, oldest first."""
     entries = reversed(store.entries())
-    return [{"at": each.unix_s, "scope": each.scope, "sentence": each.sentence} for each in entries]
+    return [
+        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": each.sentence}
+        for each in entries
+    ]
 
 
 def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker | OtherBroker:

@@ -177,10 +177,11 @@ class Remember:
 
 @dataclass(frozen=True, kw_only=True)
 class Journal:
-    """One act of an operator, kept for good."""
+    """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more."""
 
     verb: Verb
     scope: str
+    cell: str | None
     sentence: str
 
 

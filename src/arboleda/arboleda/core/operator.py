@@ -33,6 +33,7 @@ class OperatorAct:
     number: int
     at: float
     scope: str
+    cell: str | None  # None for the whole plant and for a zone, which several cells may share
     sentence: str
 
 
@@ -61,11 +62,13 @@ class Operator:
         """Do it and journal it; Refused says why nothing was done."""
         scope = _scope(request)
         self._planned(request, scope)()
+        cell = self._cell_of(request, scope)
         how = " by hand" if request.by_hand else " by its client" if request.client else ""
         sentence = f"{request.verb.value} {scope or 'plant'}{how}"
-        self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, sentence=sentence))
+        self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, cell=cell, sentence=sentence))
         number = self.acts[-1].number + 1 if self.acts else 1
-        self.acts.append(OperatorAct(number=number, at=self._clock(), scope=scope, sentence=sentence))
+        act = OperatorAct(number=number, at=self._clock(), scope=scope, cell=cell, sentence=sentence)
+        self.acts.append(act)
 
     def refusal(self, request: OperatorRequest) -> str | None:
         """Why a request would be refused now; None where it would be done."""
@@ -112,6 +115,14 @@ class Operator:
             raise
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._broke(cell.cell.name, error)
+
+    def _cell_of(self, request: OperatorRequest, scope: str) -> str | None:
+        """The one cell that a request is for; None where it is for more."""
+        task = self._intake.tasks.get(scope.lstrip("#")) if request.verb is Verb.CANCEL else None
+        if task is not None:
+            return task.order.cell
+        name, its_cell = scope.lower(), self._dispatcher.model.cell_of
+        return name if name in self._cells else its_cell[name].name if name in its_cell else None
 
     def _known_scope(self, scope: str) -> str:
         """The plant, a cell or a robot, where it could be a task too; Refused names the tasks there are."""

@@ -278,7 +278,13 @@ def _rejected(known: tuple[int, str] | None) -> dict[str, Any]:
 
 def _act(act: OperatorAct) -> dict[str, Any]:
     """What an operator did; `number` grows by one with every act."""
-    return {"number": act.number, "at": act.at, "scope": act.scope, "sentence": act.sentence}
+    return {
+        "number": act.number,
+        "at": act.at,
+        "scope": act.scope,
+        "cell": act.cell,
+        "sentence": act.sentence,
+    }
 
 
 def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:

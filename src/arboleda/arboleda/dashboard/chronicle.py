@@ -25,25 +25,24 @@ class Chronicle:
         self._known: dict[tuple[str, str], str] = {}
         self._last_act = self._last_interference = 0
         for act in past_acts:
-            self._add(act["at"], None, "operator", act["scope"] or "plant", "did", act["sentence"])
+            self._did(act["at"], act)
 
     def see(self, snapshot: Row, unix_s: float) -> None:
         """Take in what is new in a snapshot."""
-        told = [*self._acts(snapshot), *self._interference(snapshot), *_states(snapshot)]
-        for cell, kind, subject, what, sentence in told:
-            if kind in ("operator", "foreign") or self._known.get((kind, subject)) != what:
+        for act in snapshot["acts"]:
+            if act["number"] > self._last_act:
+                self._last_act = act["number"]
+                self._did(unix_s - (snapshot["at"] - act["at"]), act)
+        for cell, kind, subject, what, sentence in (*self._interference(snapshot), *_states(snapshot)):
+            if kind == "foreign" or self._known.get((kind, subject)) != what:
                 first = (kind, subject) not in self._known
                 self._known[(kind, subject)] = what
                 if not (first and what in EXPECTED):
                     self._add(unix_s, cell, kind, subject, what, sentence)
 
-    def _acts(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
-        cell_of = _cells(snapshot)
-        for act in snapshot["acts"]:
-            if act["number"] > self._last_act:
-                self._last_act = act["number"]
-                scope = act["scope"] or "plant"
-                yield cell_of.get(scope, scope), "operator", scope, "did", act["sentence"]
+    def _did(self, unix_s: float, act: Row) -> None:
+        """An operator did something."""
+        self._add(unix_s, act["cell"], "operator", act["scope"] or "plant", "did", act["sentence"])
 
     def _interference(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
         cell_of = _cells(snapshot)

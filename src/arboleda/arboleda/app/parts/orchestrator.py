@@ -193,7 +193,7 @@ class Orchestrator:
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
-            OPERATORS.info("%s", message.sentence)
+            OPERATORS.info("%s", act_line(message))
         if self._store is None or self._amnesia is not None:
             return
         if isinstance(message, Remember):
@@ -302,6 +302,11 @@ def task_line(change: TaskChanged) -> str:
     return f"{change.state.value:<9} {change.text}{why}" + (
         f" ({change.reason.value})" if change.reason else ""
     )
+
+
+def act_line(act: Journal) -> str:
+    """One line on what an operator did, with the cell where the sentence does not name it."""
+    return act.sentence if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
 
 
 def _log(message: TaskChanged | OperatorAnswer) -> None:

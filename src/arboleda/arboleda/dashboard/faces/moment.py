@@ -33,6 +33,12 @@ def clock(unix_s: float) -> str:
     return time.strftime("%H:%M:%S", time.localtime(unix_s))
 
 
+def dated(unix_s: float, now: float) -> str:
+    """The `clock`, after its date where that is not the day of `now`."""
+    date, today = (time.strftime("%Y-%m-%d", time.localtime(at)) for at in (unix_s, now))
+    return clock(unix_s) if date == today else f"{date} {clock(unix_s)}"
+
+
 def seconds(value: float | None) -> str:
     """A span for people: `8 s`, `2:05 min`, `3:07 h`; "" where there is none."""
     if value is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import Face
-from .moment import Moment, clock, seconds
+from .moment import Moment, dated, seconds
 
 ORDER = {"running": 0, "queued": 1}  # the rest has ended
 Row = dict[str, Any]
@@ -33,9 +33,8 @@ def sorted_tasks(tasks: list[Row]) -> list[Row]:
 
 def _row(moment: Moment, task: Row) -> Row:
     words = moment.words
-    times = [
-        clock(moment.unix(at)) if at is not None else "" for at in (task["started_at"], task["ended_at"])
-    ]
+    starts_and_ends = (task["started_at"], task["ended_at"])
+    times = ["" if at is None else dated(moment.unix(at), moment.unix_s) for at in starts_and_ends]
     return {
         "state": task["state"],
         "cell": task["cell"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import Face
-from .moment import Moment, clock
+from .moment import Moment, dated
 
 SHOWN = 200  # of what is kept; the download has all
 Event = dict[str, Any]
@@ -26,7 +26,7 @@ def _row(moment: Moment, event: Event) -> dict[str, Any]:
         "state": event["what"],
         "cell": event["cell"] or "",
         "texts": [
-            clock(event["at"]),
+            dated(event["at"], moment.unix_s),
             event["cell"] or words("events.plant"),
             words(f"events.{event['kind']}", subject=event["subject"], what=_what(moment, event)),
             _sentence(moment, event),
