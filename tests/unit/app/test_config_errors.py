@@ -178,6 +178,22 @@ def test_all_mistakes_are_reported_at_once_in_the_order_of_the_file(tmp_path: Pa
     assert lines == [2, 5, 14, 30]
 
 
+def test_what_follows_a_misspelt_model_is_found_in_the_same_pass(tmp_path: Path) -> None:
+    text = PLANT.replace("model: scara", "model: skara").replace("deg: [45, 10]", "deg: [45, 136]")
+    text = text.replace("q3_mm_s: 30", "q3_mm_s: 61").replace(
+        "{pitch_mm: 200}", "{pitch_mm: 200}\n      model: mobil"
+    )
+    found = problems(tmp_path, text)
+    for words in ('is "skara"', "must be at most 60 mm/s", 'is "mobil"; did you mean "mobile"?', "135 deg"):
+        assert any(words in problem for problem in found), words
+    assert len(found) == 4
+
+
+def test_a_model_that_nobody_can_guess_says_what_is_not_checked_yet(tmp_path: Path) -> None:
+    (found,) = problems(tmp_path, PLANT.replace("model: scara", "model: puma"))
+    assert found.endswith('is "puma"; what depends on the model is checked once it is right')
+
+
 def test_a_cell_needs_stations_of_its_own_or_shared_ones(tmp_path: Path) -> None:
     shared, _, rest = PLANT.partition("stations:\n")
     text = shared + rest.split("\n", 2)[2]

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile, Placement
 
-from .document import Document, Place, choice, nearest, shown
+from .document import Document, Place, choice, closest, nearest, shown
 from .poses import PoseReader, in_file_unit, span
 from .robot_models import TO_SI, ArmModel, arm_models, millimetres, mobile_models
 from .shapes import LIMITS, MAPPING, SPEED, ArmShape, BaseShape, GridShape, MobileShape, RobotShape
@@ -106,11 +106,18 @@ def _section(document: Document, place: Place, shape: type[BaseShape]) -> Any:
 
 
 def _model(document: Document, place: Place, models: dict[str, T], default: str | None = None) -> T | None:
+    """The model of that name; of a misspelt one, with the problem kept, the model that was meant: what
+    follows is held against that.
+    """
     name = document.value(place) if document.has(place) else default
-    if isinstance(name, str) and name not in models:
-        known = choice(sorted(models))
-        document.problem(place, f"must be {known}, is {shown(name)}{nearest(name, models)}")
-    return models.get(name) if isinstance(name, str) else None
+    if not isinstance(name, str):
+        return None
+    if name not in models:
+        known, unchecked = choice(sorted(models)), ""
+        if closest(name, models) is None:
+            unchecked = "; what depends on the model is checked once it is right"
+        document.problem(place, f"must be {known}, is {shown(name)}{nearest(name, models)}{unchecked}")
+    return models.get(name) or models.get(closest(name, models) or "")
 
 
 def _limits_key(number: int, joint: Joint) -> str:
