@@ -7,7 +7,7 @@ import pytest
 from arboleda.core.errors import ArboledaError, QueueFull, TextError
 from arboleda.core.messages import OperatorAnswer, Verb
 
-from .conftest import QUEUED, VIEW
+from .conftest import QUEUED, TASK, VIEW
 
 
 def test_the_view_is_the_plant(web):
@@ -67,6 +67,12 @@ def test_a_body_that_is_no_task_is_refused_with_a_sentence(web, plant, body):
     assert answer.status_code == 422
     assert answer.json()["sentence"].startswith("The body must be JSON")
     assert plant.texts == []
+
+
+def test_the_tasks_are_listed_as_the_view_has_them(web, plant):
+    assert web.get("/api/tasks").json() == [TASK]
+    plant.becomes(tasks=[])
+    assert web.get("/api/tasks").json() == []
 
 
 def test_one_task_by_its_id(web):
@@ -150,7 +156,7 @@ def page_for_everything(app):
         ("PUT", "/api/plant", "GET"),
         ("HEAD", "/api/plant", "GET"),
         ("POST", "/api/events", "GET"),
-        ("GET", "/api/tasks", "POST"),
+        ("DELETE", "/api/tasks", "GET, POST"),
         ("DELETE", "/api/tasks/t-1", "GET"),
         ("GET", "/api/plant/stop", "POST"),
         ("OPTIONS", "/api/cells/sis_a/stop", "POST"),
@@ -164,6 +170,17 @@ def test_another_method_is_405_and_says_which_there_are(serve, plant, mount, met
     answer = web.client(origin=web.origin).request(method, path)
     assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
     assert (plant.acts, plant.texts) == ([], [])
+
+
+@pytest.mark.parametrize("path", ["/api", "/api/", "/api/nothing", "/api/plant/", "/api/cells/sis_a"])
+@pytest.mark.parametrize("method", ["GET", "POST"])
+@pytest.mark.parametrize("mount", [lambda app: None, page_for_everything], ids=["alone", "beside a page"])
+def test_an_unknown_path_of_the_api_is_a_404_in_json(serve, mount, method, path):
+    web = serve(mount=mount)
+    browser = {"accept": "text/html", "origin": web.origin}
+    answer = web.client(origin=web.origin).request(method, path, headers=browser)
+    assert (answer.status_code, answer.headers["content-type"]) == (404, "application/json")
+    assert answer.json() == {"sentence": "There is nothing here; /api/docs lists what there is."}
 
 
 def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd):

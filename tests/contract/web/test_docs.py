@@ -7,6 +7,7 @@ import re
 import httpx
 
 from arboleda.adapters.web import listing
+from arboleda.core.messages import Verb
 
 
 def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:
@@ -31,6 +32,21 @@ def test_the_page_for_people_loads_nothing_and_links_lead_somewhere(web: httpx.C
     assert "POST /api/cells/{scope}/{verb}" in page
     assert not re.findall(r"<script|<link|<img|src=|@import|https?://", page)
     assert set(re.findall(r'href="#(\w+)"', page)) <= set(re.findall(r'id="(\w+)"', page))
+
+
+def test_every_verb_has_its_row_with_scope_deed_and_refusal(web: httpx.Client) -> None:
+    page = web.get("/api/docs").text
+    table = page.partition('<section id="Verb">')[2].partition("</section>")[0]
+    rows = re.findall(r"<tr><th>(\w+)</th>(.+?)</tr>", table)
+    assert [word for word, _ in rows[1:]] == [verb.value for verb in Verb]
+    cells = dict(rows)["cancel"]
+    assert "<td>cell, task id</td>" in cells and "<code>cancelled</code>" in cells
+    assert page.count('<a href="#Verb">') == 2
+
+
+def test_a_state_of_a_cell_is_one_of_those_that_are_listed(web: httpx.Client) -> None:
+    page = web.get("/api/docs").text
+    assert "One of: idle, execute, holding, held," in page
 
 
 def test_whatever_a_description_says_is_text(web: httpx.Client) -> None:

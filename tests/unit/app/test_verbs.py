@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from arboleda.app import verbs
 from arboleda.app.cli import cli
 from arboleda.core.messages import Verb
+from arboleda.core.verb_words import ABOUT
 
 NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE]
 PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
@@ -37,7 +38,7 @@ def arboleda(*words: str, answer: str = "") -> tuple[int, str]:
 
 
 def test_every_verb_has_words() -> None:
-    assert list(verbs.WORDS) == list(Verb)
+    assert list(ABOUT) == list(Verb)
 
 
 @pytest.mark.parametrize("verb", Verb)
@@ -45,7 +46,8 @@ def test_every_verb_is_a_command_that_says_what_it_does(verb: Verb) -> None:
     status, said = arboleda(verb.value, "--help")
     assert status == 0
     words = " ".join(said.split())
-    assert verbs.WORDS[verb].help in words and verbs.STATUS in words
+    assert " ".join(verbs.about(ABOUT[verb]).split()) in words and verbs.STATUS in words
+    assert ABOUT[verb].brief in " ".join(arboleda("--help")[1].split())
     assert ("[default: the whole plant]" in words) is (verb not in NEED_A_SCOPE)
 
 

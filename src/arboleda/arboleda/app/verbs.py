@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +10,7 @@ import typer
 
 from arboleda.core.messages import Verb
 from arboleda.core.outside import plain
+from arboleda.core.verb_words import ABOUT, PLANT, VerbWords
 
 from .where import PlantFile, StateFolder, client
 
@@ -22,68 +22,28 @@ ByHand = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Words:
-    """What a screen says of a verb; `needed` where it is not for the whole plant."""
-
-    help: str
-    scope: str
-    label: str | None = None
-    metavar: str = "SCOPE"
-    needed: bool = False
-
-
-WORDS = {
-    Verb.STOP: Words(
-        label="stop (software)",
-        help="Stop (software): halt and latch every robot; running tasks fail, effectors keep their state. "
-        "No safety function.",
-        scope="cell or robot",
-    ),
-    Verb.CLEAR: Words(
-        help="Take the stop latch off once every online robot is still; moves nothing.", scope="cell or robot"
-    ),
-    Verb.RESET: Words(help="After clear, make the cell ready again; moves nothing.", scope="cell"),
-    Verb.HOLD: Words(help="Halt at once; task, part and zones are kept for resume.", scope="cell"),
-    Verb.RESUME: Words(help="Go on at the step that was held, or with a queue that pauses.", scope="cell"),
-    Verb.CANCEL: Words(
-        help="End a task as cancelled, a running one once its robots have stopped.",
-        scope="cell or task id",
-        needed=True,
-    ),
-    Verb.RETRY: Words(
-        help="After a fault, do the failed step again with a new command.", scope="cell", needed=True
-    ),
-    Verb.ABANDON: Words(
-        help="After a fault, end the task as failed and recover: bring the part back, go home.",
-        scope="cell",
-        needed=True,
-    ),
-    Verb.RELEASE: Words(
-        help="Open the effector where it is; a part that it holds falls.", scope="cell or arm", needed=True
-    ),
-    Verb.HOME: Words(help="Run a robot's homing routine.", scope="cell or robot", needed=True),
-    Verb.OVERRIDE: Words(
-        help="Free a quarantined zone, where a robot may still stand; this is journalled.",
-        scope="zone",
-        metavar="ZONE",
-        needed=True,
-    ),
-}
+LABELS = {Verb.STOP: "stop (software)"}
 
 
 def add_to(cli: typer.Typer) -> None:
     """Add a command per verb."""
-    shapes = {Verb.HOME: _home, Verb.OVERRIDE: _override}
-    for verb, words in WORDS.items():
-        act = shapes.get(verb, _plain)(verb, _argument(words))
-        cli.command(verb.value, help=f"{words.help} {STATUS}", short_help=words.help)(act)
+    makers = {Verb.HOME: _home, Verb.OVERRIDE: _override}
+    for verb, words in ABOUT.items():
+        act = makers.get(verb, _plain)(verb, _argument(words.scopes))
+        cli.command(verb.value, help=about(words), short_help=words.brief)(act)
 
 
-def _argument(words: Words) -> Any:
-    default = ... if words.needed else None
-    scope = f"A {words.scope}." + ("" if words.needed else " [default: the whole plant]")
-    return typer.Argument(default, metavar=words.metavar, help=scope, callback=_named, show_default=False)
+def about(words: VerbWords) -> str:
+    """What `--help` says of a verb."""
+    does = words.does.replace("**", "")
+    return f"{does[:1].upper()}{does[1:]}.\n\nRefused: {words.refused}.\n\n{STATUS}"
+
+
+def _argument(scopes: tuple[str, ...]) -> Any:
+    *others, last = [each for each in scopes if each != PLANT]
+    default, note = (None, " [default: the whole plant]") if PLANT in scopes else (..., "")
+    help, metavar = f"A {' or '.join([*others, last])}.{note}", "SCOPE" if others or note else last.upper()
+    return typer.Argument(default, metavar=metavar, help=help, callback=_named, show_default=False)
 
 
 def _named(scope: str | None) -> str | None:
@@ -127,4 +87,4 @@ def _ask(
     verb: Verb, scope: str | None, plant: Path | None, state: Path | None, *, by_hand: bool = False
 ) -> None:
     client(plant, state).operate(verb, scope or "", by_hand=by_hand)
-    print(f"done: {WORDS[verb].label or verb.value}, {plain(scope or 'the whole plant')}")
+    print(f"done: {LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}")

@@ -79,6 +79,11 @@ def routes(side: PlantSide) -> APIRouter:
         """The whole plant: cells with their trees, robots, tasks, zones."""
         return JSONResponse(side.snapshot())
 
+    @api.get("/tasks", response_model=list[Task])
+    async def tasks() -> JSONResponse:
+        """Every open task and those that ended last, in the order of their acceptance."""
+        return JSONResponse(side.snapshot()["tasks"])
+
     @api.post(
         "/tasks", status_code=202, response_model=Task, responses=REFUSED, openapi_extra=_body(TaskText)
     )
@@ -104,12 +109,12 @@ def routes(side: PlantSide) -> APIRouter:
 
     @api.post("/plant/{verb}", **verb_route)
     async def operate_plant(verb: str, request: Request) -> JSONResponse:
-        """Have the whole plant do it: stop, clear, reset, hold, resume, ..."""
+        """Have the whole plant do a Verb: in each cell where it can be done, refused where that is none."""
         return await operated(verb, "", request)
 
     @api.post("/cells/{scope}/{verb}", **verb_route)
     async def operate_one(scope: str, verb: str, request: Request) -> JSONResponse:
-        """Have one cell, robot, zone or task do it."""
+        """Have one cell, robot, zone or task do a Verb; which is for what says its table."""
         return await operated(verb, scope, request)
 
     async def operated(word: str, scope: str, request: Request) -> JSONResponse:

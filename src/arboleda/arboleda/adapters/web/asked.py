@@ -16,6 +16,11 @@ ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "tran
 FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"}
 
 
+def is_api(path: str) -> bool:
+    """Whether an address is one of the API's, be there something or not."""
+    return path == API.rstrip("/") or path.startswith(API)
+
+
 class Asked:
     """One http request or websocket handshake; header values are latin-1, "" where there is none."""
 
@@ -67,11 +72,11 @@ class Asked:
 
     @property
     def for_api(self) -> bool:
-        return not self.socket and self.path.startswith(API)
+        return not self.socket and is_api(self.path)
 
     @property
     def for_page(self) -> bool:
-        return not self.path.startswith(API) and self.path not in (LOGIN, LOGOUT)
+        return not is_api(self.path) and self.path not in (LOGIN, LOGOUT)
 
     @property
     def opens_page(self) -> bool:

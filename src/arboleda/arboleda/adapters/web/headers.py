@@ -5,7 +5,7 @@ from __future__ import annotations
 from starlette.datastructures import MutableHeaders
 from starlette.types import Message, Scope, Send
 
-from .asked import API, LOGIN, LOGOUT
+from .asked import LOGIN, LOGOUT, is_api
 
 # NiceGUI's pages carry scripts in them, and Vue compiles templates in the browser.
 PAGE_POLICY = "; ".join(
@@ -34,7 +34,7 @@ ALWAYS = {
 
 def with_headers(scope: Scope, send: Send) -> Send:
     """A `send` that adds them; an answer may bring a policy of its own."""
-    plain = scope["path"].startswith(API) or scope["path"] in (LOGIN, LOGOUT)
+    plain = is_api(scope["path"]) or scope["path"] in (LOGIN, LOGOUT)
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] in ("http.response.start", "websocket.http.response.start"):

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import re
 from html import escape
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
 from fastapi.responses import HTMLResponse, JSONResponse
 
+from arboleda.core.messages import Verb
+from arboleda.core.verb_words import ABOUT
+
 from .plain_page import page
 
 Schema = dict[str, Any]
+VERB = Verb.__name__
 
 
 def routes(app: FastAPI) -> APIRouter:
@@ -37,24 +42,48 @@ def render(api: Schema) -> str:
     parts += ['<p>For tools: <a href="/api/openapi.json">/api/openapi.json</a></p>']
     for path, methods in api["paths"].items():
         parts += [_route(method, path, route) for method, route in methods.items()]
-    shapes = api["components"]["schemas"].items()
+    shapes = {name: _shape(shape) for name, shape in api["components"]["schemas"].items()}
+    shapes |= {VERB: _verbs()} if VERB in shapes else {}
     parts += [
-        f'<section id="{escape(name)}"><h2>{escape(name)}</h2>{_shape(shape)}</section>'
-        for name, shape in shapes
+        f'<section id="{escape(name)}"><h2>{escape(name)}</h2>{shape}</section>'
+        for name, shape in shapes.items()
     ]
     return "".join(parts)
+
+
+def _verbs() -> str:
+    """What each of the operators' verbs is for, what it does, and when it is refused."""
+    head = "<tr><th>verb</th><th>scope</th><th>what it does</th><th>refused</th></tr>"
+    rows = (
+        (verb.value, ", ".join(words.scopes), _marked(words.does), _marked(words.refused))
+        for verb, words in ABOUT.items()
+    )
+    return f"<table>{head}{''.join(map(_verb_row, rows))}</table>"
+
+
+def _verb_row(row: tuple[str, ...]) -> str:
+    verb, *cells = row
+    return f"<tr><th>{verb}</th>{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>"
+
+
+def _marked(text: str) -> str:
+    """Markdown of one sentence as HTML."""
+    code = re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+    return re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", code)
 
 
 def _route(method: str, path: str, route: Schema) -> str:
     answers = "".join(_answer(status, answer) for status, answer in route["responses"].items())
     body = route.get("requestBody")
     taken = f"<h3>Body</h3>{_shape(_json(body))}" if body else ""
+    taken += f'<p>See <a href="#{VERB}">{VERB}</a>.</p>' if "{verb}" in path else ""
     title = f"<h2>{method.upper()} {escape(path)}</h2><p>{escape(route.get('description', ''))}</p>"
     return f"<section>{title}{taken}<h3>Answers</h3><table>{answers}</table></section>"
 
 
 def _answer(status: str, answer: Schema) -> str:
-    name = _json(answer).get("$ref", "").rpartition("/")[2]
+    shape = _json(answer)
+    name = shape.get("items", shape).get("$ref", "").rpartition("/")[2]
     link = f'<a href="#{escape(name)}">{escape(name)}</a>' if name else ""
     return f"<tr><th>{escape(status)}</th><td>{escape(answer['description'])}</td><td>{link}</td></tr>"
 

@@ -8,7 +8,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
-from .asked import API
+from .asked import is_api
 
 
 class NothingElse(BaseRoute):
@@ -22,7 +22,7 @@ class NothingElse(BaseRoute):
         if scope["type"] != "http":
             return Match.NONE, {}
         methods = self._methods(scope)
-        ours = methods or scope["path"].startswith(API)
+        ours = methods or is_api(scope["path"])
         return (Match.FULL if ours else Match.NONE), {"arboleda.methods": methods}
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -1,0 +1,101 @@
+"""What is said of each of the operators' verbs, wherever it is said: command line, HTTP API, documents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .messages import Verb
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerbWords:
+    """`brief` is one line; `does` and `refused` say all of it, in Markdown."""
+
+    scopes: tuple[str, ...]
+    brief: str
+    does: str
+    refused: str
+
+
+PLANT = "plant"  # the scope that is meant where none is named
+ABOUT: dict[Verb, VerbWords] = {
+    Verb.STOP: VerbWords(
+        scopes=(PLANT, "cell", "robot"),
+        brief="Stop (software): halt and latch every robot; running tasks fail, effectors keep their "
+        "state. No safety function.",
+        does="halts and latches every robot of the scope: stop (software), no safety function. A "
+        "running task fails (`stopped`), effectors keep their state, the queue pauses. Latches "
+        "survive a restart of the plant",
+        refused="never for a known name",
+    ),
+    Verb.CLEAR: VerbWords(
+        scopes=(PLANT, "cell", "robot"),
+        brief="Take the stop latch off once every online robot is still; moves nothing.",
+        does="takes the latches off; nothing moves",
+        refused="while an online robot of the scope still moves; where nothing is stopped",
+    ),
+    Verb.RESET: VerbWords(
+        scopes=(PLANT, "cell"),
+        brief="After clear, make the cell ready again; moves nothing.",
+        does="after `clear`, makes the cell ready; nothing moves, the queue stays paused",
+        refused="before `clear`; while a latch is left",
+    ),
+    Verb.HOLD: VerbWords(
+        scopes=(PLANT, "cell"),
+        brief="Halt at once; task, part and zones are kept for resume.",
+        does="halts at once; task, part and zones are kept, deadlines pause, the queue pauses",
+        refused="where no task runs",
+    ),
+    Verb.RESUME: VerbWords(
+        scopes=(PLANT, "cell"),
+        brief="Go on at the step that was held, or with a queue that pauses.",
+        does="gives the interrupted step anew (a mobile drives the nodes that are left); without a "
+        "task, lets a paused queue go on",
+        refused="after a fault: `retry` or `abandon`",
+    ),
+    Verb.CANCEL: VerbWords(
+        scopes=("cell", "task id"),
+        brief="End a task as cancelled, a running one once its robots have stopped.",
+        does="a waiting task leaves the queue; a running one is halted, the cell recovers, and it is "
+        "`cancelled` once the robot has said that it stopped",
+        refused="for a task that has ended, or that nobody knows; where no task runs",
+    ),
+    Verb.RETRY: VerbWords(
+        scopes=("cell",),
+        brief="After a fault, do the failed step again with a new command.",
+        does="after a fault, gives the step that failed anew, with a new command; where the recovery "
+        "failed, recovers anew",
+        refused="where nothing failed",
+    ),
+    Verb.ABANDON: VerbWords(
+        scopes=("cell",),
+        brief="After a fault, end the task as failed and recover: bring the part back, go home.",
+        does="ends the task as failed and recovers: the part back to the pick-up, effector off, home; "
+        "where the recovery failed, leaves everything as it is",
+        refused="where nothing is held",
+    ),
+    Verb.RELEASE: VerbWords(
+        scopes=("cell", "arm"),
+        brief="Open the effector where it is; a part that it holds falls.",
+        does="switches the effector off where it is; **a part that it holds falls**",
+        refused="while a task runs or something still moves; for an arm that is offline, in fault or not "
+        "homed",
+    ),
+    Verb.HOME: VerbWords(
+        scopes=("cell", "robot"),
+        brief="Run a robot's homing routine.",
+        does="runs the homing routine, of a cell without what is only drawn. `--by-hand`: nothing "
+        "moves, you declare that the robot stands at its reference",
+        refused="while its cell works on a task, the robot is latched, in fault, offline or only drawn, "
+        "or another robot holds a zone that the arm may cross on its way; while it is being "
+        "homed; by hand where the robot reports itself whether it is homed (not with "
+        "`assume_homed`), or says that it is not; only by hand below `evidence: ids`",
+    ),
+    Verb.OVERRIDE: VerbWords(
+        scopes=("zone",),
+        brief="Free a quarantined zone, where a robot may still stand; this is journalled.",
+        does="frees a quarantined zone, where a robot may still stand",
+        refused="for a zone that is not quarantined, or whose robot has not given up its work or is being"
+        " homed: `stop` its cell first",
+    ),
+}
