@@ -48,6 +48,14 @@ def test_it_is_over_once_when_every_task_is_done(started) -> None:
     assert set(errand.seconds) == set(errand.results)
 
 
+def test_an_id_whose_task_has_failed_before_is_not_done() -> None:
+    ends: list[str] = []
+    errand, plant = Errand(["sis_a 1"], lambda: ends.append("over")), FakePlant()
+    errand.start(plant.submit)
+    plant.answer("sis_a 1", TaskState.FAILED)
+    assert ends == ["over"] and not errand.ok
+
+
 def test_it_does_not_wait_for_tasks_that_a_held_cell_cannot_start(started) -> None:
     errand, _, ends = started
     errand.changed(change("sis_b 1", TaskState.DONE))

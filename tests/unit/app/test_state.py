@@ -39,7 +39,7 @@ def test_a_second_owner_is_told_who_the_first_is(tmp_path):
         StateDir(tmp_path).open()
     assert re.fullmatch(
         rf"A plant is already running on {tmp_path} \(process {os.getpid()}, since \S+\)\. "
-        r"Stop it first, or give this plant its own --state directory\.",
+        r"End it first, or give this plant its own --state directory\.",
         str(refused.value),
     )
     with StateDir(tmp_path):

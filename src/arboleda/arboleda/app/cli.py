@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from dataclasses import replace
 from enum import Enum
@@ -17,6 +18,7 @@ from arboleda import __version__
 from arboleda.adapters.web.names import listen_address, public_origin
 from arboleda.core import text
 from arboleda.core.errors import ArboledaError, ConfigError, QueueFull, StartError, TextError
+from arboleda.core.messages import TaskState
 from arboleda.core.model import PlantModel
 from arboleda.core.outside import plain
 
@@ -28,11 +30,13 @@ from .parts.broker import PASSWORD, USER, address, login
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
+from .state import find_running, holder
 from .urdf import robot_urdf
 from .web_options import WebOptions
-from .where import PlantFile, StateFolder, client
+from .where import PlantFile, StateFolder, client, folder
 
 FAILED, BAD_INPUT = 1, 2
+OVER = {TaskState.FAILED.value, TaskState.CANCELLED.value}
 LONGEST = 1000  # characters of a line on the terminal
 
 cli = typer.Typer(
@@ -181,8 +185,12 @@ def run(
     public_url: PublicUrl = None,
     state: StateFolder = None,
 ) -> None:
-    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input."""
+    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input.
+
+    Not for a plant that is up already: that takes tasks by `arboleda submit`.
+    """
     model = _model(plant, tasks)
+    _refuse_beside(tasks, plant, state)
     web = WebOptions(host=host, port=port, public_url=public_url)
     options = _options(broker, broker_host, broker_users, rate, state, web)
     _run(model, tasks, options, boards=boards, ros=not no_ros, lan=ros_lan, stay=False)
@@ -194,10 +202,16 @@ def submit(
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
-    """Send a task to the plant that runs on this machine. Exit status: 0 accepted, 2 refused."""
+    """Send a task to the plant that runs on this machine.
+
+    Exit status: 0 accepted, 1 a task of that id has failed or was cancelled before, 2 refused.
+    """
     answer = client(plant, state).submit(task)
     sentence = f"  {answer['sentence']}" if answer["sentence"] else ""
     print(plain(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}", LONGEST))
+    if answer["state"] in OVER:
+        _complain(ArboledaError(f"the task #{answer['id']} is over; give another id to do it once more"))
+        raise typer.Exit(FAILED)
 
 
 @cli.command()
@@ -280,6 +294,27 @@ def _model(plant: Path | None, tasks: list[str]) -> PlantModel:
     if problems:
         raise ConfigError(tuple(problems))
     return model
+
+
+def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> None:
+    """StartError where a plant runs already on that state directory: what to type to have it do the tasks."""
+    where = folder(plant, state)
+    if find_running(where) is None:
+        return
+    chosen = ["--plant", str(plant)] if plant else []
+    chosen += ["--state", str(state)] if state else []
+    lines = [shlex.join(["arboleda", "submit", *chosen, task]) for task in tasks]
+    beside = shlex.join(["arboleda", "run", *(["--plant", str(plant)] if plant else []), "--state", "DIR"])
+    raise StartError(
+        "\n".join(
+            [
+                f"{holder(where)} To have it do this, type:",
+                *(f"  {line}" for line in lines),
+                f"Another plant beside it needs a directory and, on ROS 2, a domain of its own: "
+                f"ROS_DOMAIN_ID=N {beside} ...",
+            ]
+        )
+    )
 
 
 def _options(

@@ -11,11 +11,13 @@ import httpx
 from arboleda.adapters.web.auth import Role
 from arboleda.core.errors import ArboledaError, QueueFull, TextError
 from arboleda.core.messages import Verb
+from arboleda.core.outside import plain
 
 from . import tokens
-from .state import Running, find_running
+from .state import Running, find_running, running_plants
 
 TIMEOUT_S = 10.0
+LONGEST = 500  # characters of a path that is named
 
 
 class Refused(ArboledaError):
@@ -23,6 +25,15 @@ class Refused(ArboledaError):
 
 
 ERRORS = {409: Refused, 422: TextError}
+
+
+def _instead() -> str:
+    """What to do where no plant runs on a state directory: those that run are named."""
+    found = running_plants()
+    if not found:
+        return "start one with `arboleda up`, or name its directory where it was started with --state"
+    named = ", ".join(f"{plain(path.name)} (--state {plain(str(path), LONGEST)})" for path in found)
+    return f"{'the one that runs is' if len(found) == 1 else 'those that run are'} {named}"
 
 
 class PlantClient:
@@ -51,7 +62,7 @@ class PlantClient:
     def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
         running = find_running(self._state)
         if running is None:
-            raise ArboledaError(f"No plant is running on {self._state}; start one with `arboleda up`.")
+            raise ArboledaError(f"No plant is running on {self._state}; {_instead()}.")
         if running.port is None:
             raise ArboledaError(
                 f"The plant on {self._state} (process {running.pid}) is still starting or ending."

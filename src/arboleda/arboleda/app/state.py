@@ -29,9 +29,21 @@ LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment;
 
 def default_state(plant: str) -> Path:
     """`$XDG_STATE_HOME/arboleda/<plant>`, else `~/.local/state/arboleda/<plant>`."""
+    return _default_root() / plant
+
+
+def running_plants() -> list[Path]:
+    """The default state directories on which a plant runs now, by name."""
+    try:
+        return [path for path in sorted(_default_root().iterdir()) if find_running(path) is not None]
+    except OSError:
+        return []
+
+
+def _default_root() -> Path:
     base = os.environ.get("XDG_STATE_HOME", "")
     root = Path(base) if os.path.isabs(base) else Path.home() / ".local" / "state"
-    return root / "arboleda" / plant
+    return root / "arboleda"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +80,7 @@ class StateDir:
         if not take(lock):
             os.close(lock)
             raise StartError(
-                f"{holder(self.path)} Stop it first, or give this plant its own --state directory."
+                f"{holder(self.path)} End it first, or give this plant its own --state directory."
             )
         self._lock = lock
         try:

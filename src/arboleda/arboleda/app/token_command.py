@@ -11,7 +11,7 @@ from arboleda.core.errors import StartError
 
 from . import tokens
 from .state import LOCK
-from .where import PlantFile, StateFolder, folder
+from .where import PlantFile, StateFolder, located
 
 New = Annotated[bool, typer.Option("--new", help="Make a new one first; the old one is void at once.")]
 
@@ -30,7 +30,7 @@ def token(
     state: StateFolder = None,
 ) -> None:
     """Show the token for viewers or operators of a plant that is open to a network (`up --host`)."""
-    where = folder(plant, state)
+    where = located(plant, state)
     if not (where / LOCK).exists():
         raise StartError(f"No plant keeps its state in {where}; open one by `arboleda up --host ADDRESS`.")
     if new:

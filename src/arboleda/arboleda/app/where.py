@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from arboleda.core.outside import plain
+
 from . import config
 from .client import PlantClient
-from .state import default_state
+from .state import default_state, find_running, running_plants
 
+LONGEST = 500  # characters of a line
 PlantFile = Annotated[
     Path | None, typer.Option("--plant", metavar="FILE", help="Plant file. [default: the shipped plant]")
 ]
@@ -26,7 +30,20 @@ StateFolder = Annotated[
 
 def client(plant: Path | None, state: Path | None) -> PlantClient:
     """The client of the plant that runs on `state`, or where that plant file keeps its state."""
-    return PlantClient(folder(plant, state))
+    return PlantClient(located(plant, state))
+
+
+def located(plant: Path | None, state: Path | None) -> Path:
+    """The `folder`; where neither is named and the shipped plant does not run, that of the only plant that
+    runs, which is said then."""
+    named = folder(plant, state)
+    if plant is not None or state is not None or find_running(named) is not None:
+        return named
+    found = running_plants()
+    if len(found) != 1:
+        return named
+    print(plain(f"plant {found[0].name}, the only one that runs", LONGEST), file=sys.stderr)
+    return found[0]
 
 
 def folder(plant: Path | None, state: Path | None) -> Path:

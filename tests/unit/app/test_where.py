@@ -1,0 +1,126 @@
+"""Which plant a command finds, and what is said where it finds none."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import cli as command
+from arboleda.app.cli import main
+from arboleda.app.client import PlantClient
+from arboleda.app.state import StateDir, default_state, running_plants
+from arboleda.app.where import located
+from arboleda.core.errors import ArboledaError
+
+Typed = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str], Path]:
+    """Has a plant of that name run on its default state directory."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    with ExitStack() as stack:
+        yield lambda name: stack.enter_context(StateDir(default_state(name))).path
+
+
+@pytest.fixture
+def typed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Typed:
+    """Exit status, output and complaint of a command."""
+
+    def run(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["arboleda", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return (int(ended.value.code or 0), *capsys.readouterr())
+
+    return run
+
+
+def test_the_only_plant_that_runs_is_found_and_named(up, capsys: pytest.CaptureFixture[str]) -> None:
+    path = up("greenhouse")
+    assert located(None, None) == path
+    assert capsys.readouterr().err == "plant greenhouse, the only one that runs\n"
+
+
+def test_the_shipped_plant_is_meant_where_it_runs(up, capsys: pytest.CaptureFixture[str]) -> None:
+    shipped = [up(name) for name in ("greenhouse", "arboleda")][-1]
+    assert located(None, None) == shipped
+    assert capsys.readouterr().err == ""
+
+
+def test_who_names_a_plant_means_no_other(up, tmp_path: Path) -> None:
+    up("greenhouse")
+    assert located(None, tmp_path / "elsewhere") == tmp_path / "elsewhere"
+    with pytest.raises(ArboledaError) as refused:
+        PlantClient(tmp_path / "elsewhere").status()
+    assert str(refused.value) == (
+        f"No plant is running on {tmp_path}/elsewhere; "
+        f"the one that runs is greenhouse (--state {tmp_path}/arboleda/greenhouse)."
+    )
+
+
+def test_of_two_plants_none_is_guessed_and_both_are_named(up, typed: Typed, tmp_path: Path) -> None:
+    for name in ("greenhouse", "attic"):
+        up(name)
+    assert [path.name for path in running_plants()] == ["attic", "greenhouse"]
+    status, _, said = typed("stop")
+    own = tmp_path / "arboleda"
+    assert status == 1
+    assert said.endswith(
+        f"those that run are attic (--state {own}/attic), greenhouse (--state {own}/greenhouse).\n"
+    )
+
+
+def test_without_any_plant_it_is_said_how_to_start_or_name_one(up, typed: Typed) -> None:
+    status, _, said = typed("status")
+    assert status == 1
+    assert "start one with `arboleda up`, or name its directory where it was started with --state" in said
+
+
+def test_what_a_plant_left_behind_is_not_taken_for_one_that_runs(up, tmp_path: Path) -> None:
+    (tmp_path / "arboleda" / "old").mkdir(parents=True)
+    (tmp_path / "arboleda" / "old" / "plant.lock").touch()
+    assert running_plants() == []
+
+
+def test_run_beside_a_plant_that_is_up_says_what_to_type(up, typed: Typed, tmp_path: Path) -> None:
+    up("arboleda")
+    status, _, said = typed("run", "--no-ros", "sis_a 0B 7", "sis_b 1C 3 #lot")
+    lines = said.splitlines()
+    assert status == 1
+    assert lines[0].startswith("arboleda: A plant is already running on ")
+    assert lines[0].endswith("To have it do this, type:")
+    assert lines[1:3] == ["  arboleda submit 'sis_a 0B 7'", "  arboleda submit 'sis_b 1C 3 #lot'"]
+    assert lines[3].endswith("ROS_DOMAIN_ID=N arboleda run --state DIR ...")
+
+
+def test_run_names_the_state_directory_that_was_given(up, typed: Typed, tmp_path: Path) -> None:
+    with StateDir(tmp_path / "own place"):
+        _, _, said = typed("run", "--state", str(tmp_path / "own place"), "sis_a 0B 7")
+    assert f"  arboleda submit --state '{tmp_path}/own place' 'sis_a 0B 7'" in said.splitlines()
+
+
+class Answers:
+    """A plant that knows the task already."""
+
+    def __init__(self, state: str) -> None:
+        self.state = state
+
+    def submit(self, text: str) -> dict[str, str]:
+        return {"id": "lot42", "text": "sis_a 0B 7", "state": self.state, "sentence": ""}
+
+
+@pytest.mark.parametrize(
+    ("state", "status"), [("queued", 0), ("running", 0), ("done", 0), ("failed", 1), ("cancelled", 1)]
+)
+def test_submit_of_an_id_whose_task_failed_ends_with_1(
+    state: str, status: int, typed: Typed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "client", lambda plant, state_dir: Answers(state))
+    ended, out, said = typed("submit", "sis_a 0B 7 #lot42")
+    assert (ended, out) == (status, f"{state}: sis_a 0B 7 (id lot42)\n")
+    assert ("give another id" in said) is (status == 1)
