@@ -63,6 +63,32 @@ def test_an_idle_cell_that_can_work_asks_for_a_task(told: Callable[..., Any]) ->
     assert rig.face()["text/sis_b.offer"] == ["", ""]
 
 
+def test_a_held_cell_does_not_look_as_if_it_moved(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.operate(Verb.HOLD, "sis_a")
+    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "held")
+    face = rig.face()
+    assert face["text/sis_a.feedback"][0] == "" and face["text/sis_a.step"] == ["drive path 0B", "held"]
+    nodes = [node for key, node in face.items() if key.startswith("node/sis_a/")]
+    assert {node["state"] for node in nodes} == {"success", "halted", "idle"}
+    assert not [node for node in nodes if node["current"]]
+
+
+def test_a_stop_is_told_once_until_it_is_cleared(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "drive path 0B")
+    rig.operate(Verb.STOP, "sis_a")
+    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "aborted")
+    face = rig.face()
+    assert face["text/sis_a.cause"][0] == "" and "stopped" in face["text/sis_a.trouble"][0]
+    rig.operate(Verb.CLEAR, "sis_a")
+    assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "stopped")
+    assert rig.face()["text/sis_a.cause"][0] == "sis_a was stopped by the operator"
+
+
 def test_a_task_shows_how_it_stands_and_how_it_ended(told: Callable[..., Any]) -> None:
     rig = told()
     first, second = (rig.submit(text).task for text in ("sis_a 0B 7", "sis_a 0B 3"))

@@ -4,7 +4,7 @@ import { onChange, split, value } from "./live.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const HEIGHT = 26;
-const MARGIN = 32; // px below a tree
+const MARGIN = 40; // px below a tree
 const PLANS = ["wide", "columns", "narrow"];
 const SIGNS = {
   // status -> shape, 12 x 12 px around 0 0: it reads without its colour

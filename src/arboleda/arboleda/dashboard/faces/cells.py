@@ -8,7 +8,7 @@ from arboleda.core.view import standing
 from arboleda.drawing.layout import parent
 
 from ..tree_drawing import drawing, label
-from ..tree_memory import FAILURE, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
+from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
 from . import Face
 from .moment import Moment, clock, seconds
@@ -24,7 +24,8 @@ def face(moment: Moment) -> Face:
         memory = moment.trees[cell["name"]]
         found.update(_card(moment, cell, memory))
         leaf = memory.leaf["path"] if memory.leaf else None
-        found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf))
+        rests = cell["state"] == "held"
+        found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf, rests=rests))
         found.update(_changes(moment, cell["name"], memory))
     return found
 
@@ -41,8 +42,8 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         **_ways(words, cell),
         f"text/{name}.task": [_task_line(moment, task), task["state"] if task else "none"],
-        f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", ""],
-        f"text/{name}.feedback": [words.say(leaf["feedback"]) if leaf and leaf["feedback"] else "", ""],
+        f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],
+        f"text/{name}.feedback": [_feedback(words, cell, leaf), ""],
         f"text/{name}.elapsed": [seconds(cell["task"]["elapsed_s"]) if cell["task"] else "", ""],
         f"text/{name}.left": [_left(moment, leaf), ""],
         f"text/{name}.queue": [_queue(moment, cell), "paused" if cell["paused"] else ""],
@@ -53,7 +54,12 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
-    """Why the last task failed, and in which step; until the cell is at work again."""
+    """Why the last task failed, and in which step; until the cell is at work again.
+
+    That of a stop is told by the cell itself.
+    """
+    if task is not None and task["reason"] == "stopped" and cell["state"] in ("aborting", "aborted"):
+        return ""
     over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
     return failed_in(words, task, memory.rows) if over and task else ""
 
@@ -143,6 +149,11 @@ def _offered(words: Words, cell: Row, stands: str) -> str:
     return words("cells.offer", cell=cell["name"]) if free else ""
 
 
+def _feedback(words: Words, cell: Row, leaf: Row | None) -> str:
+    """What is done now; nothing of a cell that is held."""
+    return words.say(leaf["feedback"]) if leaf and leaf["feedback"] and cell["state"] != "held" else ""
+
+
 def _left(moment: Moment, leaf: Row | None) -> str:
     if leaf is None or leaf["deadline_s"] is None or leaf["kind"] not in GIVEN_UP:
         return ""
@@ -167,9 +178,15 @@ def progress(rows: list[Row], statuses: dict[str, str]) -> float:
 
 
 def tree_face(
-    words: Words, name: str, tree: TreeMemory | EndedTree, *, leaf: str | None = None, title: str = ""
+    words: Words,
+    name: str,
+    tree: TreeMemory | EndedTree,
+    *,
+    leaf: str | None = None,
+    rests: bool = False,
+    title: str = "",
 ) -> Face:
-    """A tree under this name; `leaf` is the path of the one that runs."""
+    """A tree under this name; `leaf` is the path of the one that runs, or `rests` in a cell that is held."""
     nodes = [
         {
             "path": row["path"],
@@ -183,17 +200,19 @@ def tree_face(
     drawn = drawing(tuple((row["path"], row["name"], row["kind"]) for row in tree.rows), words)
     found: Face = {f"tree/{name}": {"task": tree.task, "title": title or name, "nodes": nodes, **drawn}}
     for row in tree.rows:
-        found[f"node/{name}/{row['path']}"] = _node(words, row, tree, leaf)
+        found[f"node/{name}/{row['path']}"] = _node(words, row, tree, leaf, rests=rests)
     return found
 
 
-def _node(words: Words, row: Row, tree: TreeMemory | EndedTree, leaf: str | None) -> Row:
+def _node(words: Words, row: Row, tree: TreeMemory | EndedTree, leaf: str | None, *, rests: bool) -> Row:
     status = tree.statuses.get(row["path"], "idle")
+    if rests and status == RUNNING:
+        status = HALTED
     running = status == RUNNING and leaf is not None
     return {
         "state": status,
         "word": words.of("status", status),
-        "current": row["path"] == leaf,
+        "current": row["path"] == leaf and not rests,
         "feedback": words.say(row["feedback"]) if running and row["feedback"] else "",
         "failure": words.say(row["failure"]) if row["failure"] else "",
         "failed": status == FAILURE,
