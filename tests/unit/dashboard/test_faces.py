@@ -74,6 +74,7 @@ def test_a_held_cell_does_not_look_as_if_it_moved(told: Callable[..., Any]) -> N
     nodes = [node for key, node in face.items() if key.startswith("node/sis_a/")]
     assert {node["state"] for node in nodes} == {"success", "halted", "idle"}
     assert not [node for node in nodes if node["current"]]
+    assert face["text/suggested.sis_a"][0] == "resume"
 
 
 def test_a_stop_is_told_once_until_it_is_cleared(told: Callable[..., Any]) -> None:

@@ -35,9 +35,11 @@ FOR_ALL = ("clear", "reset", "resume")
 
 
 def suggested(cell: Row) -> tuple[str, ...]:
-    """The verbs that a person would want next, of those that can be done for the cell now."""
-    ways = [each for each in cell["advice"] if not each["hand"] and not each["refusal"]]
-    return tuple(each["do"] for each in ways if each["scope"] in (cell["name"], cell["arm"]))
+    """The verb that a person would want next; none where a hand comes first, or another robot."""
+    first = cell["advice"][0] if cell["advice"] else None
+    if first is None or first["hand"] or first["refusal"]:
+        return ()
+    return (first["do"],) if first["scope"] in (cell["name"], cell["arm"]) else ()
 
 
 def refused_everywhere(cells: list[Row]) -> dict[str, str]:
