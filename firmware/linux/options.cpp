@@ -17,7 +17,7 @@ constexpr char kHelp[] =
     "  --robot NAME         its name on MQTT, e.g. ra_1\n"
     "  --broker HOST:PORT   default 127.0.0.1:1883; login from $ARBOLEDA_MQTT_USER, $ARBOLEDA_MQTT_PASSWORD\n"
     "  --at Q1,Q2,Q3        where the arm stands at the start, degrees as on MQTT; default 0,0,0\n"
-    "  --place Q1,Q2,Q3     a part lies ready here for the piece sensor; up to 4 times\n"
+    "  --place Q1,Q2,Q3     a part lies ready here for the piece sensor; up to 40 times\n"
     "  --level ids|joints   what it says; default ids\n"
     "  --assume-homed       homed after a reboot\n"
     "  --until-eof          end with the standard input\n"
@@ -70,7 +70,7 @@ bool read_pose(const char* what, const char* text, double* pose) {
 
 bool read_place(const char* text, Options* options) {
     if (options->places == kMostPlaces) {
-        return refuse("a further --place", text, "4 places");
+        return refuse("a further --place", text, "40 places");
     }
     return read_pose("--place", text, options->places_deg[options->places++]);
 }

@@ -6,7 +6,7 @@
 
 namespace arboleda {
 
-constexpr int kMostPlaces = 4;
+constexpr int kMostPlaces = 40;  // a cell has at most 36 exits, and what palletizing picks
 
 class World final : public Hardware {
 public:

@@ -98,7 +98,7 @@ GRIP = (
         "A recovery opens the effector where the arm is, instead of carrying the part back.",
         edit(
             recipes.recovery,
-            "*_at(context, cell.pickup, _effector(context, False))",
+            "*_at(context, context.back, _effector(context, False))",
             "_effector(context, False)",
         ),
     ),
@@ -130,7 +130,7 @@ GRIP = (
         edit(
             recipes.storage,
             "(station, _let_go(context)),",
-            "(station, _let_go(context)), (cell.pickup, _grip(context, cell.pickup)),",
+            "(station, _let_go(context)), (pickup, _grip(context, pickup)),",
         ),
         weather="none",
     ),

@@ -41,12 +41,12 @@ def motions(rig: Rig) -> list[Any]:
 
 @pytest.mark.parametrize("seconds", GAPS_S)
 @pytest.mark.parametrize("processes", [(PLANT,), (PLANT, BRIDGE)], ids=["plant", "machine"])
-@pytest.mark.parametrize("step", ["drive path 0A", "move to pick-up", "move to station 4"])
+@pytest.mark.parametrize("step", ["drive path 0B", "move to pick-up", "move to station 4"])
 def test_a_cell_at_work_is_held_and_its_next_task_waits(
     rig: Rig, seconds: float, processes: tuple[str, ...], step: str
 ) -> None:
-    rig.submit("sis_a 0A 4")
-    rig.submit("sis_a 0A 5")
+    rig.submit("sis_a 0B 4")
+    rig.submit("sis_a 0B 5")
     rig.wait_for("sis_a", f"main/{step}")
     away(rig, seconds, *processes)
     held = rig.plant.cells["sis_a"]
@@ -58,7 +58,7 @@ def test_a_cell_at_work_is_held_and_its_next_task_waits(
 
 
 def test_retry_gives_the_interrupted_step_anew_and_the_task_is_done(rig: Rig) -> None:
-    task = rig.submit("sis_a 0A 4").task
+    task = rig.submit("sis_a 0B 4").task
     rig.wait_for("sis_a", "main/move to pick-up")
     away(rig, 20.0, PLANT)
     assert rig.operate(Verb.RETRY, "sis_a") is None
@@ -69,7 +69,7 @@ def test_the_time_away_is_no_part_of_a_pause_that_a_step_waits_out() -> None:
     plant = shipped("sis_a")
     rig = Rig(replace(plant, timing=replace(plant.timing, dwell_s=5.0)))
     rig.wait(2.0)
-    rig.submit("sis_a 0A 4")
+    rig.submit("sis_a 0B 4")
     rig.wait_for("sis_a", "effector on/dwell")
     rig.stall(PLANT, 20.0)
     rig.wait(20.5)
@@ -80,7 +80,7 @@ def test_the_time_away_is_no_part_of_a_pause_that_a_step_waits_out() -> None:
 
 
 def test_abandon_recovers_and_the_queue_waits_for_resume(rig: Rig) -> None:
-    first, second = rig.submit("sis_a 0A 4").task, rig.submit("sis_a 0A 5").task
+    first, second = rig.submit("sis_a 0B 4").task, rig.submit("sis_a 0B 5").task
     rig.wait_for("sis_a", "main/move to station 4")
     away(rig, 20.0, PLANT)
     assert rig.operate(Verb.ABANDON, "sis_a") is None
@@ -92,7 +92,7 @@ def test_abandon_recovers_and_the_queue_waits_for_resume(rig: Rig) -> None:
 
 
 def test_a_recovery_is_held_too_and_goes_on_only_when_told(rig: Rig) -> None:
-    rig.submit("sis_a 0A 4")
+    rig.submit("sis_a 0B 4")
     rig.wait_for("sis_a", "main/move to station 4")
     assert rig.operate(Verb.CANCEL, "sis_a") is None
     rig.wait(1.0)
@@ -103,7 +103,7 @@ def test_a_recovery_is_held_too_and_goes_on_only_when_told(rig: Rig) -> None:
 def test_a_task_that_waits_in_an_idle_cell_does_not_start_by_itself(rig: Rig) -> None:
     rig.power_off("ra_1")
     rig.wait(2.0)
-    rig.submit("sis_a 0A 4")
+    rig.submit("sis_a 0B 4")
     rig.stall(PLANT, 20.0)
     rig.wait(5.0)
     rig.power_on("ra_1")
@@ -115,12 +115,12 @@ def test_a_task_that_waits_in_an_idle_cell_does_not_start_by_itself(rig: Rig) ->
 
 def test_a_cell_with_nothing_to_do_takes_a_task_at_once(rig: Rig) -> None:
     away(rig, 20.0, PLANT)
-    task = rig.submit("sis_b 0A 4").task
+    task = rig.submit("sis_b 0B 4").task
     assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
 
 
 def test_a_short_pause_is_nothing(rig: Rig) -> None:
-    task = rig.submit("sis_a 0A 4").task
+    task = rig.submit("sis_a 0B 4").task
     rig.wait_for("sis_a", "main/move to pick-up")
     rig.stall(PLANT, 0.7)
     assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
@@ -151,7 +151,7 @@ def slowly_booting() -> Callable[[], Rig]:
 
 
 def test_a_hold_of_an_operator_is_still_his(rig: Rig) -> None:
-    rig.submit("sis_a 0A 4")
+    rig.submit("sis_a 0B 4")
     rig.wait_for("sis_a", "main/move to pick-up")
     rig.operate(Verb.HOLD, "sis_a")
     rig.wait(5.0)

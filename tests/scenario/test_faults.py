@@ -112,7 +112,9 @@ def never(rig: Rig, spot: Spot) -> float:
 def longest_s(rig: Rig) -> float:
     """The longest way between two poses of the arm, s."""
     cell = rig.model.cell("sis_a")
-    return max(cell.arm.travel_s(one.q, other.q) for one in cell.poses for other in cell.poses)
+    return max(
+        cell.arm.travel_s(cell.arm.quantised(one.q), other.q) for one in cell.poses for other in cell.poses
+    )
 
 
 def rest_s(rig: Rig, outcome: Outcome) -> float:

@@ -29,10 +29,11 @@ def equal_neighbours(evidence: Evidence, link: Link) -> PlantModel:
     """One arm whose place is its home pose: every task begins with a move of no length."""
     model = shipped("sis_a", evidence=evidence, link=link)
     (cell,) = model.cells
-    place = next(station for station in cell.stations if station.q == cell.home.q)
+    place = replace(cell.stations[0], q=cell.home.q)
     drawn = replace(cell.mobile, link=Link.NONE)
     palletizing = replace(cell.palletizing, place=place)
-    return replace(model, cells=(replace(cell, mobile=drawn, palletizing=palletizing),))
+    stations = (place, *cell.stations[1:])
+    return replace(model, cells=(replace(cell, mobile=drawn, stations=stations, palletizing=palletizing),))
 
 
 class Glued:

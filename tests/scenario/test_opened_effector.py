@@ -12,7 +12,7 @@ from arboleda.core.model import Evidence
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 
-TASK = "sis_a 0A 4"
+TASK = "sis_a 0B 4"
 STEPS = ("effector on/dwell", "move to station 4")
 
 
@@ -64,7 +64,7 @@ def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_w
 
 
 def test_an_effector_that_opens_before_the_grip_or_in_a_recovery_is_no_failure_of_its_own(rig: Rig) -> None:
-    rig.wait_for("sis_a", "main/drive path 0A")
+    rig.wait_for("sis_a", "main/drive path 0B")
     rig.open_effector("ra_1")
     rig.wait_for("sis_a", "main/move to station 4")
     rig.operate(Verb.CANCEL, "sis_a")

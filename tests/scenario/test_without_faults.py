@@ -19,12 +19,13 @@ def plant(evidence: Evidence, place: str, slower: float) -> PlantModel:
     model = slowed(shipped("sis_a", evidence=evidence, assume_homed=evidence is not Evidence.IDS), slower)
     (cell,) = model.cells
     poses = {
-        "at home": next(station for station in cell.stations if station.q == cell.home.q),
+        "at home": replace(cell.stations[0], q=cell.home.q),
         "at the pick-up": cell.pickup,
         "elsewhere": cell.stations[8],
     }
     palletizing = replace(cell.palletizing, place=poses[place])
-    return replace(model, cells=(replace(cell, palletizing=palletizing),))
+    stations = (poses["at home"], *cell.stations[1:])
+    return replace(model, cells=(replace(cell, stations=stations, palletizing=palletizing),))
 
 
 @pytest.mark.parametrize("slower", [1.0, 4.0], ids=["as it is", "slow"])

@@ -258,10 +258,10 @@ def test_who_asks_first_gets_the_zone_first(zoned: Plants, evidence: Evidence) -
             served.append(holder)
 
     rig.watchers.append(watch)
-    for text in ("sis_a 0B 7", "sis_b 2A 7", "sis_c 0B 7"):
+    for text in ("sis_a 2B 7", "sis_b 0B 7", "sis_c 0B 7"):
         rig.submit(text)
     assert rig.wait(120.0, until=lambda: at_rest(rig))
-    assert served == ["ra1", "ra3", "ra2"]
+    assert served == ["ra2", "ra3", "ra1"]
     honest(witness)
 
 

@@ -33,7 +33,7 @@ def test_a_plant_that_was_stopped_in_a_move_holds_its_cell(chain: Callable[..., 
     parts = chain(Evidence.IDS)
     goals = [f"/{name}" for name in ("ra1/joint_goals_q", "rm_sis_a/path_cmd")]
     parts.observer.listen(Float32MultiArray, *goals)
-    for text in ("sis_a 0A 4", "sis_a 0A 5"):
+    for text in ("sis_a 0B 4", "sis_a 0B 5"):
         parts.submit(text)
     parts.wait_for_step("sis_a", "move to pick-up")
     freeze(parts, parts.plant)

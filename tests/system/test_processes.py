@@ -32,12 +32,12 @@ def test_a_bridge_killed_and_restarted_in_a_move_fails_it(
     chain: Callable[..., Chain], evidence: Evidence
 ) -> None:
     parts = chain(evidence)
-    parts.submit("sis_a 0A 4")
+    parts.submit("sis_a 0B 4")
     parts.wait_for_step("sis_a", "move to pick-up")
     before = parts.robot("rm_sis_b")["bridge_epoch"]
     parts.bridge.kill()
     parts.start("mqtt_bridge")
-    change = parts.outcome("sis_a 0A 4")
+    change = parts.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
     parts.wait_for_robot("rm_sis_b", lambda robot: robot["bridge_epoch"] != before)
     parts.wait_until_ready("ra2", "rm_sis_b")
@@ -132,12 +132,12 @@ def test_boards_killed_and_restarted_in_a_move_fail_it(
     chain: Callable[..., Chain], evidence: Evidence
 ) -> None:
     parts = chain(evidence)
-    parts.submit("sis_a 0A 4")
+    parts.submit("sis_a 0B 4")
     parts.wait_for_step("sis_a", "move to pick-up")
     parts.devices.kill()
     parts.wait_for_robot("rm_sis_b", lambda robot: not robot["online"])
     parts.start("virtual_devices")
-    change = parts.outcome("sis_a 0A 4")
+    change = parts.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
     if evidence is Evidence.JOINTS:  # a board that was away may have rebooted, and cannot say where it is
         parts.wait_for_robot("rm_sis_b", lambda robot: robot["obstacle"] == "rm_sis_b is not homed")

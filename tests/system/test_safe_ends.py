@@ -25,7 +25,7 @@ PICK_UP = 0.7854  # rad, of ra1's first joint
 def moving(chain: Callable[..., Chain]) -> Chain:
     """A chain whose arm ra1 is on its way to the pick-up pose."""
     parts = chain(Evidence.IDS)
-    parts.submit("sis_a 0A 4")
+    parts.submit("sis_a 0B 4")
     parts.wait_for_step("sis_a", "move to pick-up")
     return parts
 
@@ -68,11 +68,11 @@ def test_the_boards_of_one_cell_killed_in_a_move_fail_its_task_and_no_other(
     cells = (("sis_a",), ("sis_b", "sis_c"))
     plants = [str(plant_at(Evidence.IDS, tmp_path, *names)) for names in cells]
     boards = [parts.start("virtual_devices", plant=plant) for plant in plants]
-    for text in ("sis_a 0A 4", "sis_b 0A 4"):
+    for text in ("sis_a 0B 4", "sis_b 0A 4"):
         parts.submit(text)
     parts.wait_for_step("sis_a", "move to pick-up")
     boards[0].kill()
-    change = parts.outcome("sis_a 0A 4")
+    change = parts.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
     assert change["sentence"].startswith("ra1: ")
     assert parts.outcome("sis_b 0A 4")["state"] == "done"
@@ -84,7 +84,7 @@ def test_a_broker_that_goes_in_a_move_fails_the_task_and_the_cell_recovers_when_
 ) -> None:
     moving.broker.kill()
     mosquitto(address(moving.address).port)
-    change = moving.outcome("sis_a 0A 4")
+    change = moving.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "link_lost")
     moving.submit("sis_b 0A 4")
     assert moving.outcome("sis_b 0A 4")["state"] == "done"
@@ -117,11 +117,11 @@ def test_a_stop_in_a_move_reaches_the_board_and_holds_until_clear_and_reset(
     assert answer.result().success
     assert heard.wait(5.0), "no stop on MQTT"
     print(f"stop: {1000 * (times['ra_1/paro'] - asked):.1f} ms from the request to the board's command")
-    change = moving.outcome("sis_a 0A 4")
+    change = moving.outcome("sis_a 0B 4")
     assert (change["state"], change["reason"]) == ("failed", "stopped")
     assert rests_short_of_the_goal(moving) < PICK_UP - 0.05
     moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "aborted")
-    moving.submit("sis_a 0A 4 #again")
+    moving.submit("sis_a 0B 4 #again")
     moving.wait_for_cell("sis_a", lambda cell: cell["queue"] == ["again"])
     assert moving.cell("sis_a")["state"] == "aborted"
     assert rests_short_of_the_goal(moving) < PICK_UP - 0.05

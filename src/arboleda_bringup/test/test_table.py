@@ -79,10 +79,12 @@ def test_every_robot_has_its_description_in_its_own_namespace() -> None:
 def test_every_robot_stands_where_the_plant_file_says() -> None:
     found = {row.namespace: row.arguments for row in rows() if row.package == "tf2_ros"}
     assert found.keys() == {"r1", "r2", "r3", "rm_sis_a", "rm_sis_b", "rm_sis_c"}
-    place = "--x 0.1 --y 0.1 --z 0.0 --yaw 0.0 --frame-id world --child-frame-id r1_base_link"
+    place = (
+        f"--x 0.0 --y 0.0 --z 0.0 --yaw {math.radians(220.6)} --frame-id world --child-frame-id r1_base_link"
+    )
     assert " ".join(found["r1"]) == place
     told = dict(zip(found["rm_sis_a"][::2], found["rm_sis_a"][1::2], strict=True))
-    assert [float(told[key]) for key in ("--x", "--y", "--z", "--yaw")] == [0.59, 0.84, 0.0, math.pi]
+    assert [float(told[key]) for key in ("--x", "--y", "--z", "--yaw")] == [-0.1, -1.366, 0.0, 0.0]
     assert (told["--frame-id"], told["--child-frame-id"]) == ("world", "rm_sis_a_grid_link")
 
 

@@ -52,7 +52,7 @@ def test_a_board_is_told_where_its_arm_stands_and_parts_lie(
     assert list(boards._arguments(robot)) == [
         *("--robot", "ra_1", "--broker", "127.0.0.1:1884", "--until-eof", "--level", "joints"),
         "--at=0.0,0.0,0.0",
-        "--place=45.0,10.0,0.0",
+        *("--place=45.0,10.0,0.0", "--place=44.09,0.9,0.0", "--place=54.7,-0.9,0.0"),
         "--assume-homed",
     ]
 

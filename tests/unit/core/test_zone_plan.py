@@ -35,8 +35,8 @@ def cell(*crossings: tuple[str, str, str], **zones: str) -> Cell:
 
 
 def storage(made: Cell) -> list[Any]:
-    way = storage_way(made, made.stations[STATION], made.home)
-    return [(leg.start, leg.end, leg.zones) for leg in plan(made, way)]
+    way = storage_way(made, made.pickup, made.stations[STATION], made.home)
+    return [(leg.start, leg.end, leg.zones) for leg in plan(made, way, made.pickup)]
 
 
 LEGS = {  # poses of the way: home 0, pick-up 1, station 7 2, home 3
@@ -74,15 +74,17 @@ def test_a_storage_way_has_these_legs(case: tuple[Cell, list[Any]]) -> None:
 def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None:
     made = cell(pickup="x", station4="y")
     pick, place = made.stations[OTHER], made.stations[PLACE]
-    assert plan(made, (made.home, pick, place)) == [Leg(start=0, end=2, zones=frozenset({"x", "y"}))]
+    assert plan(made, (made.home, pick, place), made.pickup) == [
+        Leg(start=0, end=2, zones=frozenset({"x", "y"}))
+    ]
 
 
 def test_an_arm_that_stands_at_a_station_starts_there() -> None:
     made = cell(("station 8", "pick-up", "x"), ("home", "station 8", "y"))
     start = made.palletizing.place
-    legs = plan(made, storage_way(made, made.stations[STATION], start))
+    legs = plan(made, storage_way(made, made.pickup, made.stations[STATION], start), made.pickup)
     assert legs[0] == Leg(start=0, end=1, zones=frozenset({"x", "y"}))
-    legs = plan(made, palletizing_way(made, start))
+    legs = plan(made, palletizing_way(made, start), made.pickup)
     assert [(leg.start, leg.end) for leg in legs] == [(0, 1), (1, 2), (2, 3)]
     assert "y" in legs[0].zones
 
@@ -91,7 +93,7 @@ def test_an_arm_that_stands_at_a_station_starts_there() -> None:
 def test_a_way_starts_and_ends_outside(name: str) -> None:
     made = cell(**{name.replace(" ", ""): "x"})
     with pytest.raises(ConfigError, match=f"{name} lies in zone x, so no way may start or end there"):
-        plan(made, palletizing_way(made, made.home))
+        plan(made, palletizing_way(made, made.home), made.pickup)
 
 
 def test_no_problem_with_poses_outside_or_passed_through() -> None:

@@ -65,8 +65,8 @@ def row(theta: float, d: float, a: float, alpha: float) -> Matrix:
 
 
 def scara(q1: float, q2: float, q3: float) -> Matrix:
-    """Base to tool: 330 mm up, links of 250 and 200 mm, 180 mm down at q3 = 0; z of the tool is down."""
-    return product(row(q1, 0.330, 0.25, 0), row(q2, 0, 0.20, WHOLE), row(0, 0.180 + q3, 0, 0))
+    """Base to tool: 330 mm up, links of 650 and 520 mm, 180 mm down at q3 = 0; z of the tool is down."""
+    return product(row(q1, 0.330, 0.65, 0), row(q2, 0, 0.52, WHOLE), row(0, 0.180 + q3, 0, 0))
 
 
 def cr10a(q1: float, q2: float, q3: float, q4: float, q5: float, q6: float) -> Matrix:
@@ -102,9 +102,9 @@ def test_the_tool_of_the_cr10a_is_where_the_dh_table_says(given: tuple[float, ..
 @pytest.mark.parametrize(
     ("model", "q", "tool"),
     [
-        ("scara", (0, 0, 0), (0.45, 0, 0.15)),
-        ("scara", (HALF, 0, 0.1), (0, 0.45, 0.05)),
-        ("scara", (0, HALF, 0), (0.25, 0.20, 0.15)),
+        ("scara", (0, 0, 0), (1.17, 0, 0.15)),
+        ("scara", (HALF, 0, 0.1), (0, 1.17, 0.05)),
+        ("scara", (0, HALF, 0), (0.65, 0.52, 0.15)),
         ("cr10a", (0, 0, 0, 0, 0, 0), (0, -0.2994, 1.4765)),  # straight up, tool to the right
         ("cr10a", (HALF, 0, 0, 0, 0, 0), (0.2994, 0, 1.4765)),
     ],
@@ -123,9 +123,9 @@ def test_a_mobile_on_a_node_is_where_the_plant_file_puts_the_node(
     mobile = plant.robots[name]
     assert isinstance(mobile, Mobile)
     (x0, y0), yaw, pitch = {
-        "rm_sis_a": ((0.59, 0.84), 180, 0.2),
-        "rm_sis_b": ((1.55, 0.68), 180, 0.2),
-        "rm_sis_c": ((1.1, 1.6), 180, 0.2),
+        "rm_sis_a": ((-0.1, -1.366), 0, 0.1),
+        "rm_sis_b": ((1.4, -1.366), 0, 0.1),
+        "rm_sis_c": ((0.55, 0.296), 0, 0.2),
     }[name]
     if kind == "narrowed":
         yaw, pitch = 30, 0.35
@@ -140,14 +140,3 @@ def test_a_mobile_on_a_node_is_where_the_plant_file_puts_the_node(
         (x0 + along * cos - up * sin, y0 + along * sin + up * cos, 0), abs=ACCURACY
     )
     assert at(base, (1, 0, 0)) == pytest.approx((at(base)[0] + cos, at(base)[1] + sin, 0), abs=ACCURACY)
-
-
-def test_the_tool_of_a_scara_reaches_the_mobile_under_its_pick_up() -> None:
-    plant = shipped()
-    for name in ("sis_a", "sis_b"):
-        cell = plant.cell(name)
-        arm, mobile = read(robot_urdf(plant, cell.arm.name)), read(robot_urdf(plant, cell.mobile.name))
-        tool = at(place(arm, f"{cell.arm.twin}_tool0", cell.pickup.q))
-        deck = mobile.link_map[f"{cell.mobile.name}_base_link"].visuals[1]
-        top = deck.origin.xyz[2] + deck.geometry.size[2] / 2
-        assert top < tool[2] < top + 0.1  # room for a part

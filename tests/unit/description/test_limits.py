@@ -57,7 +57,7 @@ def test_a_drawing_by_itself_has_the_limits_of_its_model(model: str) -> None:
 
 
 def test_a_mobile_by_itself_stays_on_the_grid_that_a_plant_file_has_by_default() -> None:
-    far, speed = shipped().cells[0].mobile.grid.position(8), mobile_models()["mobile"].speed
+    far, speed = shipped().cells[2].mobile.grid.position(8), mobile_models()["mobile"].speed
     assert limits(render("mobile", prefix="")) == [
         ("x_joint", 0, far[0], speed),
         ("y_joint", 0, far[1], speed),

@@ -102,6 +102,6 @@ def test_an_inertia_is_that_of_the_solid_drawn() -> None:
     across = 0.5 * (3 * 0.010**2 + 0.300**2) / 12  # a cylinder of 0.5 kg
     expected = pytest.approx((across, across, 0.5 * 0.010**2 / 2))
     assert (quill.inertia.ixx, quill.inertia.iyy, quill.inertia.izz) == expected
-    along, over = 2.4 * (0.090**2 + 0.050**2) / 12, 2.4 * (0.25**2 + 0.050**2) / 12  # a box of 2.4 kg
+    along, over = 7 * (0.120**2 + 0.050**2) / 12, 7 * (0.65**2 + 0.050**2) / 12  # a box of 7 kg
     assert (arm.inertia.ixx, arm.inertia.iyy) == pytest.approx((along, over))
-    assert arm.origin.xyz == pytest.approx([0.125, 0, 0.025])
+    assert arm.origin.xyz == pytest.approx([0.325, 0, 0.025])

@@ -17,7 +17,7 @@ from arboleda.core.errors import ConfigError
 from arboleda.core.model import Evidence, Link, PlantModel
 from arboleda.simulator.plants import draw, smaller
 
-SEEDS = range(100)
+SEEDS = range(120)
 ARMS = {name: model.joints for name, model in arm_models().items()}
 MOBILES = {name: model.speed for name, model in mobile_models().items()}
 
@@ -99,7 +99,7 @@ def _keys(value: Any, place: tuple[str, ...] = ()) -> Iterator[tuple[str, str]]:
 
 
 def _is_named(key: str) -> bool:
-    return key.startswith(("cell_", "zone_")) or key.isdigit()
+    return key.startswith(("cell_", "zone_")) or key.isdigit() or len(key) == 1
 
 
 def test_every_level_link_and_model_is_drawn_in_mixtures(plants: list[PlantModel]) -> None:

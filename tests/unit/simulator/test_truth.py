@@ -73,7 +73,7 @@ def stage() -> Stage:
 
 
 def test_an_arm_is_at_the_poses_where_it_stands_and_nowhere_on_its_way(stage):
-    assert stage.arm.here == {"home", "station 0"}
+    assert stage.arm.here == {"home"}
     stage.ask("sis_a palletizing")
     stage.until(lambda: stage.arm.moving and "pick-up" in stage.arm.goal)
     assert not stage.arm.here

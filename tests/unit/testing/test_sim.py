@@ -36,7 +36,7 @@ def test_a_task_is_followed_to_its_end(sim: Sim) -> None:
     sim.run(until=lambda: task.ended)
     assert task.history == ["queued", "running", "done"]
     assert task.id is not None
-    assert sim.now == pytest.approx(5.9, abs=0.1)
+    assert sim.now == pytest.approx(8.35, abs=0.1)
 
 
 def test_a_refused_text_is_a_handle_too(sim: Sim) -> None:
@@ -190,7 +190,7 @@ def test_a_recipe_of_ones_own_carries_tasks_out(sim: Sim) -> None:
     assert sim.cell("sis_a").step == "unhurried"
     sim.run(until=lambda: task.ended)
     assert task.state == "done"
-    assert sim.now == pytest.approx(8.9, abs=0.1)
+    assert sim.now == pytest.approx(11.35, abs=0.1)
 
 
 def test_a_recipe_of_ones_own_outlives_the_plant_process(sim: Sim) -> None:

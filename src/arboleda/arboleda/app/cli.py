@@ -22,7 +22,7 @@ from arboleda.core.messages import TaskState
 from arboleda.core.model import PlantModel
 from arboleda.core.outside import plain
 
-from . import bench_command, config, session, token_command, tree_command, verbs
+from . import bench_command, config, layout_check, session, token_command, tree_command, verbs
 from .build import OF_BOARDS, PARTS, Options, build
 from .client import Refused
 from .conformance import command as conformance
@@ -241,7 +241,7 @@ def check(
 ) -> None:
     """Check a plant file; every problem at once, each with its line. Exit status: 0 good, 2 problems."""
     model = config.load(file)
-    for warning in config.warnings(model):
+    for warning in (*config.warnings(model), *layout_check.warnings(model)):
         print(f"{file}: warning: {warning}")
     print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")
 

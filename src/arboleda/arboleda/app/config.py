@@ -8,6 +8,7 @@ from typing import Any
 
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
+from arboleda.core.model import Path as Route
 
 from . import user_file
 from .plant_file import rack
@@ -15,6 +16,7 @@ from .plant_file.deadlines import check_arrivals_show
 from .plant_file.document import Document, Place, shown
 from .plant_file.names import check_names
 from .plant_file.paths import check_nodes_show, paths
+from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
@@ -119,7 +121,7 @@ def _cell(document: Document, name: str) -> Cell | None:
     the_arm = arm(document, (*place, "arm"), kind)
     the_mobile = mobile(document, (*place, "mobile"))
     routes = paths(document, _section(document, place, "paths"))
-    poses = _poses(document, place, kind)
+    poses = _poses(document, place, kind, routes)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
     if the_mobile and routes:
         check_nodes_show(document, (*place, "mobile"), routes, the_mobile)
@@ -139,21 +141,28 @@ def _cell(document: Document, name: str) -> Cell | None:
     )
 
 
-def _poses(document: Document, place: Place, kind: ArmModel | None) -> dict[str, Any]:
+def _poses(
+    document: Document, place: Place, kind: ArmModel | None, routes: tuple[Route, ...]
+) -> dict[str, Any]:
     """What the arm needs to know about places; empty, with the problems kept, where one is wrong."""
     if kind is None:
         document.read(PositionShape, (*place, "home"))
         document.read(PoseShape, (*place, "pickup"))
+        for exit in document.keys((*place, "pickups")):
+            document.read(PoseShape, (*place, "pickups", exit))
         return {}
     reader = PoseReader(document=document, cell=str(place[1]), model=kind.name, joints=kind.joints)
     home = reader.home((*place, "home"))
-    pickup = reader.pose((*place, "pickup"), "pick-up")
+    by_exit = pickups(reader, place, routes)
+    pickup = default_pickup(reader, place)
+    if pickup is None and by_exit and not document.has((*place, "pickup")):
+        pickup = by_exit[0][1]
     stations = rack.stations(reader, _section(document, place, "stations"), home)
     section = _section(document, place, "palletizing", needed=False)
-    palletizing = rack.palletizing(reader, section, pickup, stations)
-    whole = home and pickup and stations and palletizing
+    palletizing = rack.palletizing(reader, section, pickup, by_exit or (), stations)
+    whole = home and pickup and by_exit is not None and stations and palletizing
     poses = {"home": home, "pickup": pickup, "stations": stations, "palletizing": palletizing}
-    return poses if whole else {}
+    return {**poses, "pickups": by_exit} if whole else {}
 
 
 def _section(document: Document, place: Place, key: str, *, needed: bool = True) -> Place:

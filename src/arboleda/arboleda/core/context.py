@@ -35,6 +35,7 @@ class Context:
         self.awaits_piece = False  # for a report newer than the last one that had it
         self.carried = False  # a part that was seen in the effector is on its way
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
+        self.back: Pose | None = None  # where the part of the last order came from; None: not known here
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
@@ -155,7 +156,11 @@ class Context:
 
     def recovery_zones(self) -> frozenset[str]:
         """What the way of a recovery needs, from where the arm stands now."""
-        return zone_plan.recovery_zones(self.cell, self._dispatcher.place(self.cell))
+        return zone_plan.recovery_zones(self.cell, self._dispatcher.place(self.cell), self.way_back())
+
+    def way_back(self) -> Pose:
+        """Where a recovery brings a part: back where it came from, or to where the mobile robot stands."""
+        return self.back or self.cell.pickup_over(self.node())
 
     def standing(self) -> Pose:
         """The zone-free pose at which the arm's next way begins: where it is seen, else home."""

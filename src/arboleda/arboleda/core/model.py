@@ -228,6 +228,11 @@ class Path:
     code: str
     nodes: tuple[int, ...]
 
+    @property
+    def exit(self) -> str:
+        """What its code calls its last node: the second character."""
+        return self.code[1]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Palletizing:
@@ -247,7 +252,7 @@ class Retry:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """One arm, one mobile robot, one storage rack."""
+    """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
 
     name: str
     arm: Arm
@@ -263,6 +268,15 @@ class Cell:
     piece_check: bool = False
     crossings: tuple[Crossing, ...] = ()
     zone_wait_s: float = 30.0
+    pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
+
+    def pickup_of(self, path: Path) -> Pose:
+        """Where the arm takes the part at the end of a path."""
+        return dict(self.pickups).get(path.exit, self.pickup)
+
+    def pickup_over(self, node: int | None) -> Pose:
+        """Where the arm meets a mobile that stands on this node; None, or no exit: the one for all exits."""
+        return next((self.pickup_of(path) for path in self.paths if path.nodes[-1] == node), self.pickup)
 
     def path(self, code: str) -> Path:
         return next(path for path in self.paths if path.code == code)
@@ -285,7 +299,12 @@ class Cell:
     @cached_property
     def poses(self) -> tuple[Pose, ...]:
         """Every named pose of the arm; a palletizing pose is one of them."""
-        return (self.home, self.pickup, *self.stations)
+        return (self.home, *self.every_pickup, *self.stations)
+
+    @cached_property
+    def every_pickup(self) -> tuple[Pose, ...]:
+        """The pick-ups of all exits, each once."""
+        return tuple({pose.name: pose for pose in (self.pickup, *dict(self.pickups).values())}.values())
 
     @cached_property
     def free_spots(self) -> tuple[tuple[tuple[float, ...], Pose], ...]:

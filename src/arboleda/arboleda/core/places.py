@@ -53,7 +53,7 @@ def _cell(cell: Cell) -> Row:
         "mobile": cell.mobile.name,
         "pitch": grid.pitch,
         "columns": grid.columns,
-        "pickup": list(cell.pickup.q),
+        "pickups": [list(pickup.q) for pickup in cell.every_pickup],
         "stations": [list(station.q) for station in cell.stations],
     }
 

@@ -34,9 +34,10 @@ def storage(order: Order, context: Context) -> Behaviour:
     """Drive the mobile, pick the part up, put it into its station, go home."""
     assert order.path is not None and order.station is not None
     cell, station = context.cell, order.station
-    way = zone_plan.storage_way(cell, station, context.standing())
+    pickup = context.back = cell.pickup_of(order.path)
+    way = zone_plan.storage_way(cell, pickup, station, context.standing())
     visits: list[Visit] = [
-        (cell.pickup, _grip(context, cell.pickup)),
+        (pickup, _grip(context, pickup)),
         (station, _let_go(context)),
         (cell.home, []),
     ]
@@ -48,6 +49,7 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     """Home, pick, place: the arm alone."""
     cell = context.cell
     pick, place = cell.palletizing.pick, cell.palletizing.place
+    context.back = cell.pickup
     way = zone_plan.palletizing_way(cell, context.standing())
     visits: list[Visit] = [(cell.home, []), (pick, _grip(context, pick)), (place, _let_go(context))]
     return _recovering(Recipe.PALLETIZING, [_start(context), *_visit(context, way, visits)], context)
@@ -61,8 +63,8 @@ RECIPES: Recipes = {
 
 def recovery(context: Context) -> Behaviour:
     """Wait until all has come to rest; carry a part that is held back to the pick-up pose; go home."""
-    cell = context.cell
-    back = _sequence("carry back", *_at(context, cell.pickup, _effector(context, False)))
+    cell, context.back = context.cell, context.way_back()
+    back = _sequence("carry back", *_at(context, context.back, _effector(context, False)))
     shares = cell.zones
     return _sequence(
         RECOVERY,
@@ -159,7 +161,7 @@ def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool 
 
 def _visit(context: Context, way: Sequence[Pose], visits: list[Visit]) -> list[Behaviour]:
     """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
-    legs = zone_plan.plan(context.cell, way) if context.cell.zones else []
+    legs = zone_plan.plan(context.cell, way, context.way_back()) if context.cell.zones else []
     steps: list[Behaviour] = []
     for index, (pose, work) in enumerate(visits):
         steps += [_take(context, leg.zones) for leg in legs if leg.start == index and leg.zones]

@@ -22,9 +22,9 @@ class Leg:
     zones: frozenset[str]
 
 
-def storage_way(cell: Cell, station: Pose, start: Pose) -> tuple[Pose, ...]:
+def storage_way(cell: Cell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
     """The poses of the storage recipe for an arm that stands at `start`."""
-    return (start, cell.pickup, station, cell.home)
+    return (start, pickup, station, cell.home)
 
 
 def palletizing_way(cell: Cell, start: Pose) -> tuple[Pose, ...]:
@@ -32,25 +32,28 @@ def palletizing_way(cell: Cell, start: Pose) -> tuple[Pose, ...]:
     return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
 
 
-def plan(cell: Cell, way: Sequence[Pose]) -> list[Leg]:
-    """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way."""
+def plan(cell: Cell, way: Sequence[Pose], back: Pose) -> list[Leg]:
+    """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way.
+
+    A recovery would bring the part to `back`.
+    """
     for pose in (way[0], way[-1]):
         if pose.zones:
             raise ConfigError((f"cell {cell.name}: {_lying(pose)}, so no way may start or end there",))
     free = [index for index, pose in enumerate(way) if not pose.zones]
     left = max((index for index, pose in enumerate(way) if pose.name != cell.home.name), default=0)
     return [
-        Leg(start=start, end=end, zones=_zones(cell, way[start : end + 1], carrying=start < left))
+        Leg(start=start, end=end, zones=_zones(cell, way[start : end + 1], back if start < left else None))
         for start, end in pairwise(free)
     ]
 
 
-def recovery_zones(cell: Cell, start: Pose | None) -> frozenset[str]:
-    """What the way from `start` to the pick-up pose and home needs; None: from wherever the arm may be."""
-    way = (cell.pickup, cell.home)
+def recovery_zones(cell: Cell, start: Pose | None, back: Pose) -> frozenset[str]:
+    """What the way from `start` to `back` and home needs; None: from wherever the arm may be."""
+    way = (back, cell.home)
     starts = cell.poses if start is None else (start,)
     moves = [(pose, goal) for pose in starts for goal in way]
-    return _zones(cell, way, carrying=True) | _crossed(cell, moves)
+    return _zones(cell, way, back) | _crossed(cell, moves)
 
 
 def plan_problems(cell: Cell) -> dict[str, str]:
@@ -65,9 +68,9 @@ def plan_problems(cell: Cell) -> dict[str, str]:
     return problems
 
 
-def _zones(cell: Cell, poses: Sequence[Pose], *, carrying: bool) -> frozenset[str]:
+def _zones(cell: Cell, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
     """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
-    recovery = (cell.pickup, cell.home) if carrying else (cell.home,)
+    recovery = (back, cell.home) if back else (cell.home,)
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]
     inside = (pose.zones for pose in (*poses, *recovery))

@@ -46,5 +46,10 @@ def _until_seen(ways: tuple[Advice, ...]) -> tuple[Advice, ...]:
 
 
 def _comes_to_work(rig: Rig, cell: str) -> bool:
-    rig.wait(PATIENCE_S, until=lambda: bool(rig.plant.advice(cell)) or works(rig, cell))
+    rig.wait(PATIENCE_S, until=lambda: works(rig, cell) or _can_be_done(rig.plant.advice(cell)))
     return works(rig, cell)
+
+
+def _can_be_done(ways: tuple[Advice, ...]) -> bool:
+    """Whether the first can be done now; some only once an arm has left a zone."""
+    return bool(ways) and ways[0].refusal is None

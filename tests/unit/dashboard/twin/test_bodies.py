@@ -45,7 +45,7 @@ def test_a_shape_has_its_size_place_and_colour(drawings: dict[str, Body]) -> Non
     assert grip["shapes"] == [
         {
             "kind": "cylinder",
-            "size": [0.022, 0.04],
+            "size": [0.012, 0.04],
             "xyz": [0, 0, -0.02],
             "rpy": [0, 0, 0],
             "color": [0.9, 0.45, 0.1],

@@ -42,9 +42,9 @@ def test_every_link_is_where_another_reader_has_it(
 @pytest.mark.parametrize(
     ("name", "q", "tool"),
     [
-        ("ra1", (0, 0, 0), (0.45, 0, 0.15)),
-        ("ra1", (HALF, 0, 0.1), (0, 0.45, 0.05)),
-        ("ra1", (0, HALF, 0), (0.25, 0.20, 0.15)),
+        ("ra1", (0, 0, 0), (1.17, 0, 0.15)),
+        ("ra1", (HALF, 0, 0.1), (0, 1.17, 0.05)),
+        ("ra1", (0, HALF, 0), (0.65, 0.52, 0.15)),
         ("ra3", (0, 0, 0, 0, 0, 0), (0, -0.2994, 1.4765)),
         ("ra3", (HALF, 0, 0, 0, 0, 0), (0.2994, 0, 1.4765)),
     ],
@@ -57,4 +57,4 @@ def test_the_tool_is_where_the_drawing_of_the_robot_says(
 
 def test_a_base_turns_and_shifts_what_stands_on_it(drawings: dict[str, Body]) -> None:
     base = kinematics.floor((1.0, 2.0, HALF))
-    assert kinematics.at(kinematics.tool(drawings["ra1"], (0, 0, 0), base)) == pytest.approx((1, 2.45, 0.15))
+    assert kinematics.at(kinematics.tool(drawings["ra1"], (0, 0, 0), base)) == pytest.approx((1, 3.17, 0.15))

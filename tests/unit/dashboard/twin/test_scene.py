@@ -37,26 +37,26 @@ def test_a_scene_is_plain_json(drawings: dict[str, Body]) -> None:
 
 def test_robots_stand_where_the_plant_file_puts_them(drawings: dict[str, Body]) -> None:
     robots = {robot["name"]: robot for robot in scene(places(shipped()), drawings)["robots"]}
-    assert robots["ra2"]["at"] == [1.0, 0.0, 0.0]
-    assert robots["rm_sis_a"]["at"] == pytest.approx([0.59, 0.84, math.pi])
+    assert robots["ra2"]["at"] == pytest.approx([1.5, 0.0, math.radians(230.61)])
+    assert robots["rm_sis_a"]["at"] == pytest.approx([-0.1, -1.366, 0])
 
 
 def test_a_station_is_at_the_tool_of_its_pose(drawings: dict[str, Body]) -> None:
     cell = scene(places(shipped()), drawings)["cells"][0]
-    q1, q2 = math.radians(10), math.radians(20)  # station 7: column 1, row 2
-    x, y = (0.1 + 0.25 * f(q1) + 0.2 * f(q1 + q2) for f in (math.cos, math.sin))
-    assert at(cell["stations"][7]) == pytest.approx([x, y, 0.15])
+    q1, q2 = math.radians(220.6 + 10), math.radians(20)  # station 7: column 1, row 2
+    x, y = (0.65 * f(q1) + 0.52 * f(q1 + q2) for f in (math.cos, math.sin))
+    assert at(cell["stations"][7]) == pytest.approx([x, y, 0.05])
     assert len(cell["stations"]) == 9
 
 
 def test_a_part_on_a_mobile_stands_on_its_deck(drawings: dict[str, Body]) -> None:
-    assert scene(places(shipped()), drawings)["cells"][0]["deck"] == pytest.approx(0.105)
+    assert scene(places(shipped()), drawings)["cells"][0]["deck"] == pytest.approx(0.108)
 
 
 def test_a_zone_is_around_the_tool_at_its_poses(drawings: dict[str, Body]) -> None:
     made = scene(places(zoned()), drawings)
     spot = made["zones"][0]
-    x, y, z = at(made["cells"][0]["pickup"])
+    x, y, z = at(made["cells"][0]["pickups"][0])
     assert all(math.dist((x, y), corner) == pytest.approx(MARGIN, abs=1e-6) for corner in spot["outline"])
     assert (spot["low"], spot["high"]) == pytest.approx((z - MARGIN, z + MARGIN))
 

@@ -89,7 +89,7 @@ def test_a_palletizing_part_waits_at_its_pick_pose(watched: Watched) -> None:
     watched.rig.wait(0.3)
     part = watched.part()
     assert part is not None
-    assert part["frame"] == pytest.approx(watched.twin.scene["cells"][0]["pickup"])
+    assert part["frame"] == pytest.approx(watched.twin.scene["cells"][0]["pickups"][0])
 
 
 def test_a_board_that_falls_silent_is_drawn_old(watched: Watched) -> None:
@@ -120,7 +120,7 @@ def test_a_robot_that_only_says_whether_it_moves_is_estimated(drawings: dict[str
     told(2.0, "rm_sis_a", MotionState.MOVING)
     assert drawn("rm_sis_a", 2.5)["kind"] == "unknown"
     told(6.0, "rm_sis_a", MotionState.STOPPED)
-    assert drawn("rm_sis_a", 6.0)["estimate"] == [0.2, 0.4]
+    assert drawn("rm_sis_a", 6.0)["estimate"] == [0.1, 0.2]
     told(6.1, "ra1", MotionState.MOVING)
     told(8.0, "ra1", MotionState.STOPPED)
     pickup = list(model.cells[0].pickup.q)

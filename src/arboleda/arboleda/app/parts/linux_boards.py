@@ -97,7 +97,7 @@ class LinuxBoards:
         yield from ("--robot", robot.mqtt, "--broker", str(self._broker.address), "--until-eof")
         yield from ("--level", robot.evidence.value)
         yield f"--at={_pose(robot, cell.home.q)}"
-        for place in {cell.pickup.q: None, cell.palletizing.pick.q: None}:
+        for place in dict.fromkeys(pose.q for pose in (*cell.every_pickup, cell.palletizing.pick)):
             yield f"--place={_pose(robot, place)}"
         if robot.assume_homed:
             yield "--assume-homed"

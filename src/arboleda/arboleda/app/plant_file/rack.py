@@ -9,6 +9,7 @@ from arboleda.core.counting import counted
 from arboleda.core.model import Palletizing, Pose
 
 from .document import Place, shown
+from .pickups import Pickups, pickup_names
 from .poses import PoseReader
 from .robot_models import TO_SI, millimetres
 from .shapes import PalletizingShape, RackShape
@@ -26,7 +27,7 @@ def stations(reader: PoseReader, place: Place, home: Pose | None) -> tuple[Pose,
 
 
 def palletizing(
-    reader: PoseReader, place: Place, pickup: Pose | None, rack: tuple[Pose, ...]
+    reader: PoseReader, place: Place, pickup: Pose | None, pickups: Pickups, rack: tuple[Pose, ...]
 ) -> Palletizing | None:
     """The named pick and place; without the section the pick-up and the last station."""
     shape = reader.document.read(PalletizingShape, place)
@@ -36,7 +37,7 @@ def palletizing(
         return Palletizing(pick=pickup, place=rack[-1])
     if shape is None:
         return None
-    poses = {"pickup": pickup} | {pose.name: pose for pose in rack}
+    poses = pickup_names(pickup, pickups) | {pose.name: pose for pose in rack}
     pick = _named(reader, shape.pick, poses, (*place, "pick"))
     target = _named(reader, shape.place, poses, (*place, "place"))
     if pick is not None and pick is target:
@@ -84,6 +85,7 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
 def _named(reader: PoseReader, text: str, poses: dict[str, Pose], place: Place) -> Pose | None:
     pose = poses.get(" ".join(text.lower().split()))
     if pose is None:
-        allowed = f'"pickup", or "station 0" to "{list(poses)[-1]}"'
+        pickups = ", ".join(f'"{name}"' for name in poses if name.startswith("pickup"))
+        allowed = f'{pickups}, or "station 0" to "{list(poses)[-1]}"'
         reader.problem(place, f"must be {allowed}, is {shown(text)}")
     return pose

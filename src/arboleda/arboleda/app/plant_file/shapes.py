@@ -82,7 +82,8 @@ class CellShape(Shape):
     arm: Any
     mobile: Any
     home: Any
-    pickup: Any
+    pickup: Any = None
+    pickups: Any = None
     paths: Any = None
     stations: Any = None
     palletizing: Any = None

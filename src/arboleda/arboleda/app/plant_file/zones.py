@@ -11,6 +11,7 @@ from arboleda.core.zone_plan import plan_problems
 
 from .alike import confusions, with_alike_crossings
 from .document import Document, Place, nearest, shown
+from .pickups import pickup_names
 from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
 
 SECTION: Place = ("zones",)
@@ -67,6 +68,7 @@ def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cel
         cell,
         home=placed(cell.home),
         pickup=placed(cell.pickup),
+        pickups=tuple((exit, placed(pose)) for exit, pose in cell.pickups),
         stations=tuple(placed(pose) for pose in cell.stations),
         palletizing=palletizing,
         crossings=_crossings(cell, all_zones),
@@ -120,7 +122,8 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
     poses, pose = _poses(cell), " ".join(words)
     if pose not in poses:
         stations = f'"station 0" to "station {len(cell.stations) - 1}"'
-        known = f'poses of {name} are "home", "pickup" and {stations}'
+        pickups = ", ".join(f'"{word}"' for word in pickup_names(cell.pickup, cell.pickups))
+        known = f'poses of {name} are "home", {pickups} and {stations}'
         document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
         return None
     return Spot(cell=name, pose=poses[pose].name)
@@ -128,7 +131,8 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
 
 def _poses(cell: Cell) -> dict[str, Pose]:
     """The poses of a cell by the names they have in a plant file."""
-    return {"home": cell.home, "pickup": cell.pickup} | {pose.name: pose for pose in cell.stations}
+    pickups = pickup_names(cell.pickup, cell.pickups)
+    return {"home": cell.home} | pickups | {pose.name: pose for pose in cell.stations}
 
 
 def _move(

@@ -83,7 +83,7 @@ export class Plant {
     const { Vector3 } = this.THREE;
     this.root.updateMatrixWorld(true);
     const cells = this.scene.cells.filter((cell) => !name || cell.name === name);
-    const stations = cells.flatMap((cell) => [cell.pickup, ...cell.stations]).map((frame) => new Vector3(frame[3], frame[7], frame[11]));
+    const stations = cells.flatMap((cell) => [...cell.pickups, ...cell.stations]).map((frame) => new Vector3(frame[3], frame[7], frame[11]));
     const robots = cells.flatMap((cell) => [cell.arm, cell.mobile]).map((robot) => this.robots.get(robot));
     return [...stations, ...cells.flatMap((cell) => this.furniture.corners.get(cell.name).map((corner) => corner.clone())), ...robots.flatMap((robot) => robot.points())];
   }

@@ -8,6 +8,10 @@ from . import kinematics
 from .bodies import Body
 
 Row = dict[str, Any]
+PART_RADIUS_M, PART_HEIGHT_M = (
+    0.012,
+    0.04,
+)  # of the part that is drawn, and that `arboleda check` reckons with
 
 
 class Part:

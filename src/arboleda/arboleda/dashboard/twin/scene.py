@@ -58,7 +58,7 @@ def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) ->
             "pitch": cell["pitch"],
             "columns": cell["columns"],
         },
-        "pickup": _frame(robots[cell["arm"]], drawings, cell["pickup"]),
+        "pickups": [_frame(robots[cell["arm"]], drawings, q) for q in cell["pickups"]],
         "stations": [_frame(robots[cell["arm"]], drawings, q) for q in cell["stations"]],
     }
 
@@ -102,7 +102,7 @@ def _bounds(places: Row, cells: list[Row]) -> list[list[float]]:
         frame = kinematics.floor(robot["at"])
         points += [kinematics.at(frame, (x, y, 0.0)) for x, y in robot.get("nodes", ())]
     points += [
-        (frame[3], frame[7], frame[11]) for cell in cells for frame in [cell["pickup"], *cell["stations"]]
+        (frame[3], frame[7], frame[11]) for cell in cells for frame in [*cell["pickups"], *cell["stations"]]
     ]
     low = [min(point[axis] for point in points) - WIDE for axis in range(3)]
     return [low, [max(point[axis] for point in points) + WIDE for axis in range(3)]]

@@ -212,6 +212,6 @@ def place(cell: Cell) -> Row:
         "mobile": cell.mobile.name,
         "pitch": cell.mobile.grid.pitch,
         "columns": cell.mobile.grid.columns,
-        "pickup": list(cell.pickup.q),
+        "pickups": [list(pose.q) for pose in cell.poses if pose.name.startswith("pick-up")],
         "stations": [list(station.q) for station in cell.stations],
     }

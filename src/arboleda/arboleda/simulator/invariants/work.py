@@ -7,7 +7,7 @@ from itertools import dropwhile
 
 from arboleda.core.ledger import State
 from arboleda.core.messages import MoveJoints
-from arboleda.core.model import Arm, Cell, Evidence
+from arboleda.core.model import Arm, Cell, Evidence, Pose
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -35,16 +35,22 @@ def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
     held = look.world.plant.zones.held_by(cell.cell.arm.name)
     if cell.held_before_recovery:
         return  # it stands inside of what it holds, and goes on with that
-    lacking = _of_any_way(cell.cell) - held
+    pickups = _pickups(cell.cell)
+    goals = [pickup for pickup in pickups if sent.command.q in (pickup.q, pickup.above)] or pickups
+    lacking = min((_of_any_way(cell.cell, pickup) - held for pickup in goals), key=len)
     if lacking:
         yield f"{sent} leaves from an unknown place without zone {', '.join(sorted(lacking))}"
 
 
-def _of_any_way(cell: Cell) -> frozenset[str]:
-    """Zones of the pick-up and home, and of every move that leads there."""
-    ends = {cell.pickup.name, cell.home.name}
+def _pickups(cell: Cell) -> list[Pose]:
+    return [cell.pickup, *(pose for _, pose in cell.pickups)]
+
+
+def _of_any_way(cell: Cell, pickup: Pose) -> frozenset[str]:
+    """Zones of a pick-up and home, and of every move that leads there."""
+    ends = {pickup.name, cell.home.name}
     crossed = (each.zones for each in cell.crossings if {each.a, each.b} & ends)
-    return cell.pickup.zones.union(cell.home.zones, *crossed)
+    return pickup.zones.union(cell.home.zones, *crossed)
 
 
 def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
@@ -52,11 +58,12 @@ def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
 
     Where poses have an approach height it rises before: its first move, and all that repeat that one.
     """
-    pickup, home, moves = cell.cell.pickup, cell.cell.home, cell.recovery_moves
+    moves = cell.recovery_moves
     if any(pose.above for pose in cell.cell.poses):
         moves = [*dropwhile(lambda each: each.state is not State.DONE, moves)][1:]
     goals = [each.command.q for each in moves if isinstance(each.command, MoveJoints)]
-    return [goal for goal in goals if goal in (pickup.q, pickup.above, home.q)] == [sent.command.q]
+    ends = [cell.cell.home.q, *(spot for each in _pickups(cell.cell) for spot in (each.q, each.above))]
+    return [goal for goal in goals if goal in ends] == [sent.command.q]
 
 
 def _is_seen(look: Look, cell: Cell) -> bool:

@@ -13,6 +13,7 @@ from .robots import DrawnArm, draw_arm, draw_mobile
 from .ways import draw_paths
 
 ZONE_WAITS_S = (0.5, 5.0, 30.0)
+PICKUPS = 0.2  # how often exits have pick-ups of their own
 
 
 @dataclass(kw_only=True)
@@ -27,7 +28,8 @@ class DrawnCell:
     @property
     def poses(self) -> tuple[str, ...]:
         """Its poses as zones name them."""
-        return ("home", "pickup", *(f"station {number}" for number in range(self.stations)))
+        pickups = (f"pickup {exit}" for exit in self.section.get("pickups", ()))
+        return ("home", "pickup", *pickups, *(f"station {number}" for number in range(self.stations)))
 
     def place(self, shared: Section) -> str:
         """Where its palletizing puts a part, with the sections that cells share."""
@@ -40,6 +42,15 @@ class DrawnCell:
         self.stations = count
         if "palletizing" in self.section:
             self.section["palletizing"] = {"pick": "pickup", "place": f"station {count - 1}"}
+
+    def draw_pickups(self, dice: Dice) -> None:
+        """Now and then, have some exits of its own paths have a pick-up of their own."""
+        exits = dict.fromkeys(code[1].upper() for code in self.section.get("paths", ()))
+        if dice.chance(PICKUPS):
+            poses = Poses(dice, self.arm.axes)
+            drawn = {exit: poses.draw(approach=True) for exit in exits if dice.chance(0.7)}
+            if drawn:
+                self.section["pickups"] = drawn
 
 
 def draw_cell(

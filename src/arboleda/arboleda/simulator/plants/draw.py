@@ -39,6 +39,8 @@ def draw(
         file["timing"] = draw_timing(dice)
     shared = _share(dice, cells)
     file |= shared
+    for cell in cells:
+        cell.draw_pickups(Dice(seed, "plant", attempt, "pickups", cell.name))
     file["cells"] = {cell.name: cell.section for cell in cells}
     if zones := draw_zones(dice, cells, shared):
         file["zones"] = zones

@@ -148,10 +148,11 @@ def _steps(cell: Cell, words: list[str], mobile: KnownRobot, now: float) -> Iter
         yield from _at(cell.palletizing.place, [("effector", False)])
         return
     nodes = next(path.nodes for path in cell.paths if path.code == words[1])
+    pickup = next((pose for exit, pose in cell.pickups if words[1].endswith(exit)), cell.pickup)
     if cell.drive_to_start and _stands_on(mobile, now) not in (None, nodes[0]):
         yield TO_START, nodes[0]
     yield "path", nodes
-    yield from _at(cell.pickup, list(_grip(cell)))
+    yield from _at(pickup, list(_grip(cell)))
     yield from _at(cell.stations[int(words[2])], [("effector", False)])
     yield from _at(cell.home, [])
 

@@ -84,8 +84,15 @@ class CellTruth:
     @property
     def pick(self) -> Pose:
         """Where the part of the last task is gripped."""
-        stored = self.order is None or self.order.station is not None
-        return self.cell.pickup if stored else self.cell.palletizing.pick
+        if self.order is None or self.order.station is None:
+            return self.cell.pickup if self.order is None else self.cell.palletizing.pick
+        code = self.order.path.code if self.order.path else ""
+        return next((pose for exit, pose in self.cell.pickups if code.endswith(exit)), self.cell.pickup)
+
+    @property
+    def pick_poses(self) -> tuple[Pose, ...]:
+        """Everywhere a part of the cell may be gripped."""
+        return (self.cell.pickup, *(pose for _, pose in self.cell.pickups), self.cell.palletizing.pick)
 
     @property
     def place(self) -> Pose | None:
@@ -166,13 +173,12 @@ class CellTruth:
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
         """Whether nothing falls down where the arm stands."""
-        places = (self.cell.pickup, self.cell.palletizing.pick, self.cell.palletizing.place, self.place)
+        places = (*self.pick_poses, self.cell.palletizing.place, self.place)
         return any(self._at(arm, pose) for pose in places if pose is not None)
 
     def _switch(self, arm: ArmTruth) -> Switch:
         goals = [act.goal for act in arm.acts]
-        picks = (self.cell.pickup, self.cell.palletizing.pick)
-        at_pick = any(self._at(arm, pose) for pose in picks)
+        at_pick = any(self._at(arm, pose) for pose in self.pick_poses)
         return Switch(
             cell=self.cell.name,
             arm=arm.robot.name,

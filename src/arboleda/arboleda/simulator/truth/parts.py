@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
-from arboleda.core.model import Pose
-
 from .arm import ArmTruth
 from .deeds import CellTruth
 
@@ -109,7 +107,7 @@ class Parts:
         return "/".join(sorted(arm.stood))
 
     def _at_a_pick(self, poses: frozenset[str], cell: CellTruth, arm: ArmTruth) -> bool:
-        return any(poses & arm.poses_like(pick.q) for pick in _picks(cell))
+        return any(poses & arm.poses_like(pick.q) for pick in cell.pick_poses)
 
 
 def _cause(cell: CellTruth, arm: ArmTruth) -> str:
@@ -120,12 +118,8 @@ def _cause(cell: CellTruth, arm: ArmTruth) -> str:
     return RELEASED if cell.switch is not None and cell.switch.released else PUT
 
 
-def _picks(cell: CellTruth) -> tuple[Pose, Pose]:
-    return (cell.cell.pickup, cell.cell.palletizing.pick)
-
-
 def _pick_like(poses: frozenset[str], cell: CellTruth, arm: ArmTruth) -> str:
-    return next((pick.name for pick in _picks(cell) if poses & arm.poses_like(pick.q)), "")
+    return next((pick.name for pick in cell.pick_poses if poses & arm.poses_like(pick.q)), "")
 
 
 def _station(poses: frozenset[str], cell: CellTruth) -> str | None:

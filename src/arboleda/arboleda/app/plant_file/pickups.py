@@ -1,0 +1,54 @@
+"""Where an arm takes parts from its mobile robot: one pose for all exits, poses of single exits, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from arboleda.core.model import Path, Pose
+
+from .document import Document, Place, choice
+from .poses import PoseReader
+from .shapes import MAPPING
+
+Pickups = tuple[tuple[str, Pose], ...]  # by exit
+
+
+def default_pickup(reader: PoseReader, cell: Place) -> Pose | None:
+    """The pick-up of all exits that have none of their own."""
+    return reader.pose((*cell, "pickup"), "pick-up")
+
+
+def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups | None:
+    """The pick-ups of single exits; None, with the problems kept, where one is wrong or missing."""
+    document, place = reader.document, (*cell, "pickups")
+    if document.has(place):
+        document.read_plain(MAPPING, place)
+    elif not document.has((*cell, "pickup")):
+        document.problem(cell, 'the key "pickup" is missing')
+    exits = sorted({path.exit for path in paths})
+    seen: dict[str, str] = {}
+    found = []
+    for key in document.keys(place):
+        first = seen.setdefault(key.upper(), key)
+        if first != key:
+            twice = f'is the same exit as "{first}", case does not matter'
+            document.problem((*place, key), twice, at=(*place, key))
+        elif exits and key.upper() not in exits:
+            rule = f"is no exit of a path here, the second character of its code; there is {choice(exits)}"
+            document.problem((*place, key), rule, at=(*place, key))
+        found.append((key.upper(), reader.pose((*place, key), f"pick-up {key.upper()}")))
+    _check_every_exit(document, cell, exits, seen)
+    whole = tuple((exit, pose) for exit, pose in found if pose)
+    return whole if len(whole) == len(found) else None
+
+
+def pickup_names(pickup: Pose, each: Pickups) -> dict[str, Pose]:
+    """Pick-ups by the names they have in a plant file: `pickup`, `pickup A`."""
+    return {"pickup": pickup} | {f"pickup {exit.lower()}": pose for exit, pose in each}
+
+
+def _check_every_exit(document: Document, cell: Place, exits: Sequence[str], seen: dict[str, str]) -> None:
+    left = [exit for exit in exits if exit not in seen]
+    if left and seen and not document.has((*cell, "pickup")):
+        rule = 'add it, or a "pickup" for all exits that are not named here'
+        document.problem((*cell, "pickups"), f"the exit {choice(left)} of the paths has no pick-up; {rule}")

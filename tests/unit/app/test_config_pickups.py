@@ -1,0 +1,95 @@
+"""`pickup` and `pickups` of a cell: one pose for all exits, poses of single exits, or both."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import config
+from arboleda.core.errors import ConfigError
+from arboleda.core.model import Cell
+
+TEXT = """\
+name: p
+paths: {0A: [0, 3, 6], 1B: [1, 4, 7], 2c: [2, 5, 8]}
+stations: {0: {deg: [0, 10], mm: 40}}
+cells:
+  a:
+    arm: {name: ra1, model: scara, link: mqtt, evidence: ids}
+    mobile: {name: rm, link: mqtt, evidence: ids}
+    home: {deg: [0, 0], mm: 0}
+"""
+ONE = "    pickup: {deg: [45, 10], mm: 0}\n"
+TWO = "    pickups:\n      A: {deg: [40, 5], mm: 0}\n      c: {deg: [50, 5], mm: 10, approach_mm: 5}\n"
+B = "      B: {deg: [1, 1], mm: 0}\n"
+
+
+def cell(tmp_path: Path, text: str) -> Cell:
+    file = tmp_path / "p.yaml"
+    file.write_text(TEXT + text, "utf-8")
+    return config.load(file).cells[0]
+
+
+def taken_at(of: Cell) -> dict[str, str]:
+    return {path.code: of.pickup_of(path).name for path in of.paths}
+
+
+def test_one_pick_up_serves_all_exits(tmp_path: Path) -> None:
+    read = cell(tmp_path, ONE)
+    assert taken_at(read) == dict.fromkeys(("0A", "1B", "2C"), "pick-up")
+    assert read.every_pickup == (read.pickup,)
+
+
+def test_an_exit_with_a_pick_up_of_its_own_uses_that(tmp_path: Path) -> None:
+    read = cell(tmp_path, ONE + TWO)
+    assert taken_at(read) == {"0A": "pick-up A", "1B": "pick-up", "2C": "pick-up C"}
+    assert [pose.name for pose in read.poses] == ["home", "pick-up", "pick-up A", "pick-up C", "station 0"]
+    assert dict(read.pickups)["C"].above is not None
+    assert [read.pickup_over(node).name for node in (6, 7, 8, 3, None)] == [
+        "pick-up A",
+        "pick-up",
+        "pick-up C",
+        "pick-up",
+        "pick-up",
+    ]
+
+
+def test_where_every_exit_is_named_no_other_pick_up_is_needed(tmp_path: Path) -> None:
+    read = cell(tmp_path, TWO + B)
+    assert taken_at(read) == {"0A": "pick-up A", "1B": "pick-up B", "2C": "pick-up C"}
+    assert read.palletizing.pick.name == "pick-up A"
+    assert [pose.name for pose in read.every_pickup] == ["pick-up A", "pick-up C", "pick-up B"]
+
+
+def test_palletizing_and_zones_name_the_pick_up_of_an_exit(tmp_path: Path) -> None:
+    more = "palletizing: {pick: Pickup c, place: station 0}\nzones: {z: {poses: [a pickup A]}}\n"
+    read = cell(tmp_path, ONE + TWO + more)
+    assert read.palletizing.pick.name == "pick-up C"
+    assert {pose.name for pose in read.poses if pose.zones} == {"pick-up A"}
+    assert read.zones == {"z"}
+
+
+MISTAKES = {
+    "none": ("", "6:5: cells.a", 'the key "pickup" is missing'),
+    "one exit left": (TWO, "cells.a.pickups: ", "the exit B of the paths has no pick-up"),
+    "no such exit": (ONE + "    pickups: {D: {deg: [1, 1], mm: 0}}\n", "pickups.D: ", "there is A, B or C"),
+    "the same exit twice": (
+        ONE + "    pickups: {A: {deg: [1, 1], mm: 0}, a: {deg: [1, 1], mm: 0}}\n",
+        "pickups.a: ",
+        'the same exit as "A"',
+    ),
+    "outside limits": (
+        ONE + "    pickups: {A: {deg: [1, 999], mm: 0}}\n",
+        "A.deg[1]: ",
+        "999 deg is outside",
+    ),
+    "empty": (ONE + "    pickups: {}\n", "cells.a.pickups: ", "at least 1 value"),
+}
+
+
+@pytest.mark.parametrize(("text", "where", "why"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_named(tmp_path: Path, text: str, where: str, why: str) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        cell(tmp_path, text)
+    assert any(where in each and why in each for each in refusal.value.problems), refusal.value.problems
