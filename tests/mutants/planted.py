@@ -13,7 +13,7 @@ PLANTED = (
     mutant(
         "ends_are_proven",
         "A position from before the command counts at joints.",
-        edit(evidence._look_at_place, "if report.q is None and report.node is None:\n        return", ""),
+        edit(evidence._look_at_place, "if place is None:\n        return", ""),
         seeds=SHARED,
         weather={"operator_hold": 30.0, "operator_resume": 60.0, "loss": 10.0},
     ),

@@ -123,8 +123,8 @@ WIRE = (
         "An arm counts as at its reference until it is heard.",
         edit(
             Belief.__init__,
-            "self.q: tuple[float, ...] | None = None",
-            "self.q = robot.reference if isinstance(robot, Arm) else None",
+            "self.position: Position | None = None",
+            "self.position = self.q = robot.reference",
         ),
         weather={"plant_crash": 3.0},
     ),

@@ -79,7 +79,7 @@ def deadline(rig: Rig, spot: Spot) -> float:
     """Of the robot's longest possible command."""
     timing, robot = rig.model.timing, rig.model.robots[spot.robot]
     cell = rig.model.cell("sis_a")
-    travel_s = cell.mobile.travel_s(cell.path("0B").nodes) if robot is cell.mobile else longest_s(rig)
+    travel_s = cell.mobile.travel_s(None, cell.path("0B").nodes) if robot is cell.mobile else longest_s(rig)
     return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
 
@@ -113,7 +113,7 @@ def longest_s(rig: Rig) -> float:
     """The longest way between two poses of the arm, s."""
     cell = rig.model.cell("sis_a")
     return max(
-        cell.arm.travel_s(cell.arm.quantised(one.q), other.q) for one in cell.poses for other in cell.poses
+        cell.arm.travel_s(cell.arm.quantised(one.q), [other.q]) for one in cell.poses for other in cell.poses
     )
 
 

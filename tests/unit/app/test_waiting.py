@@ -57,7 +57,9 @@ def _signal_once_asleep(main: int) -> None:
     signal.pthread_kill(threading.get_ident(), signal.SIGINT)
 
 
-def _place(thread: int) -> tuple[str, int]:
-    """Where the thread is, once that is in one of the waits."""
-    frame = sys._current_frames()[thread]
-    return frame.f_code.co_name, frame.f_lineno
+def _place(thread: int) -> tuple[str, int] | None:
+    """Where the thread is in one of the waits; None before it has come there."""
+    frame = innermost = sys._current_frames()[thread]
+    while frame is not None and frame.f_code.co_filename != waiting.__file__:
+        frame = frame.f_back
+    return None if frame is None else (innermost.f_code.co_name, innermost.f_lineno)

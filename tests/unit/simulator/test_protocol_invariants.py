@@ -665,7 +665,7 @@ def test_nothing_shown_before_heard(monkeypatch, bites):
 
     def at_home(self: Any, *args: Any) -> None:
         init(self, *args)
-        self.q = (0.0, 0.0, 0.0)
+        self.position = self.q = (0.0, 0.0, 0.0)
 
     watch = Watch()
     monkeypatch.setattr(belief.Belief, "__init__", at_home)

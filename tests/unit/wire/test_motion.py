@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.core.messages import MoveJoints
 from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import shipped
-from arboleda.wire.motion import LINGER_S, Motion
+from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry
 
 ELSEWHERE, GOAL = (0.5, 0.5, 0.5), (0.1, 0.2, 0.05)
@@ -17,7 +17,7 @@ def said(state: MotionState) -> Telemetry:
 
 def test_a_board_that_names_no_command_has_stood_still_for_as_long_as_it_drives_on() -> None:
     arm = shipped("sis_a", evidence=Evidence.JOINTS).cells[0].arm
-    motion = Motion(robot=arm, command=MoveJoints(id="1-1", robot=arm.name, q=GOAL), seq=1)
+    motion = OpenMotion(robot=arm, command=MoveJoints(id="1-1", robot=arm.name, q=GOAL), seq=1)
     heard = [
         (10.0, MotionState.STOPPED, False),  # it has not begun
         (30.0, MotionState.MOVING, False),

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
 from operator import attrgetter
 from typing import NamedTuple
 
 from .messages import Failure, Reason, Report
-from .model import Arm, Evidence, Link, MotionState, Robot
+from .model import Evidence, Link, MotionState, Position, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
 RATE_S = 2.0  # the telemetry rate is counted over at least this long
 MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece")
 _merged = attrgetter(*MERGED)
+
+
+@cache
+def _position_under(key: str) -> Callable[[Report | Belief], Position | None]:
+    return attrgetter(key)
 
 
 class Moment(NamedTuple):
@@ -36,7 +43,7 @@ class Belief:
         self.stale_after_s = stale_after_s
         self.plant_epoch = plant_epoch
         self.supervised = robot.evidence is not Evidence.STATE
-        self._is_arm = isinstance(robot, Arm)
+        self.position_in = _position_under(robot.position_key)  # of a report, or of this
         self.drawn = robot.link is Link.NONE
         self.heard_at: float | None = None
         self.stale = False
@@ -48,6 +55,7 @@ class Belief:
         self.state: MotionState | None = None
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
+        self.position: Position | None = None
         self.position_at = 0.0
         self.position_no = 0
         self.state_no = 0
@@ -85,6 +93,7 @@ class Belief:
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
+        self.position = self.position_in(self)
         if report.effector is not None:
             self.effector_boot = self.boot_id
         if report.epoch is not None:
@@ -127,7 +136,7 @@ class Belief:
         self.reports += 1
         if report.state is not None:
             self.state_no, self.state_at = self.reports, report.at
-        said, before = (report.q, self.q) if self._is_arm else (report.node, self.node)
+        said, before = self.position_in(report), self.position
         if said is not None:
             moved = said != before or not self._rested_from
             self._rested_from = self.reports if moved else self.position_no
@@ -177,8 +186,9 @@ class Belief:
         return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
 
     @property
-    def position(self) -> tuple[float, ...] | int | None:
-        return self.q if self._is_arm else self.node
+    def known_position(self) -> Position | None:
+        """The position, where it can be believed: online and not unhomed."""
+        return self.position if self.online and not self.unhomed else None
 
     @property
     def known_q(self) -> tuple[float, ...] | None:

@@ -17,9 +17,8 @@ from .messages import (
     Command,
     Fact,
     Failure,
-    FollowPath,
     Home,
-    MoveJoints,
+    Motion,
     Notice,
     Reason,
     Remember,
@@ -27,8 +26,9 @@ from .messages import (
     SetEffector,
     Stop,
     StopMode,
+    Switch,
 )
-from .model import Arm, Cell, Evidence, Link, Mobile, MotionState, PlantModel, Pose
+from .model import Cell, Evidence, Link, MotionState, PlantModel, Pose, Position
 from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
@@ -63,8 +63,7 @@ class Dispatcher:
         self.opened: dict[
             str, str
         ] = {}  # arms whose effector opened unbidden since its last command, and how
-        self.reached: dict[str, tuple[float, ...]] = {}  # the goal of each arm's last move, once it is done
-        self._arrived: dict[str, int] = {}  # the end of each mobile's last path, once it is done
+        self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self._kept: dict[tuple[Fact, str], str | None] = {
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
         }
@@ -98,10 +97,10 @@ class Dispatcher:
         entry.settles_at = self._settles_at(command, now, deadline)
         self.ledger.open(entry)
         self.last_sent[command.robot] = entry
-        if isinstance(command, SetEffector):
+        if isinstance(command, Switch):
             self.opened.pop(command.robot, None)
             self._grip(command.robot, Grip.SWITCHING)
-        elif not isinstance(command, Stop):
+        elif isinstance(command, Motion):
             self._forget_place(command.robot)
         self._leave(command)
         return entry
@@ -174,7 +173,7 @@ class Dispatcher:
         belief.displaced = False
         self._forget_place(robot)
         stands = belief.state in (None, MotionState.STOPPED)
-        if isinstance(belief.robot, Arm) and not belief.supervised and stands:
+        if belief.robot.reference is not None and not belief.supervised and stands:
             self.reached[robot] = belief.robot.reference
         self.wake([robot])
 
@@ -196,10 +195,10 @@ class Dispatcher:
         restless = belief.state is MotionState.MOVING or given
         if not belief.online or belief.unhomed or restless:
             return None
-        here = belief.q if belief.supervised else self.reached.get(cell.arm.name)
+        here = belief.position if belief.supervised else self.reached.get(cell.arm.name)
         if here is None:
             return None
-        return next((pose for q, pose in cell.free_spots if cell.arm.reached(here, q)), None)
+        return next((pose for q, pose in cell.free_spots if cell.arm.stands_at(here, q)), None)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves.
@@ -282,7 +281,6 @@ class Dispatcher:
 
     def _forget_place(self, robot: str) -> None:
         self.reached.pop(robot, None)
-        self._arrived.pop(robot, None)
 
     def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
         """Fail a command that could not leave this process."""
@@ -358,7 +356,7 @@ class Dispatcher:
         """Whether the end of an earlier move cannot be taken for that of this command."""
         evidence_level = self.beliefs[command.robot].robot.evidence
         if evidence_level is Evidence.JOINTS:
-            return isinstance(command, SetEffector)
+            return isinstance(command, Switch)
         return evidence_level is Evidence.IDS
 
     def _grip(self, arm: str, grip: Grip) -> None:
@@ -377,7 +375,7 @@ class Dispatcher:
         self.opened[arm] = f"{sentence}; {others}" if others else sentence
 
     def _switches(self, arm: str) -> bool:
-        return any(isinstance(entry.command, SetEffector) for entry in self.ledger.of_robot(arm))
+        return any(isinstance(entry.command, Switch) for entry in self.ledger.of_robot(arm))
 
     def _settle_grip(self, belief: Belief) -> None:
         """An effector that nobody is switching is what its board reports."""
@@ -390,14 +388,10 @@ class Dispatcher:
     def _allowed_s(self, command: Command) -> float:
         """How long a command may take: by its distance, never below the robot's `timeout_s`."""
         timing, robot = self.model.timing, self.model.robots[command.robot]
-        if isinstance(command, MoveJoints) and isinstance(robot, Arm):
-            travel_s = robot.travel_s(self.beliefs[robot.name].known_q, command.q)
-        elif isinstance(command, FollowPath) and isinstance(robot, Mobile):
-            travel_s = robot.travel_s(command.nodes)
-        elif isinstance(command, Home):
-            travel_s = HOMING_S
-        else:
+        if not isinstance(command, Motion):
             return timing.effector_timeout_s
+        here = self.beliefs[robot.name].known_position
+        travel_s = robot.travel_s(here, command.way) if command.way else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
@@ -410,7 +404,7 @@ class Dispatcher:
         evidence_level = belief.robot.evidence
         if evidence_level is Evidence.STATE and self._is_there(command):
             return min(now + self.model.timing.stop_timeout_s, deadline)
-        if not isinstance(command, SetEffector) or evidence_level is Evidence.IDS:
+        if not isinstance(command, Switch) or evidence_level is Evidence.IDS:
             return None
         if evidence_level is Evidence.JOINTS and belief.effector is not None:
             return None
@@ -418,9 +412,7 @@ class Dispatcher:
 
     def _is_there(self, command: Command) -> bool:
         """Whether a motion ends where the robot's last one, which was done, has left it."""
-        if isinstance(command, MoveJoints):
-            return self.reached.get(command.robot) == command.q
-        return isinstance(command, FollowPath) and command.nodes == (self._arrived.get(command.robot),)
+        return isinstance(command, Motion) and command.way == (self.reached.get(command.robot),)
 
     def _book(self, entry: Entry, verdict: Verdict, now: float) -> None:
         """Feed the ledger; a motion that failed and may still be under way is halted."""
@@ -444,10 +436,8 @@ class Dispatcher:
     def _done(self, command: Command) -> None:
         if isinstance(command, SetEffector):
             self._grip(command.robot, Grip.ON if command.on else Grip.OFF)
-        elif isinstance(command, MoveJoints):
-            self.reached[command.robot] = command.q
-        elif isinstance(command, FollowPath):
-            self._arrived[command.robot] = command.nodes[-1]
+        elif isinstance(command, Motion) and command.way:
+            self.reached[command.robot] = command.way[-1]
         elif isinstance(command, Home):
             self.beliefs[command.robot].displaced = False
 

@@ -12,8 +12,17 @@ from typing import NamedTuple
 
 from .belief import APART_S, Belief
 from .ledger import Entry, Feed, State
-from .messages import Failure, FollowPath, Home, MoveJoints, Reason, Report, SetEffector
-from .model import Arm, Evidence, MotionState
+from .messages import (
+    Command,
+    Failure,
+    Home,
+    Motion,
+    Reason,
+    Report,
+    SetEffector,
+    Switch,
+)
+from .model import Evidence, MotionState, Position
 
 REFUSALS: dict[str, Reason] = {
     "no_link": Reason.LINK_LOST,
@@ -38,13 +47,13 @@ class Before(NamedTuple):
 
     epoch: int | None
     boot_id: int | None
-    q: tuple[float, ...] | None
+    position: Position | None
     position_at: float
     online: bool
 
     @classmethod
     def of(cls, belief: Belief) -> Before:
-        return cls(belief.epoch, belief.boot_id, belief.q, belief.position_at, belief.online)
+        return cls(belief.epoch, belief.boot_id, belief.position, belief.position_at, belief.online)
 
 
 def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> Verdict | None:
@@ -74,30 +83,27 @@ def _look(entry: Entry, belief: Belief, report: Report) -> None:
 
 
 def _look_at_place(entry: Entry, belief: Belief, report: Report) -> None:
-    """Keep since when each position is the goal, and how far along its path a mobile robot was seen."""
-    seen = entry.seen
-    if report.q is None and report.node is None:
+    """Keep since when each position is the goal, and how far along its way the robot was seen."""
+    seen, place = entry.seen, belief.position_in(report)
+    if place is None:
         return
-    if isinstance(entry.command, FollowPath) and report.node != seen.node:
-        seen.node = report.node
-        ahead = entry.command.nodes[seen.passed + 1 :]
-        seen.passed += ahead.index(report.node) + 1 if report.node in ahead else 0
+    if len(entry.way) > 1 and place != seen.place:
+        seen.place = place
+        ahead = entry.way[seen.passed + 1 :]
+        seen.passed += ahead.index(place) + 1 if place in ahead else 0
     seen.on_goal_since = (seen.on_goal_since or report.at) if _at_end(entry, belief) else None
 
 
 def _at_end(entry: Entry, belief: Belief) -> bool:
-    """Whether the last position is the goal; a path that comes by there before was seen driven to its end."""
-    command = entry.command
-    driven = not isinstance(command, FollowPath) or entry.seen.passed == len(command.nodes) - 1
+    """Whether the last position is the goal; a way that comes by there before was seen driven to its end."""
+    driven = len(entry.way) <= 1 or entry.seen.passed == len(entry.way) - 1
     return driven and reached(entry, belief)
 
 
 def reached(entry: Entry, belief: Belief) -> bool:
-    """Whether the believed position is the command's quantised target."""
-    command = entry.command
-    if isinstance(command, MoveJoints) and isinstance(belief.robot, Arm):
-        return belief.q is not None and belief.robot.reached(belief.q, belief.robot.quantised(command.q))
-    return isinstance(command, FollowPath) and belief.node == command.nodes[-1]
+    """Whether the believed position is the goal of a motion that has one."""
+    position = belief.position
+    return position is not None and entry.way != () and belief.robot.stands_at(position, entry.way[-1])
 
 
 def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
@@ -146,12 +152,12 @@ def displaced(before: Before, belief: Belief, report: Report) -> bool:
     return jumped or rebooted(before, belief, report)
 
 
-def strayed(before: Before, belief: Belief, report: Report, goal: tuple[float, ...]) -> bool:
-    """Whether an arm that had reached `goal` is elsewhere after a silence, as after a boot unseen."""
-    arm = belief.robot
-    if before.online or report.q is None or arm.evidence is not Evidence.JOINTS or not isinstance(arm, Arm):
+def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
+    """Whether who had reached `goal` is elsewhere after a silence, as after a boot unseen."""
+    robot, place = belief.robot, belief.position_in(report)
+    if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
         return False
-    return not arm.reached(report.q, arm.quantised(goal))
+    return not robot.stands_at(place, goal)
 
 
 def rebooted(before: Before, belief: Belief, report: Report) -> bool:
@@ -163,12 +169,12 @@ def rebooted(before: Before, belief: Belief, report: Report) -> bool:
 
 
 def _jumped(before: Before, belief: Belief, report: Report) -> bool:
-    """Whether the joints moved further between two reports than the limits allow."""
-    if before.q is None or report.q is None or not isinstance(belief.robot, Arm):
+    """Whether the robot moved further between two reports than its limits allow."""
+    place = belief.position_in(report)
+    if before.position is None or place is None:
         return False
-    elapsed = report.at - before.position_at + JITTER_S
-    rows = zip(belief.robot.joints, before.q, report.q, strict=True)
-    return any(abs(now - then) > joint.speed * elapsed + 2 * joint.step for joint, then, now in rows)
+    elapsed_s = report.at - before.position_at + JITTER_S
+    return not belief.robot.can_have_moved(before.position, place, elapsed_s)
 
 
 def _device(entry: Entry, report: Report) -> Verdict | None:
@@ -193,8 +199,9 @@ def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
 
 
 def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    rule = RULES.get((type(entry.command), belief.robot.evidence))
-    verdict = rule(entry, belief, report) if rule else None
+    if entry.rule is None:
+        entry.rule = rule_for(type(entry.command), belief.robot.evidence)
+    verdict: Verdict | None = entry.rule(entry, belief, report)
     if verdict is not None and verdict.feed is Feed.FAILED and entry.cancelled_at is not None:
         return None  # it was asked to stop short
     return verdict
@@ -203,12 +210,17 @@ def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
 def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     finished = report.done == entry.command.id
     if finished and report.state is MotionState.STOPPED:
-        return Verdict(feed=Feed.DONE) if reached(entry, belief) else _off_target(entry)
+        return _off_target(entry) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
     if entry.accepted_at is None:
         return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
-    if report.state is MotionState.STOPPED and not reached(entry, belief):
+    if report.state is MotionState.STOPPED and _elsewhere(entry, belief):
         return _short(entry)
     return None
+
+
+def _elsewhere(entry: Entry, belief: Belief) -> bool:
+    """Whether a motion that leads to a named position has not led there."""
+    return entry.way != () and not reached(entry, belief)
 
 
 def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -242,6 +254,11 @@ def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | No
     return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
 
 
+def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """No report proves it: it settles, or its deadline ends it."""
+    return None
+
+
 def _effector_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     """UInt8 commands carry no id over ROS 2: the value the robot reports confirms them."""
     command = entry.command
@@ -266,14 +283,22 @@ def _short(entry: Entry) -> Verdict:
 
 
 Rule = Callable[[Entry, Belief, Report], "Verdict | None"]
-RULES: dict[tuple[type, Evidence], Rule] = {
-    (MoveJoints, Evidence.IDS): _move_by_ids,
-    (FollowPath, Evidence.IDS): _move_by_ids,
-    (MoveJoints, Evidence.JOINTS): _move_by_joints,
-    (FollowPath, Evidence.JOINTS): _move_by_joints,
-    (MoveJoints, Evidence.STATE): _move_by_state,
-    (FollowPath, Evidence.STATE): _move_by_state,
+RULES: dict[tuple[type[Command], Evidence], Rule] = {
+    (Motion, Evidence.IDS): _move_by_ids,
+    (Motion, Evidence.JOINTS): _move_by_joints,
+    (Motion, Evidence.STATE): _move_by_state,
     (Home, Evidence.IDS): _homed_by_ids,
-    (SetEffector, Evidence.IDS): _effector_reported,
-    (SetEffector, Evidence.JOINTS): _effector_reported,
+    (Home, Evidence.JOINTS): _unproven,
+    (Home, Evidence.STATE): _unproven,
+    (Switch, Evidence.IDS): _effector_reported,
+    (Switch, Evidence.JOINTS): _effector_reported,
+    (Command, Evidence.IDS): _unproven,
+    (Command, Evidence.JOINTS): _unproven,
+    (Command, Evidence.STATE): _unproven,
 }
+"""What proves a command, by what it is and by the evidence of its robot."""
+
+
+def rule_for(kind: type[Command], level: Evidence) -> Rule:
+    """The row of RULES for a class of commands: its own, or that of its nearest base."""
+    return next(RULES[base, level] for base in kind.__mro__ if (base, level) in RULES)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
+from collections.abc import Callable
 from enum import Enum
+from typing import Any
 
 from .belief import Moment
 from .errors import IllegalTransition
-from .messages import Command, Failure, FollowPath, Home, MoveJoints
+from .messages import Command, Failure, Motion
+from .model import Position
 
 
 class State(str, Enum):
@@ -63,8 +66,8 @@ class Seen:
         self.moving = False
         self.stopped_since: float | None = None  # since when its state code says stopped, without a break
         self.on_goal_since: float | None = None  # since when each position that it reports is the goal
-        self.node: int | None = None
-        self.passed = -1  # up to which node of its path the reported nodes show that it has come
+        self.place: Position | None = None
+        self.passed = -1  # up to which position of its way the reported ones show that it has come
         self.unhomed = False
         self.ended: str | None = None  # the command that was named last as done
 
@@ -78,7 +81,7 @@ class Entry:
         self.doing = doing
         self.sent_at = sent_at
         self.deadline = deadline
-        self.origin: tuple[float, ...] | int | None = None  # where its robot was believed to stand then
+        self.origin: Position | None = None  # where its robot was believed to stand then
         self.settles_at: float | None = None
         self.left = True  # False: its robot was not ready for it
         self.too_early = False  # it never left, because its robot was still moving
@@ -89,7 +92,9 @@ class Entry:
         self.failure: Failure | None = None
         self.interference: str | None = None  # the last command of somebody else meanwhile, in a sentence
         self.seen = Seen()
-        self.is_motion = isinstance(command, MoveJoints | FollowPath | Home)
+        self.rule: Callable[..., Any] | None = None  # what proves it, once it was looked up
+        self.is_motion = isinstance(command, Motion)
+        self.way = command.way if isinstance(command, Motion) else ()
 
     @property
     def open(self) -> bool:

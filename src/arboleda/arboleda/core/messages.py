@@ -7,7 +7,7 @@ from enum import Enum
 from functools import cached_property
 from operator import attrgetter
 
-from .model import MotionState
+from .model import MotionState, Position
 
 
 class Reason(str, Enum):
@@ -76,47 +76,68 @@ class Verb(str, Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoveJoints:
+class Command:
+    """What a robot is told to do; its base says what the engine must know of it, whatever it is in detail."""
+
+    id: str
+    robot: str
+
+
+class Motion(Command):
+    """Moves the robot: one at a time, halted when its step is left, ends when the evidence says so."""
+
+    @property
+    def way(self) -> tuple[Position, ...]:
+        """The positions it comes by, of several the first where it begins, the last its goal.
+
+        Empty where it leads to no named position.
+        """
+        return ()
+
+
+class Switch(Command):
+    """Sets something that stays as it is set: never halted, ends when it is reported, or has settled."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveJoints(Motion):
     """Drive an arm to `q` (rad; m for a prismatic joint)."""
 
-    id: str
-    robot: str
     q: tuple[float, ...]
 
+    @property
+    def way(self) -> tuple[Position, ...]:
+        return (self.q,)
+
 
 @dataclass(frozen=True, kw_only=True)
-class FollowPath:
+class FollowPath(Motion):
     """Drive a mobile robot over grid nodes."""
 
-    id: str
-    robot: str
     nodes: tuple[int, ...]
+
+    @property
+    def way(self) -> tuple[Position, ...]:
+        return self.nodes
 
 
 @dataclass(frozen=True, kw_only=True)
-class SetEffector:
+class SetEffector(Switch):
     """Switch an arm's effector."""
 
-    id: str
-    robot: str
     on: bool
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stop:
+class Stop(Command):
     """Halt the running move, stop and latch, or clear the latch."""
 
-    id: str
-    robot: str
     mode: StopMode
 
 
 @dataclass(frozen=True, kw_only=True)
-class Home:
+class Home(Motion):
     """Run the homing routine."""
-
-    id: str
-    robot: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,8 +224,6 @@ class Absence:
     seconds: float
 
 
-Motion = MoveJoints | FollowPath | Home
-Command = MoveJoints | FollowPath | SetEffector | Stop | Home
 Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal | InternalError | Absence
 
 

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import ClassVar
+
+Position = tuple[float, ...] | int
+"""Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 
 
 class Evidence(str, Enum):
@@ -144,6 +149,24 @@ class Robot:
     assume_homed: bool = False
     home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
     has_stop: bool = True
+    position_key: ClassVar[str]  # under which key of a report its position is
+
+    @property
+    def reference(self) -> Position | None:
+        """Where its position is counted from; None where it counts nothing that a boot could lose."""
+        return None
+
+    def stands_at(self, position: Position, goal: Position) -> bool:
+        """Whether a reported position is that goal."""
+        return position == goal
+
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
+        """Time of a motion along `way`; from an unknown start the longest possible one."""
+        raise NotImplementedError
+
+    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
+        """Whether its limits allow it to come from one position to the other in that time."""
+        return True
 
     @property
     def says_homed(self) -> bool:
@@ -162,6 +185,7 @@ class Arm(Robot):
     tolerance: tuple[float, ...] | None = None
     piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
     queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
+    position_key: ClassVar[str] = "q"
 
     @cached_property
     def reference(self) -> tuple[float, ...]:
@@ -180,13 +204,23 @@ class Arm(Robot):
         rows = zip(q, target, self.tolerances, strict=True)
         return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
 
-    def travel_s(self, start: tuple[float, ...] | None, goal: tuple[float, ...]) -> float:
+    def stands_at(self, position: Position, goal: Position) -> bool:
+        assert isinstance(position, tuple) and isinstance(goal, tuple)
+        return self.reached(position, self.quantised(goal))
+
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
         longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
         if start is None:
             return longest_s
-        rows = zip(self.joints, start, goal, strict=True)
+        assert isinstance(start, tuple) and isinstance(way[-1], tuple)
+        rows = zip(self.joints, start, way[-1], strict=True)
         return min(longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
+
+    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
+        assert isinstance(before, tuple) and isinstance(after, tuple)
+        rows = zip(self.joints, before, after, strict=True)
+        return all(abs(now - then) <= joint.speed * elapsed_s + 2 * joint.step for joint, then, now in rows)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,10 +230,11 @@ class Mobile(Robot):
     model: str
     grid: Grid
     speed: float
+    position_key: ClassVar[str] = "node"
 
-    def travel_s(self, nodes: tuple[int, ...]) -> float:
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a path; one edge is added for a robot that starts elsewhere."""
-        return len(nodes) * self.grid.pitch / self.speed
+        return len(way) * self.grid.pitch / self.speed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from .grips import Grip
 from .leaves import Act
 from .ledger import OPEN, Entry, State
 from .messages import FollowPath, MoveJoints, SetEffector
-from .model import Arm, Cell
+from .model import Cell
 from .plant import Plant
 from .task import Recipe
 
@@ -102,9 +102,9 @@ def _positioned(plant: Plant, belief: Belief) -> bool:
 
 def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:
     """Where its last motion ended, as far as that was proven: {"q"} or {"node"}."""
-    if isinstance(belief.robot, Arm):
-        q = plant.dispatcher.reached.get(belief.robot.name)
-        return {"q": list(q)} if q is not None else None
+    place = plant.dispatcher.reached.get(belief.robot.name)
+    if isinstance(place, tuple):
+        return {"q": list(place)}
     if last is None or last.state is not State.DONE or not isinstance(last.command, FollowPath):
         return None
     return {"node": last.command.nodes[-1]}

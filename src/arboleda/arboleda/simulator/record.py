@@ -14,6 +14,7 @@ from arboleda.core.messages import (
     FollowPath,
     Home,
     InternalError,
+    Motion,
     MoveJoints,
     OperatorAnswer,
     OperatorRequest,
@@ -224,7 +225,7 @@ class Record:
 
         What is asked of one robot of a cell may move the other: `abandon` of the mobile brings the arm home.
         """
-        moves = isinstance(command, MoveJoints | FollowPath | Home)
+        moves = isinstance(command, Motion)
         cell = self.world.model.cell_of[command.robot]
         if not moves or cell.name not in self.unattended or self._cancels_a_task:
             return False

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, Report, Stop, StopMode
+from arboleda.core.messages import Command, Motion, Report, Stop, StopMode
 from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
 
 from . import goals, rejections
@@ -14,7 +14,7 @@ from .copies import Copies
 from .hop import shown
 from .labels import Labels
 from .link import BoardLink, Heard
-from .motion import Motion
+from .motion import OpenMotion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
 from .rejections import ForeignCommand, Rejection
 from .repeats import Words
@@ -61,7 +61,7 @@ class Board:
         self._words: Words | None = None  # of the last telemetry, until a command changes what it means
         self._axes = len(robot.joints) if isinstance(robot, Arm) else None
         self._nodes = robot.grid.size if isinstance(robot, Mobile) else 0
-        self._motion: Motion | None = None
+        self._motion: OpenMotion | None = None
         self._latched = False
 
     @property
@@ -251,8 +251,8 @@ class Board:
             publication = self._publication(channel, goal)
         except PayloadError:
             return self.refuse(at, command, "formato", sender)
-        if goals.starts_motion(command):
-            self._motion = Motion(robot=self.robot, command=command, seq=seq)
+        if isinstance(command, Motion):
+            self._motion = OpenMotion(robot=self.robot, command=command, seq=seq)
             return [self.beat(), publication]
         if isinstance(command, Stop) and command.mode is not StopMode.CLEAR and self._motion:
             self._motion.stopping = True

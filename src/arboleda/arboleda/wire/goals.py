@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import Arm, Mobile, Robot
 
 from .payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
@@ -27,13 +27,9 @@ def goal(robot: Robot, command: Command, *, seq: int | None, epoch: int | None) 
     return channel, payload(**body(robot, command), seq=seq, epoch=epoch)
 
 
-def starts_motion(command: Command) -> bool:
-    return isinstance(command, (MoveJoints, FollowPath, Home))
-
-
 def needs_clear(command: Command) -> bool:
     """Whether a stop latch forbids the command: whatever moves, and effector on."""
-    return starts_motion(command) or (isinstance(command, SetEffector) and command.on)
+    return isinstance(command, Motion) or (isinstance(command, SetEffector) and command.on)
 
 
 def _check_joints(robot: Robot, command: MoveJoints) -> str | None:

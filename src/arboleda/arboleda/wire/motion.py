@@ -16,7 +16,7 @@ LINGER_S = 1.0  # as long as a board drives on without beats; what it says may b
 
 
 @dataclass(kw_only=True)
-class Motion:
+class OpenMotion:
     """A motion command that was sent as `seq`; `stopping` once a halt or a stop followed it.
 
     A board that names no command may say that it stands still because an earlier move has ended, or before

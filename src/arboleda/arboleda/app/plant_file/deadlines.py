@@ -49,11 +49,11 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
 
 def _longest_s(cell: Cell, robot: Robot) -> float:
     if isinstance(robot, Arm):
-        return robot.travel_s(None, cell.home.q)
+        return robot.travel_s(None, [cell.home.q])
     assert isinstance(robot, Mobile)
     ways = [path.nodes for path in cell.paths]
     ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
-    return max(robot.travel_s(way) for way in ways)
+    return max(robot.travel_s(None, way) for way in ways)
 
 
 def _sentence(robot: Robot, timing: Timing, spare_s: float, needed_s: float) -> str:

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import TABLE, State
-from arboleda.core.messages import FollowPath, Home, MoveJoints, Reason, SetEffector, Stop, StopMode, Verb
-from arboleda.core.model import Arm, Mobile, MotionState, Robot, Timing
+from arboleda.core.messages import Home, Motion, Reason, SetEffector, Stop, StopMode, Verb
+from arboleda.core.model import MotionState, Robot, Timing
 
 from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle
@@ -131,11 +131,7 @@ def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
     command = sent.command
     if isinstance(command, SetEffector):
         return timing.effector_timeout_s
-    way_s = HOMING_S
-    if isinstance(command, MoveJoints) and isinstance(robot, Arm):
-        way_s = robot.travel_s(None, command.q)
-    elif isinstance(command, FollowPath) and isinstance(robot, Mobile):
-        way_s = robot.travel_s(command.nodes)
+    way_s = robot.travel_s(None, command.way) if isinstance(command, Motion) and command.way else HOMING_S
     return max(robot.timeout_s, way_s * timing.deadline_factor + timing.deadline_floor_s)
 
 

@@ -18,6 +18,7 @@ from arboleda.core.messages import (
     FollowPath,
     Heartbeat,
     Home,
+    Motion,
     MoveJoints,
     Report,
     SetEffector,
@@ -48,7 +49,6 @@ CHANNELS = {
     Stop: "paro",
     Home: "referencia",
 }
-Motions = (MoveJoints, FollowPath, Home)
 
 
 class Bridges:
@@ -340,7 +340,7 @@ class _Board:
         if not self._is_within(command):
             return "limite"
         grips = isinstance(command, SetEffector) and command.on
-        return "paro" if self._latched and (isinstance(command, Motions) or grips) else ""
+        return "paro" if self._latched and (isinstance(command, Motion) or grips) else ""
 
     def _is_within(self, command: Command) -> bool:
         """Whether the robot can reach the goal: where an arm lies, a way up may lead beyond its limits."""
@@ -395,7 +395,7 @@ class _Board:
         if not (published or self._heard_beat):
             return
         beats = any(each.topic.endswith("/latido") for each in published)
-        if beats and ended and before and not any(isinstance(order, Motions) for order, _ in self._orders):
+        if beats and ended and before and not any(isinstance(order, Motion) for order, _ in self._orders):
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
         if self._heard_beat and self._motion is not None and not beats and not self._late:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
@@ -435,7 +435,7 @@ class _Board:
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication)
-        if isinstance(command, Motions):
+        if isinstance(command, Motion):
             self._may_move, self._moved, self._still_since = True, False, None
             self._had_ended = False
             self._motion, self._newest = (

@@ -8,9 +8,7 @@ from collections import deque
 from arboleda.core.ledger import OPEN, Entry, Ledger, State
 from arboleda.core.messages import (
     Command,
-    FollowPath,
-    Home,
-    MoveJoints,
+    Motion,
     Report,
     SetEffector,
     Stop,
@@ -38,7 +36,7 @@ class SentCommand:
         self.obstacles = obstacles
         self.verbs = verbs
         self.halts = halts
-        self.is_motion = isinstance(command, MoveJoints | FollowPath | Home)
+        self.is_motion = isinstance(command, Motion)
         self.rejected = False
         self.entry: Entry | None = None
         self.state: State | None = None

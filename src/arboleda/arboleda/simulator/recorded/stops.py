@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.core.messages import FollowPath, Home, MoveJoints
+from arboleda.core.messages import Motion
 from arboleda.wire.hop import FromPlant, is_stop
 
 Number = tuple[int, int]  # the plant's start, and the how-manieth command of it
@@ -26,10 +26,10 @@ class EarlyStops:
                 continue
             if is_stop(command):
                 self._last[command.robot] = max(number, self._last.get(command.robot, number))
-            elif isinstance(command, MoveJoints | FollowPath | Home):
+            elif isinstance(command, Motion):
                 self._judge(command, number)
 
-    def _judge(self, command: MoveJoints | FollowPath | Home, number: Number) -> None:
+    def _judge(self, command: Motion, number: Number) -> None:
         stopped = self._last.get(command.robot)
         if stopped is not None and number < stopped and number[0] == stopped[0]:
             what = f"{type(command).__name__} {command.id} reaches the bridge for {command.robot}"

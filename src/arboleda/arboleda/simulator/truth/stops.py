@@ -7,9 +7,7 @@ from collections import deque
 from arboleda.core.messages import (
     Command,
     Fact,
-    FollowPath,
-    Home,
-    MoveJoints,
+    Motion,
     OperatorAnswer,
     Remember,
     SetEffector,
@@ -88,7 +86,7 @@ def starts(command: Command) -> bool:
     """Whether a stop forbids it: motions, and effector on."""
     if isinstance(command, SetEffector):
         return command.on
-    return isinstance(command, MoveJoints | FollowPath | Home)
+    return isinstance(command, Motion)
 
 
 def robots_of(model: PlantModel, scope: str) -> list[str]:
