@@ -362,6 +362,35 @@ FOUND = {
                 drive_to_start: false
         """,
     ),
+    "an arm that gripped and went one motor step in one instant seemed to grip where it went": Found(
+        seed=1087,
+        seconds=9.0,
+        faults=(
+            Fault(kind="hop_delay", at=2.968, seconds=8.115, target="plant", amount=0.736, word="to plant"),
+            Fault(kind="hop_partition", at=4.728, seconds=3.293, target="plant", word="to bridge, held"),
+        ),
+        file="""
+            name: drawn_1087
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: joints}
+                mobile: {name: mobile_1, link: ros, evidence: ids}
+                home: {deg: [81.7, 3.0], mm: 66.7}
+                pickup: {deg: [81.706, 3.435], mm: 66.807}
+                paths: {4x: [3, 6, 3]}
+                stations:
+                  0: {deg: [-40.1, 89.8], mm: 77.0}
+                  1: {deg: [-84.6, 84.9], mm: 34.8}
+                  2: {deg: [81.701, 3.624], mm: 67.127}
+              cell_2:
+                arm: {name: arm_2, model: scara, link: none, evidence: state}
+                mobile: {name: mobile_2, link: none, evidence: state}
+                home: {deg: [-12.3, -127.4], mm: 38.6}
+                pickup: {deg: [0.5, -96.1], mm: 28.0}
+                paths: {'98': [6, 7, 4, 3, 0, 1]}
+                stations: {0: {deg: [-31.7, -74.0], mm: 83.8}}
+        """,
+    ),
 }
 
 

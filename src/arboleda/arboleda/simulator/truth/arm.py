@@ -8,6 +8,7 @@ from operator import add, sub
 from arboleda.core.model import Arm, Cell, Pose
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
+from arboleda.wire.payloads import EffectorGoal
 
 from ..network import Client
 from .robot import RobotTruth
@@ -141,14 +142,21 @@ class ArmTruth(RobotTruth):
         place = self.intended
         was_here, was_bound_for = self.here, self.goal
         self.here = self._found(self._names, place) if self.stands else NOWHERE
-        self.stood = self.here if self.stands else was_here
-        if was_moving and not self.stands and self._arrived:
+        moved_on = not self.stands or self._switched_first
+        self.stood = was_here if moved_on else self.here
+        if was_moving and moved_on and self._arrived:
             self.stood = was_bound_for
         target = tuple(map(add, self.body.targets, self._shift)) if self.moving else place
         self.goal = self._found(self._names, target)
         spot = self._found(self._spots, target)
         self._between = self._between | spot if self.moving or not spot else spot
         self.zones = self._zones_of(self._between)
+
+    @property
+    def _switched_first(self) -> bool:
+        """Whether its effector was switched before it was told to move; a way of one step is done at once."""
+        moves = [act.moves for act in self.acts if act.moves or isinstance(act.goal, EffectorGoal)]
+        return any(moves) and not moves[0]
 
     def _found(self, book: dict[Steps, frozenset[str]], place: Steps) -> frozenset[str]:
         """What a book has for a place, or for those within the arm's tolerance of it."""
