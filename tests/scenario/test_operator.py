@@ -235,6 +235,14 @@ def test_after_a_crash_in_a_task_nothing_moves_by_itself(
         assert (cell(rig).state, witness.part["ra1"]) == (CellState.IDLE, "pick-up")
 
 
+def test_what_went_wrong_in_a_hold_is_told_in_words_that_stay_true(stage: Stage) -> None:
+    rig, _ = stage()
+    held(rig)
+    rig.power_off("ra_1")
+    rig.wait(3.0)
+    assert cell(rig).trouble.sentence == "ra1 was lost"
+
+
 def test_clear_is_refused_while_a_robot_moves(stage: Stage) -> None:
     rig, _ = stage()
     rig.submit(TASK)

@@ -186,5 +186,6 @@ def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> No
     judged.hear(1.02, HALFWAY, STOPPED)
     assert not belief.still_since(moment)
     judged.hear(1.0 + APART_S, HALFWAY, STOPPED)
+    assert not belief.still_since(moment)
     judged.hear(1.1 + APART_S, HALFWAY)
     assert belief.still_since(moment)

@@ -29,3 +29,17 @@ def test_a_number_above_ours_is_somebody_elses_and_told_once() -> None:
     assert labels.foreign == (1000, 2)
     labels.hear(accepted(1000, 2))
     assert labels.foreign is None
+
+
+def test_a_refusal_is_new_once_and_again_after_a_reboot() -> None:
+    labels = Labels(1000)
+    labels.issue(Home(id="1-1", robot="ra1"))
+    refusal = {"ack_epoch": 1000, "refused_seq": 1, "refusal": "paro"}
+    said = Telemetry(state=MotionState.STOPPED, q=None, node=0, **refusal)
+    heard = []
+    for _ in range(2):
+        labels.hear(said)
+        heard.append(labels.objection is not None)
+    labels.reboot()
+    labels.hear(said)
+    assert [*heard, labels.objection is not None] == [True, False, True]

@@ -209,7 +209,7 @@ class Belief:
         """Whether the board itself says that it is not homed."""
         return self.homed is False or self.state is MotionState.NOT_HOMED
 
-    def obstacle(self, *, was: bool = False) -> Failure | None:
+    def obstacle(self, *, was: bool) -> Failure | None:
         """Why no command may go to this robot, None where it is ready; `was`: in words that stay true."""
         return self._failure(self.trouble, was=was)
 
