@@ -14,7 +14,7 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     entry_points={
-        "console_scripts": ["arboleda = arboleda.app.cli:main"],
+        "console_scripts": ["arboleda = arboleda.app.command:main"],
         "pytest11": ["arboleda = arboleda.testing.plugin"],
     },
 )
