@@ -8,21 +8,40 @@ import pytest
 
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.ledger import State
-from arboleda.core.messages import Home, Reason, Report, SetEffector
+from arboleda.core.messages import Home, MoveJoints, Reason, Report, SetEffector
 from arboleda.core.model import MotionState
 from arboleda.testing import shipped
 
 EPOCH = 7
 
 
+STILL = {"robot": "ra1", "state": MotionState.STOPPED, "q": (0.0, 0.0, 0.0), "homed": True}
+
+
 @pytest.fixture
-def latched() -> Dispatcher:
-    """An arm that stands still, and that an operator has stopped."""
+def dispatcher() -> Dispatcher:
+    """An arm that stands still, as it said twice."""
     dispatcher = Dispatcher(shipped("sis_a"), EPOCH, {})
-    said = Report(at=100.0, robot="ra1", state=MotionState.STOPPED, q=(0.0, 0.0, 0.0), homed=True)
-    dispatcher.report(said, 100.0)
+    for at in (99.9, 100.0):
+        dispatcher.report(Report(at=at, **STILL), at)
+    return dispatcher
+
+
+@pytest.fixture
+def latched(dispatcher: Dispatcher) -> Dispatcher:
+    """The same, stopped by an operator."""
     dispatcher.latch("ra1")
     return dispatcher
+
+
+def test_a_halt_is_proven_only_by_what_is_said_after_it(dispatcher: Dispatcher) -> None:
+    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
+    dispatcher.cancel(move, 100.2)
+    states = []
+    for at in (100.3, 100.4):
+        dispatcher.report(Report(at=at, **STILL), at)
+        states.append(move.state)
+    assert states == [State.CANCELLING, State.CANCELLED]
 
 
 @pytest.mark.parametrize("make", [partial(SetEffector, on=True), Home], ids=["effector", "home"])

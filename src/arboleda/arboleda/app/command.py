@@ -1,4 +1,4 @@
-"""The `arboleda` command: quiet from its first instant on."""
+"""The `arboleda` command, before anything else is loaded."""
 
 from __future__ import annotations
 
