@@ -33,6 +33,10 @@ def test_a_pair_follows_the_table_or_is_refused_with_a_sentence(state: CellState
         after(state, cause, "sis_a")
 
 
+def test_a_second_clear_waits_as_the_first_one_does() -> None:
+    assert after(CellState.CLEARING, Cause.CLEAR, "sis_a") is CellState.CLEARING
+
+
 def test_every_state_is_reachable_and_none_is_a_dead_end() -> None:
     assert reachable(CellState.IDLE, set(Cause)) == set(CellState)
     assert all(CellState.IDLE in reachable(state, set(Cause)) for state in CellState)

@@ -137,6 +137,17 @@ def test_two_equal_positions_and_a_stop_that_lasts_are_short_of_the_goal() -> No
     assert judged.proven[-1][0] >= 0.2 + QUIET_S
 
 
+def test_a_stop_has_lasted_when_its_time_is_over() -> None:
+    judged = move(GOAL)
+    judged.hear(0.5, HALFWAY, MOVING)
+    judged.hear(1.0, state=STOPPED)
+    judged.stays(1.0 + APART_S, 1.0 + APART_S + PERIOD_S, HALFWAY)
+    judged.hear(1.0 + APART_S + PERIOD_S / 2, HALFWAY)
+    assert judged.end is None
+    judged.hear(1.0 + QUIET_S, HALFWAY)
+    assert judged.end is Feed.FAILED
+
+
 def test_other_positions_are_no_stop_whatever_the_code_says() -> None:
     judged = move(GOAL)
     judged.hear(0.1, HALFWAY, MOVING)

@@ -41,6 +41,13 @@ def test_only_a_failure_carries_a_cause() -> None:
         assert (entry.failure == LOST) is (entry.state is State.FAILED)
 
 
+def test_a_command_was_accepted_when_it_was_accepted_first() -> None:
+    ledger, entry = opened()
+    for at in (1.0, 2.0):
+        ledger.feed("1-1", Feed.ACCEPTED, at)
+    assert entry.accepted_at == 1.0
+
+
 def test_a_feed_for_an_unknown_or_finished_id_is_counted_and_ignored() -> None:
     ledger, entry = opened()
     ledger.feed("1-1", Feed.DONE, 1.0)

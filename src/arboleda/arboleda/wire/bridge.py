@@ -169,7 +169,7 @@ class Bridge:
         if not event.copied:
             return
         plain = without_id(command)
-        early = next((e for e in self._unsure if e.board is board and e.event.message == plain), None)
+        early = next((each for each in self._unsure if each.event.message == plain), None)
         if early is None:
             board.copies.expect(event.at, command)
         else:
