@@ -55,6 +55,12 @@ def test_the_page_says_the_words_of_the_api() -> None:
     assert Cell.model_fields["state"].annotation is CellState
 
 
+def test_the_message_on_ros_2_lists_the_words() -> None:
+    message = (ROOT / "src/arboleda_interfaces/msg/CellState.msg").read_text(encoding="utf-8")
+    (line,) = (line for line in message.splitlines() if line.startswith("string state "))
+    assert line.partition("PackML word: ")[2].split() == [state.value for state in CellState]
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_no_two_states_share_a_word(language: str) -> None:
     assert len(set(on_page(language).values())) == len(CellState)
