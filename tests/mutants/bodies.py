@@ -129,8 +129,8 @@ GRIP = (
         "A storage task fetches its part twice.",
         edit(
             recipes.storage,
-            "(station, _let_go(context)),",
-            "(station, _let_go(context)), (pickup, _grip(context, pickup)),",
+            "(station, _let_go(context, station)),",
+            "(station, _let_go(context, station)), (pickup, _grip(context, pickup)),",
         ),
         weather="none",
     ),

@@ -56,7 +56,8 @@ BRANCHES = (
 def _expected() -> Iterable[str]:
     yield from BRANCHES
     yield from (f"task: {each.value}" for each in Reason if each not in REASONS_THAT_CANNOT_BE)
-    yield from (f"verb: {verb.value} {end}" for verb in Verb for end in ("done", "refused"))
+    said = [verb for verb in Verb if verb is not Verb.UNLOAD]  # its kind would change only what is drawn
+    yield from (f"verb: {verb.value} {end}" for verb in said for end in ("done", "refused"))
     yield from (f"board: {word}" for word in sorted(REFUSALS) if word not in WORDS_THAT_CANNOT_BE)
 
 

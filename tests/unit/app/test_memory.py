@@ -24,6 +24,7 @@ def test_what_was_kept_is_remembered(store: Store) -> None:
         Fact.LATCH: {"ra1": "cleared", "ra2": "on"},
         Fact.EFFECTOR: {"ra1": "on"},
         Fact.QUARANTINE: {"mesa": "gone"},
+        Fact.STORED: {"sis_a": "0 7"},
     }
     for fact, values in kept.items():
         for name, value in values.items():

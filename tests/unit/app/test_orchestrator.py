@@ -112,6 +112,7 @@ def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
         Fact.LATCH: {"ra1": "on"},
         Fact.EFFECTOR: {"ra1": "switching"},
         Fact.QUARANTINE: {},
+        Fact.STORED: {},
     }
 
 

@@ -271,8 +271,11 @@ def a_part_from_nowhere(patch: Patch) -> Watch:
 def twice(order: Any, context: Context) -> Any:
     """A storage recipe that stores two parts."""
     cell, station = context.cell, order.station
-    visits = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context))]
-    again = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context))]
+    visits = [
+        (cell.pickup, recipes._grip(context, cell.pickup)),
+        (station, recipes._let_go(context, station)),
+    ]
+    again = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context, station))]
     way = (cell.home, cell.pickup, station, cell.pickup, station)
     return recipes._recovering(Recipe.STORAGE, recipes._visit(context, way, [*visits, *again]), context)
 

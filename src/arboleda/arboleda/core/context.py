@@ -147,6 +147,25 @@ class Context:
         """Whether a part may hang in the arm's effector."""
         return self._dispatcher.grips.holding(self.cell.arm.name)
 
+    @property
+    def stored(self) -> frozenset[int]:
+        """The stations with a part: put there, and not said to have been taken out."""
+        kept = (self._dispatcher.kept(Fact.STORED, self.cell.name) or "").split()
+        return frozenset(number for number in range(len(self.cell.stations)) if str(number) in kept)
+
+    def store(self, pose: Pose) -> None:
+        """The arm has put its part down at a pose; where that is a station, it stays there."""
+        numbers = {number for number, station in enumerate(self.cell.stations) if station.name == pose.name}
+        self._keep_stored(self.stored | numbers)
+
+    def unload(self, station: int | None = None) -> None:
+        """Somebody has taken the part out of a station, or of all."""
+        self._keep_stored(frozenset() if station is None else self.stored - {station})
+
+    def _keep_stored(self, numbers: frozenset[int]) -> None:
+        value = " ".join(map(str, sorted(numbers))) or None
+        self._dispatcher.remember(Fact.STORED, self.cell.name, value)
+
     def part_gone(self) -> Failure | None:
         """Why the part that was gripped is lost: its effector opened, and this plant did not say so."""
         sentence = self._dispatcher.opened.get(self.cell.arm.name)

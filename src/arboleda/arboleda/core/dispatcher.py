@@ -162,6 +162,10 @@ class Dispatcher:
             self._kept[fact, name] = value
             self.outbox.append(Remember(fact=fact, name=name, value=value))
 
+    def kept(self, fact: Fact, name: str) -> str | None:
+        """What is kept of a fact."""
+        return self._kept.get((fact, name))
+
     def home(self, robot: str, now: float) -> None:
         """Have a robot run its homing routine."""
         cell = self.model.cell_of[robot].name

@@ -63,7 +63,7 @@ class Act(Leaf):
     its last move.
     `anew`, where given, makes the command once it has left before. `guard`, where given, is asked at every
     tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
-    a part.
+    a part. `then`, where given, is called once the command is done.
     """
 
     def __init__(
@@ -75,9 +75,11 @@ class Act(Leaf):
         *,
         anew: Make | None = None,
         guard: Guard | None = None,
+        then: Callable[[], None] | None = None,
     ) -> None:
         super().__init__(name)
         self.context = context
+        self.then = then
         self.make = make
         self.anew = anew or make
         self.doing = doing
@@ -115,6 +117,8 @@ class Act(Leaf):
         if self.entry is None or self.entry.open:
             return Status.RUNNING
         if self.entry.state is State.DONE:
+            if self.then is not None:
+                self.then()
             return Status.SUCCESS
         cancelled = Failure(reason=Reason.CANCELLED, sentence=f"cancelled while {self.doing}")
         failure = self.entry.failure or cancelled

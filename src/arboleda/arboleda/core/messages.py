@@ -73,6 +73,7 @@ class Verb(str, Enum):
     RELEASE = "release"
     HOME = "home"
     OVERRIDE = "override"
+    UNLOAD = "unload"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,6 +186,7 @@ class Fact(str, Enum):
     LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
     QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
+    STORED = "stored"  # cell -> the numbers of its stations with a part, "0 7"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -82,6 +82,8 @@ class Operator:
         """What does the request, everything that speaks against it looked at; Refused says what does."""
         if request.verb is Verb.OVERRIDE:
             return self._planned_override(scope)
+        if request.verb is Verb.UNLOAD:
+            return self._planned_unloading(scope)
         if request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
             return self._planned_cancel(scope.lstrip("#"), _cancelled_by(request))
         if request.verb is Verb.CANCEL:
@@ -121,7 +123,8 @@ class Operator:
         task = self._intake.tasks.get(scope.lstrip("#")) if request.verb is Verb.CANCEL else None
         if task is not None:
             return task.order.cell
-        name, its_cell = scope.lower(), self._dispatcher.model.cell_of
+        name, _, _ = scope.lower().partition(" ")  # a station is named by its cell and number
+        its_cell = self._dispatcher.model.cell_of
         return name if name in self._cells else its_cell[name].name if name in its_cell else None
 
     def _known_scope(self, scope: str) -> str:
@@ -170,6 +173,25 @@ class Operator:
         cell = self._cells[self._dispatcher.model.cell_of[arm].name]
         moves = any(entry.is_motion for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
+
+    def _planned_unloading(self, scope: str) -> Callable[[], None]:
+        """`sis_a 7` is one station, `sis_a` the whole rack of a cell."""
+        name, _, station = scope.partition(" ")
+        robots = self._robots(name)
+        cells = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
+        if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
+            raise Refused(f"{quoted(station)} is not a station of {name or 'plant'}")
+        number = int(station) if station else None
+        if not any(
+            cell.context.stored if number is None else number in cell.context.stored for cell in cells
+        ):
+            where = f"station {number} of {name}" if station else f"the rack of {name or 'plant'}"
+            raise Refused(f"no part is known to be in {where}")
+        return partial(self._unload, cells, number)
+
+    def _unload(self, cells: list[CellRun], number: int | None) -> None:
+        for cell in cells:
+            cell.context.unload(number)
 
     def _planned_cancel(self, id: str, failure: Failure) -> Callable[[], None]:
         task = self._intake.tasks[id]

@@ -38,7 +38,7 @@ def storage(order: Order, context: Context) -> Behaviour:
     way = zone_plan.storage_way(cell, pickup, station, context.standing())
     visits: list[Visit] = [
         (pickup, _grip(context, pickup)),
-        (station, _let_go(context)),
+        (station, _let_go(context, station)),
         (cell.home, []),
     ]
     work = [_start(context), *_drive(context, order.path), *_visit(context, way, visits)]
@@ -51,7 +51,7 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     pick, place = cell.palletizing.pick, cell.palletizing.place
     context.back = cell.pickup
     way = zone_plan.palletizing_way(cell, context.standing())
-    visits: list[Visit] = [(cell.home, []), (pick, _grip(context, pick)), (place, _let_go(context))]
+    visits: list[Visit] = [(cell.home, []), (pick, _grip(context, pick)), (place, _let_go(context, place))]
     return _recovering(Recipe.PALLETIZING, [_start(context), *_visit(context, way, visits)], context)
 
 
@@ -196,9 +196,10 @@ def _part_lost(context: Context) -> Failure | None:
     return Failure(reason=Reason.PART_LOST, sentence=sentence)
 
 
-def _effector(context: Context, on: bool) -> Behaviour:
+def _effector(context: Context, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
     arm, word = context.cell.arm.name, "on" if on else "off"
-    act = Act("switch", context, partial(SetEffector, robot=arm, on=on), f"switching the effector {word}")
+    make, doing = partial(SetEffector, robot=arm, on=on), f"switching the effector {word}"
+    act = Act("switch", context, make, doing, then=then)
     return _sequence(f"effector {word}", act, Dwell("dwell", context, context.timing.dwell_s))
 
 
@@ -236,6 +237,6 @@ def _again(context: Context) -> list[Behaviour]:
     return [only_missed, _effector(context, False), Dwell("back-off", context, context.cell.retry.backoff_s)]
 
 
-def _let_go(context: Context) -> list[Behaviour]:
-    off = _effector(context, False)
+def _let_go(context: Context, pose: Pose) -> list[Behaviour]:
+    off = _effector(context, False, then=partial(context.store, pose))
     return [Carry("arrived", context, False), off] if context.cell.piece_check else [off]

@@ -25,6 +25,7 @@ def positions(plant: Plant) -> Row:
     return {
         "robots": [_robot(plant, belief) for belief in plant.dispatcher.beliefs.values()],
         "parts": {name: part(cell) for name, cell in plant.cells.items()},
+        "stored": {name: sorted(cell.context.stored) for name, cell in plant.cells.items()},
         "zones": plant.zones.snapshot(),
     }
 
@@ -53,7 +54,7 @@ def part(cell: CellRun) -> Row | None:
     sent = _sent(cell.tree)
     gripped = [entry for entry in sent if isinstance(entry.command, SetEffector)]
     if gripped:
-        return _put_down(sent, gripped[-1])
+        return _put_down(sent, gripped[-1], cell.cell)
     return _waiting(cell.task.order.recipe, cell.cell)
 
 
@@ -63,11 +64,13 @@ def _waiting(recipe: Recipe, cell: Cell) -> Row:
     return {"at": "pose", "q": list(cell.palletizing.pick.q)}
 
 
-def _put_down(sent: list[Entry], let_go: Entry) -> Row | None:
-    """Where the arm was sent to last before it let go."""
+def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:
+    """Where the arm was sent to last before it let go; what lies in a station is `stored`."""
     before = sent[: sent.index(let_go)]
     moves = [entry.command for entry in before if isinstance(entry.command, MoveJoints)]
-    return {"at": "pose", "q": list(moves[-1].q)} if moves else None
+    if not moves or any(moves[-1].q == station.q for station in cell.stations):
+        return None
+    return {"at": "pose", "q": list(moves[-1].q)}
 
 
 def _sent(tree: Behaviour) -> list[Entry]:

@@ -98,4 +98,10 @@ ABOUT: dict[Verb, VerbWords] = {
         refused="for a zone that is not quarantined, or whose robot has not given up its work or is being"
         " homed: `stop` its cell first",
     ),
+    Verb.UNLOAD: VerbWords(
+        scopes=(PLANT, "cell", "station"),
+        brief="Say that parts were taken out of the rack, 'sis_a 7' out of one station; moves nothing.",
+        does="says that parts were taken out of the rack; they are no longer drawn there, and nothing moves",
+        refused="where no part is known to be",
+    ),
 }

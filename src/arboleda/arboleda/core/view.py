@@ -24,7 +24,16 @@ Diagnostic = tuple[str, str, int, str, dict[str, str]]
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
 OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
-OF_CELLS = (*OF_ROBOTS, Verb.RESET, Verb.HOLD, Verb.RESUME, Verb.CANCEL, Verb.RETRY, Verb.ABANDON)
+OF_CELLS = (
+    *OF_ROBOTS,
+    Verb.RESET,
+    Verb.HOLD,
+    Verb.RESUME,
+    Verb.CANCEL,
+    Verb.RETRY,
+    Verb.ABANDON,
+    Verb.UNLOAD,
+)
 RECENT = 20  # ended tasks that a snapshot shows
 
 

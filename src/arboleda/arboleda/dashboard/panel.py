@@ -32,6 +32,7 @@ OFFERS: dict[str, tuple[Verb, Offer]] = {
     "abandon": (Verb.ABANDON, Offer(scopes="cell")),
     "cancel": (Verb.CANCEL, Offer(scopes="cell")),
     "release": (Verb.RELEASE, Offer(scopes="cell arm", asks=1)),
+    "unload": (Verb.UNLOAD, Offer(scopes="plant cell")),
     "home": (Verb.HOME, Offer(scopes="cell arm mobile", asks=1)),
     "home_by_hand": (Verb.HOME, Offer(scopes="arm mobile", asks=1, by_hand=True)),
 }

@@ -53,6 +53,15 @@ def test_a_part_on_a_mobile_stands_on_its_deck(drawings: dict[str, Body]) -> Non
     assert scene(places(shipped()), drawings)["cells"][0]["deck"] == pytest.approx(0.108)
 
 
+def test_a_rack_is_a_board_under_each_height_at_which_parts_stand(drawings: dict[str, Body]) -> None:
+    a, _, c = scene(places(shipped()), drawings)["cells"]
+    assert [shelf["top"] for shelf in a["shelves"]] == pytest.approx([0.01])
+    assert [shelf["top"] for shelf in c["shelves"]] == pytest.approx([0.25])
+    for cell in (a, c):
+        for frame in cell["stations"]:
+            assert inside((frame[3], frame[7]), cell["shelves"][0]["outline"])
+
+
 def test_a_zone_is_around_the_tool_at_its_poses(drawings: dict[str, Body]) -> None:
     made = scene(places(zoned()), drawings)
     spot = made["zones"][0]

@@ -63,12 +63,14 @@ def test_a_part_waits_on_the_mobile_hangs_in_the_effector_and_lies_in_its_statio
     assert watched.part() == {"at": "mobile", "sure": False}
     watched.rig.wait_for("sis_a", "move to station 7")
     assert watched.part() == {"at": "arm", "sure": True}
+    assert watched.frame()["stored/sis_a"] == []
     watched.rig.wait_for("sis_a", "move to home")
-    placed = watched.part()
-    assert placed is not None and placed["at"] == "place"
-    assert placed["frame"] == pytest.approx(watched.twin.scene["cells"][0]["stations"][7])
+    assert (watched.part(), watched.frame()["stored/sis_a"]) == (None, [7])
+    watched.rig.submit("sis_a 0B 3")
     watched.rig.wait(20.0)
-    assert watched.part() == placed
+    assert (watched.part(), watched.frame()["stored/sis_a"]) == (None, [3, 7])
+    assert watched.rig.operate(Verb.UNLOAD, "sis_a") is None
+    assert (watched.part(), watched.frame()["stored/sis_a"]) == (None, [])
 
 
 def test_a_part_that_is_released_by_hand_is_drawn_where_the_arm_let_go(watched: Watched) -> None:

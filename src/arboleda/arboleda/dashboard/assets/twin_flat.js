@@ -16,6 +16,7 @@ export function footprint({ kind, size }, columns) {
 const CORNERS = {
   box: ([x, y, z]) => [-1, 1].flatMap((a) => [-1, 1].flatMap((b) => [-1, 1].map((c) => [(a * x) / 2, (b * y) / 2, (c * z) / 2]))),
   cylinder: ([radius, length]) => circle(radius).flatMap(([x, y]) => [[x, y, -length / 2], [x, y, length / 2]]),
+  outline: (corners) => corners.map(([x, y]) => [x, y, 0]),
   sphere: ([radius]) => circle(radius).flatMap(([x, y]) => [[x, y, 0], [x, 0, y], [0, x, y]]),
 };
 

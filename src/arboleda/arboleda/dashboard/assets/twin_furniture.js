@@ -2,9 +2,9 @@
 
 import { geometry } from "./twin_bodies.js";
 
-const PLATE = [0.03, 0.03, 0.003]; // m: what a part of a station stands on
-const REACH = 0.0415; // m from the tool to the middle of the plate: the part is between them
-const POST = 0.003; // m, radius
+const PLATE = [0.027, 0.027, 0.003]; // m: what a part of a station stands on
+const POST = 0.004; // m, radius
+const BOARD = 0.008; // m, how thick the boards of a rack are
 const FLOOR = 0.45; // m of floor around all
 
 export class Furniture {
@@ -13,6 +13,7 @@ export class Furniture {
     this.tile = paints.page("box", { roughness: 1 }, "MeshStandardMaterial");
     this.edge = paints.page("soft", {}, "LineBasicMaterial");
     this.rack = paints.page("off", { roughness: 0.8 }, "MeshStandardMaterial");
+    this.part = scene.part[1]; // between the tool and the plate
     this.floor(scene.bounds);
     scene.cells.forEach((cell, number) => this.cell(cell, paints.cell(number)));
     scene.robots.filter((robot) => robot.kind === "arm").forEach((arm) => this.foot(arm));
@@ -46,6 +47,18 @@ export class Furniture {
     this.corners.set(cell.name, frame.userData.corners.map((corner) => grid.localToWorld(corner)));
     this.root.add(grid);
     cell.stations.forEach((frame, number) => this.station(frame, number, color));
+    cell.shelves.forEach((shelf) => this.shelf(shelf));
+  }
+
+  // A board under the plates of all stations at one height.
+  shelf({ outline, top }) {
+    const { THREE } = this;
+    const shape = new THREE.Shape(outline.map(([x, y]) => new THREE.Vector2(x, y)));
+    const board = new THREE.Mesh(new THREE.ExtrudeGeometry(shape, { depth: BOARD, bevelEnabled: false }), this.rack);
+    board.position.z = Math.max(0, top - PLATE[2] - BOARD);
+    board.userData.shape = { kind: "outline", size: outline };
+    board.castShadow = board.receiveShadow = true;
+    this.root.add(board);
   }
 
   node(x, y, number, pitch, yaw) {
@@ -77,7 +90,7 @@ export class Furniture {
     const { THREE } = this;
     const plate = new THREE.Mesh(geometry(THREE, "box", PLATE), this.paints.once(`plate ${color}`, () => this.paints.lit({ color, roughness: 0.7 })));
     plate.matrixAutoUpdate = false;
-    plate.matrix.set(...frame).multiply(new THREE.Matrix4().makeTranslation(0, 0, REACH));
+    plate.matrix.set(...frame).multiply(new THREE.Matrix4().makeTranslation(0, 0, this.part + PLATE[2] / 2));
     plate.userData.shape = { kind: "box", size: PLATE };
     plate.castShadow = plate.receiveShadow = true;
     const at = new THREE.Vector3().setFromMatrixPosition(plate.matrix);

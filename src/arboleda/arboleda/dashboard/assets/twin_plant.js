@@ -6,7 +6,6 @@ import { Robot } from "./twin_robot.js";
 import { Zone } from "./twin_zone.js";
 import { geometry } from "./twin_bodies.js";
 
-const PART = [0.014, 0.04]; // m: radius and height of the part that is drawn
 const ROUND = (number) => (number < 60 ? `${number} s` : `${Math.floor(number / 60)}:${String(number % 60).padStart(2, "0")} min`);
 
 export class Plant {
@@ -19,6 +18,7 @@ export class Plant {
     this.robots = new Map(scene.robots.map((robot) => [robot.name, new Robot(THREE, robot, this.paints)]));
     this.zones = new Map(scene.zones.map((zone) => [zone.zone, new Zone(THREE, zone, this.paints)]));
     this.parts = new Map(scene.cells.map((cell) => [cell.name, this.newPart()]));
+    this.inStations = new Map(scene.cells.map((cell) => [cell.name, cell.stations.map(() => null)]));
     this.moving = new THREE.Group();
     this.moving.add(...[...this.robots.values()].map((robot) => robot.root));
     this.root.add(this.furniture.root, this.moving, ...[...this.zones.values()].map((zone) => zone.root));
@@ -43,9 +43,18 @@ export class Plant {
     this.zones.get(name)?.show(told, robot && this.paints.cell(this.numbers.get(robot.told.cell)));
   }
 
+  // The parts in the stations of a cell, made when they are first needed.
+  stored(name, numbers) {
+    const cell = this.scene.cells.find((each) => each.name === name);
+    const parts = this.inStations.get(name);
+    for (const number of numbers) if (!parts[number]) this.lay((parts[number] = this.newPart()), cell.stations[number]);
+    parts.forEach((part, number) => part && (part.visible = numbers.includes(number)));
+  }
+
   newPart() {
-    const part = new this.THREE.Mesh(geometry(this.THREE, "cylinder", PART), this.paints.part());
-    part.userData.shape = { kind: "cylinder", size: PART };
+    const size = this.scene.part;
+    const part = new this.THREE.Mesh(geometry(this.THREE, "cylinder", size), this.paints.part());
+    part.userData.shape = { kind: "cylinder", size };
     part.castShadow = true;
     return part;
   }
@@ -63,13 +72,13 @@ export class Plant {
   hang(part, link, height) {
     part.matrixAutoUpdate = true;
     part.rotation.set(0, 0, 0);
-    part.position.set(0, 0, height + PART[1] / 2);
+    part.position.set(0, 0, height + this.scene.part[1] / 2);
     link.add(part);
   }
 
   lay(part, frame) {
     part.matrixAutoUpdate = false;
-    const down = new this.THREE.Matrix4().makeTranslation(0, 0, PART[1] / 2);
+    const down = new this.THREE.Matrix4().makeTranslation(0, 0, this.scene.part[1] / 2);
     part.matrix.set(...frame).multiply(down);
     this.moving.add(part);
   }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from . import kinematics
 from .bodies import Body
 
 Row = dict[str, Any]
+NEAR = 0.02  # rad and m: a motor step or two
 PART_RADIUS_M, PART_HEIGHT_M = (
     0.012,
     0.04,
@@ -21,19 +23,27 @@ class Part:
     effector holds for sure is `sure`.
     """
 
-    def __init__(self, arm: Row, body: Body) -> None:
+    def __init__(self, arm: Row, body: Body, stations: list[list[float]]) -> None:
         self._base = kinematics.floor(arm["at"])
         self._body = body
+        self._stations = stations
         self._shown: Row | None = None
 
-    def see(self, part: Row | None, arm: Row) -> Row | None:
-        """`part` as `core.twin_view.part` has it, `arm` as its Track draws it."""
+    def see(self, part: Row | None, arm: Row, stored: list[int]) -> Row | None:
+        """`part` as `core.twin_view.part` has it, `arm` as its Track draws it, the stations with a part."""
         if part is not None:
             self._shown = self._placed(part["q"]) if part["at"] == "pose" else {"sure": False, **part}
+        elif self._shown is not None and self._shown["at"] == "arm" and self._at_one_of(stored, arm):
+            self._shown = None
         elif self._shown is not None and self._shown["at"] != "place":
             here = arm["q"] or arm["estimate"]
             self._shown = self._placed(here) if self._shown["at"] == "arm" and here else None
         return self._shown
+
+    def _at_one_of(self, stored: list[int], arm: Row) -> bool:
+        """Whether the arm stands at a station with a part: that is the one it let go of."""
+        here = arm["q"] or arm["estimate"]
+        return here is not None and any(math.dist(here, self._stations[n]) < NEAR for n in stored)
 
     def _placed(self, q: list[float]) -> Row:
         frame = kinematics.flat(kinematics.tool(self._body, q, self._base))

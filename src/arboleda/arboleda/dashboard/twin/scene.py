@@ -8,10 +8,13 @@ from typing import Any
 from . import bodies, kinematics
 from .bodies import Body
 from .hull import hull
+from .parts import PART_HEIGHT_M, PART_RADIUS_M
 
 Row = dict[str, Any]
 MARGIN = 0.08  # m around what is known to lie in a zone
 WIDE = 0.05  # m beyond the outermost robot, grid or station
+SHELF = 0.025  # m of a rack's board around the middle of its stations
+UPRIGHT = 0.99  # how straight down a tool looks that puts parts onto a board
 STEPS = 8  # points on a move that crosses a zone
 
 
@@ -21,6 +24,7 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
     cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
     zones = [_zone(zone, robots, drawings) for zone in places["zones"]]
     return {
+        "part": [PART_RADIUS_M, PART_HEIGHT_M],
         "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
         "cells": cells,
         "zones": zones,
@@ -47,6 +51,7 @@ def _robot(robot: Row, body: Body) -> Row:
 
 def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
     mobile = robots[cell["mobile"]]
+    stations = [_frame(robots[cell["arm"]], drawings, q) for q in cell["stations"]]
     return {
         "name": cell["name"],
         "arm": cell["arm"],
@@ -59,8 +64,18 @@ def _cell(cell: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) ->
             "columns": cell["columns"],
         },
         "pickups": [_frame(robots[cell["arm"]], drawings, q) for q in cell["pickups"]],
-        "stations": [_frame(robots[cell["arm"]], drawings, q) for q in cell["stations"]],
+        "stations": stations,
+        "shelves": _shelves(stations),
     }
+
+
+def _shelves(stations: Sequence[Sequence[float]]) -> list[Row]:
+    """The rack's boards: one at each height at which parts stand upright, {outline, top} in m."""
+    levels: dict[float, list[tuple[float, float]]] = {}
+    for frame in stations:
+        if frame[10] < -UPRIGHT:
+            levels.setdefault(round(frame[11] - PART_HEIGHT_M, 3), []).append((frame[3], frame[7]))
+    return [{"outline": hull(spots, SHELF), "top": top} for top, spots in levels.items()]
 
 
 def _frame(arm: Row, drawings: Mapping[str, Body], q: Sequence[float]) -> list[float]:

@@ -20,15 +20,22 @@ class Twin:
         self.scene = scene(places, drawings)
         robots = {robot["name"]: robot for robot in places["robots"]}
         self._arms = {cell["name"]: cell["arm"] for cell in places["cells"]}
+        stations = {cell["name"]: cell["stations"] for cell in places["cells"]}
         self._tracks = {name: Track(robot) for name, robot in robots.items()}
-        self._parts = {cell: Part(robots[arm], drawings[arm]) for cell, arm in self._arms.items()}
+        self._parts = {
+            cell: Part(robots[arm], drawings[arm], stations[cell]) for cell, arm in self._arms.items()
+        }
 
     def frame(self, positions: Row, now: float) -> Row:
-        """All that is drawn, by keys robot/<name>, part/<cell>, zone/<name>; `now` on the plant's clock."""
+        """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
         robots = {row["name"]: self._tracks[row["name"]].see(row, now) for row in positions["robots"]}
         found: Row = {f"robot/{name}": drawn for name, drawn in robots.items()}
         for cell, part in positions["parts"].items():
-            found[f"part/{cell}"] = self._parts[cell].see(part, robots[self._arms[cell]])
+            found[f"part/{cell}"] = self._parts[cell].see(
+                part, robots[self._arms[cell]], positions["stored"][cell]
+            )
+        for cell, numbers in positions["stored"].items():
+            found[f"stored/{cell}"] = numbers
         for zone in positions["zones"]:
             found[f"zone/{zone['zone']}"] = {key: zone[key] for key in ("state", "robot", "waiting")}
         return found

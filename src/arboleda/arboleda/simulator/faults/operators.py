@@ -22,6 +22,7 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
+SAID = tuple(verb for verb in Verb if verb is not Verb.UNLOAD)  # that one changes only what is drawn
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
@@ -145,4 +146,4 @@ def flood_of_tasks(world: World, fault: Fault) -> None:
         world.request_verb(Verb.CANCEL, id)
 
 
-KINDS = (*map(_verb, Verb), double_submit, bad_task, flood_of_tasks)
+KINDS = (*map(_verb, SAID), double_submit, bad_task, flood_of_tasks)

@@ -191,7 +191,8 @@ def waits_at(cell: KnownCell, text: str, part: Row | None) -> Iterator[str]:
     if letting_go:
         before = [each.command for each in sent[: sent.index(letting_go[-1])]]
         goals = [each.q for each in before if isinstance(each, MoveJoints)]
-        expected = {"at": "pose", "q": list(goals[-1])} if goals else None
+        stored = any(goals[-1] == station.q for station in cell.cell.stations) if goals else True
+        expected = None if stored else {"at": "pose", "q": list(goals[-1])}
     elif text.endswith(" palletizing"):
         expected = {"at": "pose", "q": list(cell.cell.palletizing.pick.q)}
     else:

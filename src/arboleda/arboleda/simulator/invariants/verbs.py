@@ -89,6 +89,8 @@ def _held_after_absence(cell: Asked) -> Asked:
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
     """None where it cannot be said by what the record has."""
     record, verb, scope = look.record, request.verb, request.scope
+    if verb is Verb.UNLOAD:
+        return None
     if verb is Verb.OVERRIDE:
         quarantined = record.asked.quarantined.get(scope.strip().lower())
         return True if quarantined is None else None
