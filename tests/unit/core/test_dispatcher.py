@@ -53,3 +53,24 @@ def test_a_stopped_robot_is_sent_nothing_by_a_task(latched: Dispatcher, make: ty
 def test_a_stopped_robot_lets_its_part_go_by_hand(latched: Dispatcher) -> None:
     let_go = partial(SetEffector, robot="ra1", on=False)
     assert latched.send(let_go, "sis_a", "doing", 100.1, by_hand=True).failure is None
+
+
+def test_a_robot_that_moves_takes_no_second_motion_and_opens_nothing(dispatcher: Dispatcher) -> None:
+    move = partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0))
+    dispatcher.send(move, "sis_a", "moving", 100.1)
+    second = dispatcher.send(move, "sis_a", "moving", 100.2)
+    failures = [second.failure, dispatcher.obstacle_to_opening("ra1")]
+    assert [failure and failure.sentence for failure in failures] == [
+        "ra1 had an open motion command: no moving",
+        "ra1 has an open motion command",
+    ]
+
+
+@pytest.mark.parametrize("lost", [{"state": MotionState.NO_LINK}, {"state": MotionState.NOT_HOMED}], ids=str)
+def test_where_a_robot_is_is_known_while_it_is_heard_and_homed(
+    dispatcher: Dispatcher, lost: dict[str, MotionState]
+) -> None:
+    belief = dispatcher.beliefs["ra1"]
+    assert belief.known_q == belief.known_position == STILL["q"]
+    dispatcher.report(Report(at=100.1, robot="ra1", **lost), 100.1)
+    assert belief.known_q is None and belief.known_position is None

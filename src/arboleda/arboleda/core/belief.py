@@ -186,18 +186,23 @@ class Belief:
         return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
 
     @property
+    def is_located(self) -> bool:
+        """Whether its position can be believed."""
+        return self.online and not self.unhomed
+
+    @property
     def known_position(self) -> Position | None:
-        """The position, where it can be believed: online and not unhomed."""
-        return self.position if self.online and not self.unhomed else None
+        """The position, where it can be believed."""
+        return self.position if self.is_located else None
 
     @property
     def known_q(self) -> tuple[float, ...] | None:
-        """The joints, where they can be believed: online and not unhomed."""
-        return self.q if self.online and not self.unhomed else None
+        """The joints, where they can be believed."""
+        return self.q if self.is_located else None
 
     @property
     def known_node(self) -> int | None:
-        return self.node if self.online and not self.unhomed else None
+        return self.node if self.is_located else None
 
     @property
     def unhomed(self) -> bool:
