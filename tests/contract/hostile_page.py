@@ -74,7 +74,7 @@ class Side:
         return {"broker": broker, "ros": None, "refused": {"": {"count": 1, "last": EVIL}}}
 
     def past_acts(self) -> list[dict[str, Any]]:
-        return [{"at": 0.0, "scope": EVIL, "sentence": EVIL}]
+        return [{"at": 0.0, "cell": EVIL, "scope": EVIL, "sentence": EVIL}]
 
     def submit(self, text: str) -> Future[dict[str, Any]]:
         answer: Future[dict[str, Any]] = Future()

@@ -86,7 +86,7 @@ def foreigner(bridge: Any, observer: Any) -> Foreigner:
 
 def test_plain_goals_drive_an_arm_and_a_mobile(foreigner: Foreigner, observer: Any) -> None:
     foreigner.say("/rm_sis_a/path_cmd", [0.0, 3.0, 4.0])
-    foreigner.wait_for_place("rm_sis_a", 0.2, 0.2)
+    foreigner.wait_for_place("rm_sis_a", 0.1, 0.1)
     foreigner.wait_for_state("rm_sis_a", 0)
     foreigner.say("/ra1/joint_goals_q", [0.5, -0.25, 0.05])
     foreigner.wait_for_place("r1", 0.5, -0.25, 0.05)

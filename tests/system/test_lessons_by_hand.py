@@ -193,7 +193,7 @@ def test_a_running_plant_is_looked_at_and_operated(first: Callable[..., Any], tm
     wait_until_held(typed[0], tmp_path)
     printed.append(second_terminal(resume, tmp_path))
     status, tree, png, submitted, held, resumed = printed
-    assert "sis_a 0B 7" in status and "sis_b" in status
+    assert "0B 7" in status and "sis_b" in status
     assert tree.startswith("{o} storage [*]") and "drive path 0B" in tree
     assert png == "" and (tmp_path / "live.png").read_bytes().startswith(b"\x89PNG")
     assert submitted.startswith(("queued", "running"))

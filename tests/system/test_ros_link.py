@@ -266,7 +266,7 @@ def test_the_bridge_publishes_what_existing_tools_read(links):
     assert list(joints[0].position) == [0.1, 0.2, 0.03], "nothing is published while there is no link"
     assert joints[0].header.stamp.sec > 0
     assert places[0].name == ["rm_sis_a_x_joint", "rm_sis_a_y_joint"]
-    assert list(places[0].position) == pytest.approx([0.4, 0.2])
+    assert list(places[0].position) == pytest.approx([0.2, 0.1])
 
 
 @pytest.mark.parametrize(
@@ -315,8 +315,8 @@ def test_a_robot_on_ros_is_heard_on_its_own_topics(links):
     shuffled = ["r1_efector_joint", "other_joint", "r1_brazo_joint", "r1_antebrazo_joint"]
     tool.say("/r1/joint_states", JointState(name=shuffled, position=[0.03, 8.0, 0.1, 0.2]))
     names = ["rm_sis_a_x_joint", "rm_sis_a_y_joint"]
-    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.39, 0.21]))
-    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.30, 0.20]))
+    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.195, 0.105]))
+    tool.say("/rm_sis_a/joint_states", JointState(name=names, position=[0.15, 0.10]))
     eventually(lambda: len(side.events) == 5)
     facts = [
         (event.robot, event.state, event.q, event.node, event.piece)

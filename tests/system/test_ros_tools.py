@@ -48,7 +48,7 @@ def test_a_task_request_from_another_process_shows_on_the_topics(
     assert states(observer) == ["queued", "running", "done", "refused"]
     assert [list(message.data) for message in heard["/rm_sis_a/path_cmd"]] == [[0, 3, 4, 7]]
     goals = [[round(value, 2) for value in message.data] for message in heard["/ra1/joint_goals_q"]]
-    assert goals == [[0.79, 0.17, 0.0], [0.17, 0.35, 0.0], [0.0, 0.0, 0.0]]
+    assert goals == [[0.79, 0.17, 0.0], [0.17, 0.35, 0.1], [0.0, 0.0, 0.0]]
     assert [message.data for message in heard["/ra1/effector_cmd"]] == [1, 0]
     assert [message.data for message in heard["/system/start"]] == [1]
     assert {0, 1} <= {message.data for message in heard["/ra1/motion_state"]}

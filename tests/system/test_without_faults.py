@@ -23,6 +23,7 @@ Start = Callable[..., Process]
 def equal_neighbours(folder: Path, **arm: Any) -> str:
     """Two cells whose place is their home pose: every task begins with a move of no length."""
     plant = yaml.safe_load(SHIPPED.read_text())
+    plant["stations"]["mm"] = 0
     plant["palletizing"]["place"] = "station 0"
     plant["cells"] = {name: plant["cells"][name] for name in CELLS}
     for cell in plant["cells"].values():

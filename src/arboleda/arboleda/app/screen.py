@@ -109,7 +109,7 @@ def table(snapshot: dict[str, Any]) -> Group:
         padding=(0, 1, 0, 0),
     )
     for heading in ("cell", "state", "task", "step", "arm, effector", "mobile", "time"):
-        drawn.add_column(heading, no_wrap=True)
+        drawn.add_column(heading, no_wrap=heading not in ("step", "arm, effector"))  # these may take two lines
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
