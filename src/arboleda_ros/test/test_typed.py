@@ -70,7 +70,7 @@ def test_a_cell_tells_its_state_and_progress_when_they_change(client: Any, submi
     heard = client.hear(CellState, "sis_c/state")
     client.until(lambda: heard and heard[-1].state == "idle", "sis_c is not idle")
     for id in ("one", "two"):
-        submit(text=f"sis_c 0A 3 #{id}")
+        submit(text=f"sis_c 0B 3 #{id}")
     client.until(lambda: [state.task for state in heard[-2:]] == ["two", ""], "sis_c did not finish")
     first = [state for state in heard if state.task == "one"]
     assert first[-1].queue == ["two"] and first[-1].waiting_for == "sis_c is busy"
