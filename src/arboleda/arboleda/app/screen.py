@@ -26,6 +26,7 @@ from arboleda.core.outside import plain
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
 OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
+LONG = ("step", "arm, effector")  # columns that may take two lines where the terminal is narrow
 STATE_WIDTH = 9  # letters of a task's state at the beginning of its line
 STYLES = {
     TaskState.QUEUED: "dim",
@@ -109,7 +110,7 @@ def table(snapshot: dict[str, Any]) -> Group:
         padding=(0, 1, 0, 0),
     )
     for heading in ("cell", "state", "task", "step", "arm, effector", "mobile", "time"):
-        drawn.add_column(heading, no_wrap=heading not in ("step", "arm, effector"))  # these may take two lines
+        drawn.add_column(heading, no_wrap=heading not in LONG)
     for cell in snapshot["cells"]:
         drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
