@@ -142,6 +142,7 @@ ADVICE = (
         "After a reboot it is advised to retry, which is held again, for ever.",
         edit(Advisor._readying, "obstacle.reason is Reason.NOT_HOMED", "False"),
         weather={"reboot": 10.0},
+        likely=70,
         cycles=1,
     ),
     mutant(
@@ -154,6 +155,7 @@ ADVICE = (
         "no_advice_where_all_is_well",
         "It is advised to resume a queue that runs.",
         edit(advisor._running_again, "if run.queue_paused:", "if True:"),
+        likely=83,
         weather="none",
         rest_s=60.0,
     ),
