@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from arboleda.core.belief import Belief
-from arboleda.core.evidence import Before, judge, rule_for
+from arboleda.core.evidence import Before, judge
 from arboleda.core.ledger import Entry, Feed
-from arboleda.core.messages import FollowPath, Home, Motion, MoveJoints, Reason, Report, SetEffector, Stop
+from arboleda.core.messages import Command, Home, Motion, MoveJoints, Reason, Report, Stop, StopMode
 from arboleda.core.model import Evidence, MotionState, Position
 from arboleda.testing import shipped
 
@@ -39,7 +39,7 @@ class Sweep(Motion):
         return (HERE, THERE, HERE)
 
 
-def proven(command: Motion, level: Evidence, *said: dict[str, Any]) -> list[tuple[Feed, Reason | None]]:
+def proven(command: Command, level: Evidence, *said: dict[str, Any]) -> list[tuple[Feed, Reason | None]]:
     """What these reports, half a second apart, prove about a command to an arm that stands at HERE."""
     belief = Belief(shipped("sis_a", evidence=level).cell("sis_a").arm, 1.5, 1)
     belief.merge(Report(at=-0.1, robot="ra1", state=STOPPED, q=HERE))
@@ -79,6 +79,14 @@ def test_a_way_that_ends_where_it_began_has_to_be_seen_driven() -> None:
     assert Feed.DONE in [feed for feed, _ in proven(sweep, Evidence.JOINTS, *driven)]
 
 
-def test_every_command_has_a_rule_at_every_level() -> None:
-    for kind in (MoveJoints, FollowPath, Home, SetEffector, Stop):
-        assert all(callable(rule_for(kind, level)) for level in Evidence)
+@pytest.mark.parametrize("level", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
+def test_a_row_of_its_own_comes_before_that_of_a_base(level: Evidence) -> None:
+    told = [{"state": MOVING, "q": THERE}, *[{"state": STOPPED, "q": HERE}] * 3]
+    assert proven(Home(id="1-1", robot="ra1"), level, *told) == []
+    assert proven(MoveJoints(id="1-1", robot="ra1", q=HERE), level, *told) != []
+
+
+def test_a_command_of_no_known_base_is_proven_by_no_report() -> None:
+    told = [{"state": MOVING}, {"state": STOPPED, "accepted": "1-1", "done": "1-1"}]
+    for level in Evidence:
+        assert proven(Stop(id="1-1", robot="ra1", mode=StopMode.HALT), level, *told) == []

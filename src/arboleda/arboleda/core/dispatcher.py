@@ -60,9 +60,8 @@ class Dispatcher:
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
-        self.opened: dict[
-            str, str
-        ] = {}  # arms whose effector opened unbidden since its last command, and how
+        # arms whose effector opened unbidden since its last command, and how
+        self.opened: dict[str, str] = {}
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self._kept: dict[tuple[Fact, str], str | None] = {
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()

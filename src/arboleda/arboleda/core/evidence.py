@@ -12,16 +12,7 @@ from typing import NamedTuple
 
 from .belief import APART_S, Belief
 from .ledger import Entry, Feed, State
-from .messages import (
-    Command,
-    Failure,
-    Home,
-    Motion,
-    Reason,
-    Report,
-    SetEffector,
-    Switch,
-)
+from .messages import Command, Failure, Home, Motion, Reason, Report, SetEffector, Switch
 from .model import Evidence, MotionState, Position
 
 REFUSALS: dict[str, Reason] = {
