@@ -595,6 +595,25 @@ def test_a_cancel_whose_halt_is_not_confirmed_holds_the_cell(stage: Stage, evide
     assert (change.state, cell(rig).state) == (TaskState.CANCELLED, CellState.HELD)
 
 
+def test_a_reset_of_the_plant_waits_for_a_cell_that_is_clearing() -> None:
+    rig = Rig(shipped())
+    aborted(rig)
+    act(rig, Verb.STOP, scope="")
+    rig.lost = faults.to_board("ra_1")
+    act(rig, Verb.CLEAR, scope="")
+
+    def states() -> list[CellState]:
+        return [each.state for each in rig.plant.cells.values()]
+
+    before = [CellState.CLEARING, CellState.STOPPED, CellState.STOPPED]
+    assert states() == before
+    assert "sis_a is clearing" in str(rig.operate(Verb.RESET))
+    assert states() == before
+    rig.lost = lambda publication: False
+    act(rig, Verb.CLEAR, Verb.RESET, scope="")
+    assert set(states()) == {CellState.IDLE}
+
+
 @levels
 def test_the_queue_is_paused_after_a_stop_until_resume(stage: Stage, evidence: Evidence) -> None:
     rig, _ = stage(evidence)

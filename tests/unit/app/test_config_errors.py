@@ -124,6 +124,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "no nodes": ("[0, 3, 4, 7]", "[]", "5:7: paths.0B", "at least 1 value, has 0"),
     "nodes as text": ("[0, 3, 4, 7]", "0347", "5:7: ", 'must be a list [a, b, ...], is "0347"'),
     "path code": ("  0B:", "  0-B:", "5:3: paths.0-B", "two letters or digits"),
+    "path code of one": ("  0B:", "  B:", "5:3: paths.B", "two letters or digits"),
     "same path code": ("  0B: [0", "  0b: [0, 1]\n  0B: [0", "6:3: paths.0B", 'the same code as "0b"'),
     "unknown place": ("place: station 1", "place: station 2", "9:36: ", 'to "station 1", is "station 2"'),
     "pick is place": ("place: station 1", "place: pickup", "9:36: ", "must be another pose than pick"),

@@ -386,4 +386,5 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
 # A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.
 MUST_ALL: dict[Verb, tuple[CellState, ...]] = {
     Verb.CLEAR: (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING),
+    Verb.RESET: (CellState.CLEARING,),
 }

@@ -24,13 +24,15 @@ def paths(document: Document, place: Place) -> tuple[Path, ...]:
     found = []
     for key in document.keys(place):
         first = seen.setdefault(key.upper(), key)
+        path = _path(document, (*place, key))
         if not CODE.fullmatch(key):
             document.problem((*place, key), "a path code is two letters or digits", at=(*place, key))
+            path = None
         elif first != key:
             document.problem(
                 (*place, key), f'is the same code as "{first}", case does not matter', at=(*place, key)
             )
-        found.append(_path(document, (*place, key)))
+        found.append(path)
     return tuple(path for path in found if path) if all(found) else ()
 
 
