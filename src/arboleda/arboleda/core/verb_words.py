@@ -38,7 +38,7 @@ ABOUT: dict[Verb, VerbWords] = {
         scopes=(PLANT, "cell"),
         brief="After clear, make the cell ready again; moves nothing.",
         does="after `clear`, makes the cell ready; nothing moves, the queue stays paused",
-        refused="before `clear`; while a latch is left",
+        refused="before `clear`; while a latch is left; while a cell of the scope is clearing",
     ),
     Verb.HOLD: VerbWords(
         scopes=(PLANT, "cell"),
