@@ -13,7 +13,7 @@ PLANTED = (
     mutant(
         "ends_are_proven",
         "A position from before the command counts at joints.",
-        edit(evidence._look_at_place, "if place is None:\n        return", ""),
+        edit(evidence._look_at_goal, "if place is None and not _tells(report, entry.sets):", "if False:"),
         seeds=SHARED,
         weather={"operator_hold": 30.0, "operator_resume": 60.0, "loss": 10.0},
     ),
@@ -23,7 +23,7 @@ PLANTED = (
         edit(
             evidence._device,
             "if report.state is MotionState.FAULT:",
-            "if report.state is MotionState.FAULT and entry.is_motion:",
+            "if report.state is MotionState.FAULT and entry.is_work:",
         ),
         weather={"driver_alarm": 60.0},
         likely=28,

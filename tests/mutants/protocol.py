@@ -41,7 +41,7 @@ COMMANDS = (
     mutant(
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
-        edit(Dispatcher._obstacle_to, "if self.motion_of(robot) is not None:", "if False:"),
+        edit(Dispatcher._busy_with, "return self.work_of(command.robot)", "return None"),
         edit(recipes._settle, "not context.open_commands() and ", ""),
         likely=6,
     ),

@@ -15,7 +15,7 @@ pytestmark = [pytest.mark.system]
 BROKEN = {
     "a rule": """
 from arboleda.core import evidence
-sound = evidence._move_by_ids
+sound = evidence._work_by_ids
 def broken(entry, belief, report):
     if entry.cell == "sis_a":
         raise KeyError("by design")

@@ -306,7 +306,7 @@ def test_stops_are_cleared_by_operators(monkeypatch, bites):
 
 
 def test_one_motion_per_robot(monkeypatch, bites):
-    monkeypatch.setattr(dispatcher.Dispatcher, "motion_of", lambda self, robot: None)
+    monkeypatch.setattr(dispatcher.Dispatcher, "work_of", lambda self, robot: None)
     watch = Watch()
     watch.world.request_verb(Verb.HOME, "ra1")
     watch.verb(Verb.HOME, "ra1")
@@ -315,7 +315,7 @@ def test_one_motion_per_robot(monkeypatch, bites):
 
 def test_only_legal_command_states(monkeypatch, bites):
     monkeypatch.setitem(TABLE, (State.RUNNING, Feed.ACCEPTED), State.SENT)
-    monkeypatch.setattr("arboleda.core.evidence._move_by_ids", lambda *seen: None)
+    monkeypatch.setattr("arboleda.core.evidence._work_by_ids", lambda *seen: None)
     watch = Watch()
     watch.task(wait_s=1)
     for _ in range(2):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from operator import attrgetter
+from operator import attrgetter, methodcaller
 from typing import NamedTuple
 
-from .messages import Failure, Reason, Report
+from .facts import Facts, Value
+from .messages import BUILT_IN, Failure, Reason, Report
 from .model import Evidence, Link, MotionState, Position, Robot
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
@@ -19,8 +20,19 @@ _merged = attrgetter(*MERGED)
 
 
 @cache
-def _position_under(key: str) -> Callable[[Report | Belief], Position | None]:
-    return attrgetter(key)
+def _position_under(key: str | None) -> Callable[[Report | Belief], Position | None]:
+    return attrgetter(key) if key else _nowhere
+
+
+def _nowhere(said: Report | Belief) -> None:
+    """What has no position says none."""
+
+
+@cache
+def _fact_under(name: str | None) -> Callable[[Report | Belief], Value | None]:
+    if name is None:
+        return _nowhere
+    return attrgetter(name) if name in BUILT_IN else methodcaller("fact", name)
 
 
 class Moment(NamedTuple):
@@ -44,6 +56,7 @@ class Belief:
         self.plant_epoch = plant_epoch
         self.supervised = robot.evidence is not Evidence.STATE
         self.position_in = _position_under(robot.position_key)  # of a report, or of this
+        self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
         self.drawn = robot.link is Link.NONE
         self.heard_at: float | None = None
         self.stale = False
@@ -67,13 +80,21 @@ class Belief:
         self.piece_since = 0.0
         self.displaced = False
         self.barred = False
+        self._still_from = 0  # of still codes without a break the first, by number
         self._rested_from = 0  # of two equal positions in a row the first, by number and by time
         self._rested_at = 0.0
         self.homed: bool | None = None
         self.effector: bool | None = None
-        self.effector_boot: int | None = None  # the boot in which its board said that
+        self.held_boot: int | None = None  # the boot in which it said whether it holds something
         self.piece: bool | None = None
+        self.facts: dict[str, Value] = {}
+        self.facts_no = 0  # the report that changed one of them last
         self._said: tuple[object, ...] = ()  # the words of the last report
+
+    def fact(self, name: str) -> Value | None:
+        """The last word on a fact; None where there was none."""
+        value: Value | None = getattr(self, name) if name in BUILT_IN else self.facts.get(name)
+        return value
 
     def hear_again(self, report: Report) -> bool:
         """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
@@ -93,9 +114,11 @@ class Belief:
         for name, value in zip(MERGED, _merged(report), strict=True):
             if value is not None:
                 setattr(self, name, value)
+        if report.facts:
+            self._merge_facts(report.facts)
         self.position = self.position_in(self)
-        if report.effector is not None:
-            self.effector_boot = self.boot_id
+        if self.held_in(report) is not None:
+            self.held_boot = self.boot_id
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._said = report.words
@@ -103,6 +126,11 @@ class Belief:
             self._count_rate(report.at)
         self._hear(report)
         self.online = self._is_online()
+
+    def _merge_facts(self, facts: Facts) -> None:
+        if any(self.facts.get(name) != value for name, value in facts):
+            self.facts.update(facts)
+            self.facts_no = self.reports
 
     def _hear(self, report: Report) -> None:
         """Take over when it spoke."""
@@ -135,6 +163,8 @@ class Belief:
         """Number the reports, so that "since" never hangs on two clocks agreeing."""
         self.reports += 1
         if report.state is not None:
+            still = report.state in STILL and self.state in STILL
+            self._still_from = self._still_from if still and self._still_from else self.reports
             self.state_no, self.state_at = self.reports, report.at
         said, before = self.position_in(report), self.position
         if said is not None:
@@ -166,17 +196,22 @@ class Belief:
 
     def still_since(self, moment: Moment) -> bool:
         """Whether it stands still for sure: a still code and, where it reports its position, the same one in
-        two reports, all of them after that moment.
+        two reports, all of them after that moment. What has no position says so twice; what has no work to do
+        stands still.
 
         At `joints` a report may be older than the other one that came before it; so old ones do not count.
         """
         count, at = moment
+        if not self.robot.works:
+            return True
         if self.state not in STILL or self.state_no <= count:
             return False
         if self.robot.evidence is Evidence.JOINTS and self.state_at < at + APART_S:
             return False
         if not self.supervised:
             return True
+        if self.robot.position_key is None:
+            return count < self._still_from < self.state_no
         rested = count < self._rested_from < self.position_no
         return rested and (self.robot.evidence is Evidence.IDS or self.rested_since(at + APART_S))
 
@@ -217,6 +252,12 @@ class Belief:
     def obstacle(self, *, was: bool) -> Failure | None:
         """Why no command may go to this robot, None where it is ready; `was`: in words that stay true."""
         return self._failure(self.trouble, was=was)
+
+    def unreachable(self, *, was: bool = False) -> Failure | None:
+        """Why it could not even be asked something, stopped and unhomed as it may be."""
+        trouble = self.trouble
+        lost = trouble is not None and trouble.reason is Reason.LINK_LOST
+        return self._failure(trouble if lost else None, was=was)
 
     def stopped(self, *, was: bool = False) -> Failure | None:
         """What keeps a robot from every command that an operator of this plant stopped."""

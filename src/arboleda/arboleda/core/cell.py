@@ -238,7 +238,7 @@ class CellRun:
 
     def _halted(self) -> bool:
         """Leave `holding` once no motion is open."""
-        if any(entry.is_motion for entry in self.context.open_commands()):
+        if any(entry.halts for entry in self.context.open_commands()):
             return False
         self.become(Cause.HALTED)
         self.trouble = self.trouble or self._fault()

@@ -100,9 +100,9 @@ class Context:
         self._dispatcher.cancel_all(self.cell.name, self._clock())
 
     def cancel_motions(self) -> None:
-        """Halt what moves; an effector may finish switching."""
+        """Halt what can be halted; an effector may finish switching, a machine its work."""
         for entry in self.open_commands():
-            if entry.is_motion and entry.cancelled_at is None:
+            if entry.halts and entry.cancelled_at is None:
                 self.cancel(entry)
 
     def open_commands(self) -> list[Entry]:

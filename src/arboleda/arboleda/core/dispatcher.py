@@ -10,6 +10,7 @@ from functools import partial
 from . import evidence, report_check
 from .belief import Belief
 from .evidence import Before, Verdict
+from .facts import shown
 from .grips import Grip, Grips
 from .interference import Interferences
 from .ledger import Entry, Feed, Ledger, State
@@ -20,6 +21,7 @@ from .messages import (
     Home,
     Motion,
     Notice,
+    Query,
     Reason,
     Remember,
     Report,
@@ -27,6 +29,7 @@ from .messages import (
     Stop,
     StopMode,
     Switch,
+    Work,
 )
 from .model import Cell, Evidence, Link, MotionState, PlantModel, Pose, Position
 from .underway import UnderWay
@@ -56,11 +59,12 @@ class Dispatcher:
         stale_after_s = model.timing.stale_after_s
         self.beliefs = {name: Belief(robot, stale_after_s, epoch) for name, robot in model.robots.items()}
         self._stale_at: dict[str, float] = {}  # of those beliefs that can get stale
-        self.grips = Grips([cell.arm.name for cell in model.cells], memory.get(Fact.EFFECTOR, {}))
+        holders = [robot.name for robot in model.robots.values() if robot.held_fact is not None]
+        self.grips = Grips(holders, memory.get(Fact.EFFECTOR, {}))
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
-        # arms whose effector opened unbidden since its last command, and how
+        # who let go unbidden since the last command to its effector, and how
         self.opened: dict[str, str] = {}
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self._kept: dict[tuple[Fact, str], str | None] = {
@@ -96,7 +100,7 @@ class Dispatcher:
         entry.settles_at = self._settles_at(command, now, deadline)
         self.ledger.open(entry)
         self.last_sent[command.robot] = entry
-        if isinstance(command, Switch):
+        if _grips(command):
             self.opened.pop(command.robot, None)
             self._grip(command.robot, Grip.SWITCHING)
         elif isinstance(command, Motion):
@@ -105,15 +109,18 @@ class Dispatcher:
         return entry
 
     def cancel(self, entry: Entry, now: float) -> None:
-        """Ask an open command to end, once; a motion is halted."""
-        if entry.state is State.CANCELLING:
+        """Ask an open command to end, once: work that can be halted is, a query is forgotten."""
+        if entry.state is State.CANCELLING or entry.finishes:
             return
         self.ledger.feed(entry.command.id, Feed.CANCEL, now)
-        entry.settles_at = None if entry.is_motion else entry.settles_at
+        if isinstance(entry.command, Query):
+            self.ledger.feed(entry.command.id, Feed.HALTED, now)
+            return
+        entry.settles_at = None if entry.halts else entry.settles_at
         entry.cancelled_after = self.beliefs[entry.command.robot].moment(now)
         entry.deadline = now + self.model.timing.stop_timeout_s
         self.ledger.plan(entry)
-        if entry.is_motion and entry.command.robot not in self.latched:
+        if entry.halts and entry.command.robot not in self.latched:
             self._stop(entry.command.robot, StopMode.HALT)
 
     def cancel_all(self, cell: str, now: float) -> None:
@@ -127,9 +134,9 @@ class Dispatcher:
             return self.beliefs[robot].stopped(was=was)
         return self.beliefs[robot].obstacle(was=was)
 
-    def motion_of(self, robot: str) -> Entry | None:
-        """The motion of a robot that has not ended."""
-        return next((entry for entry in self.ledger.of_robot(robot) if entry.is_motion), None)
+    def work_of(self, robot: str) -> Entry | None:
+        """The work of a robot that has not ended."""
+        return next((entry for entry in self.ledger.of_robot(robot) if entry.is_work), None)
 
     def obstacle_to_opening(self, arm: str) -> Failure | None:
         """Why an arm's effector cannot be opened by hand now."""
@@ -194,7 +201,7 @@ class Dispatcher:
         What it said last may be older than a move that it was just given.
         """
         belief = self.beliefs[cell.arm.name]
-        given = cell.arm.name in self.under_way.ids or self.motion_of(cell.arm.name) is not None
+        given = cell.arm.name in self.under_way.ids or self.work_of(cell.arm.name) is not None
         restless = belief.state is MotionState.MOVING or given
         if not belief.online or belief.unhomed or restless:
             return None
@@ -218,12 +225,12 @@ class Dispatcher:
             self.ledger.ignored["report"] += 1
             return
         before, told = Before.of(belief), self._told(belief)
-        was_on, on_since_boot = belief.effector, belief.effector_boot
+        was_held, held_since_boot = belief.held_in(belief), belief.held_boot
         self._hear_of_others(report)
         returned = _returned(belief, report)
         belief.merge(report)
-        if was_on and belief.effector is False:
-            self._note_opening(belief, rebooted=belief.effector_boot != on_since_boot)
+        if was_held and belief.held_in(belief) is False:
+            self._note_opening(belief, rebooted=belief.held_boot != held_since_boot)
         if not belief.supervised and report.state not in (None, MotionState.STOPPED):
             self._moves_again(report.robot)
         goal = self.reached.get(report.robot)
@@ -263,22 +270,22 @@ class Dispatcher:
             self.under_way.hear(report, now)
             if belief.online:
                 self._say_again(belief, now)
-        if belief.effector is not None:
-            self._settle_grip(belief)
+        if (held := belief.held_in(belief)) is not None:
+            self._settle_grip(belief.robot.name, Grip.ON if held else Grip.OFF)
 
     def give_up(self, cell: str, failure: Failure, now: float) -> None:
         """Fail every open command of a cell, and halt what moves: nobody can judge them any more."""
         self.version += 1
         for entry in self.ledger.of_cell(cell):
             self.ledger.feed(entry.command.id, Feed.FAILED, now, failure)
-            if entry.is_motion:
+            if entry.halts:
                 self._stop(entry.command.robot, StopMode.HALT)
 
     def _moves_again(self, robot: str) -> None:
         """A robot that tells no position moves, or cannot: it is no longer where its last move ended."""
         self._forget_place(robot)
         for entry in self.ledger.of_robot(robot):
-            if entry.is_motion and entry.settles_at is not None:
+            if entry.is_work and entry.settles_at is not None:
                 entry.settles_at = None
                 self.ledger.plan(entry)
 
@@ -330,13 +337,15 @@ class Dispatcher:
 
     def _told(self, belief: Belief) -> tuple[object, ...]:
         """What of a belief trees and screens react to: everything but positions."""
-        return (belief.trouble, belief.piece, belief.effector)
+        return (belief.trouble, belief.piece, belief.effector, belief.facts_no)
 
     def _obstacle_to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
         robot = command.robot
-        if self.motion_of(robot) is not None:
-            sentence = f"{robot} {'had' if was else 'has'} an open motion command"
-            return Failure(reason=Reason.REJECTED, sentence=sentence)
+        if (busy := self._busy_with(command)) is not None:
+            what = "an open motion command" if isinstance(busy.command, Motion) else "not ended its last work"
+            return Failure(reason=Reason.REJECTED, sentence=f"{robot} {'had' if was else 'has'} {what}")
+        if isinstance(command, Query):
+            return self.beliefs[robot].unreachable(was=was)
         obstacle = self.obstacle(robot, was=was)
         if isinstance(command, Home) and obstacle and obstacle.reason is Reason.NOT_HOMED:
             return None
@@ -345,7 +354,25 @@ class Dispatcher:
             return None  # its last code may be older than the end of its last move, which was proven
         if by_hand and obstacle and obstacle.reason is Reason.STOPPED:
             return self.beliefs[robot].obstacle_besides_stop(was=was)
-        return obstacle
+        return obstacle or self._unmet(command, was=was)
+
+    def _busy_with(self, command: Command) -> Entry | None:
+        """What keeps a robot from another command: its work, from a query another one too."""
+        if not isinstance(command, Query):
+            return self.work_of(command.robot)
+        queries = (e for e in self.ledger.of_robot(command.robot) if isinstance(e.command, Query))
+        return next(queries, None)
+
+    def _unmet(self, command: Command, *, was: bool) -> Failure | None:
+        """What a command needs and its robot does not say."""
+        belief = self.beliefs[command.robot]
+        for name, value in command.needs:
+            told = belief.fact(name)
+            if told != value:
+                says = f"{'said' if was else 'says'} {shown(told)}" if told is not None else "never said it"
+                sentence = f"{command.robot} needs {name} to be {shown(value)}, and {says}"
+                return Failure(reason=Reason.PRECONDITION, sentence=sentence)
+        return None
 
     def _may_be_the_end_of_its_last_move(self, robot: str) -> bool:
         """Whether "moving" may be what a robot, whose position proved that move done, says of it only now.
@@ -378,23 +405,23 @@ class Dispatcher:
         self.opened[arm] = f"{sentence}; {others}" if others else sentence
 
     def _switches(self, arm: str) -> bool:
-        return any(isinstance(entry.command, Switch) for entry in self.ledger.of_robot(arm))
+        return any(_grips(entry.command) for entry in self.ledger.of_robot(arm))
 
-    def _settle_grip(self, belief: Belief) -> None:
+    def _settle_grip(self, robot: str, grip: Grip) -> None:
         """An effector that nobody is switching is what its board reports."""
-        arm, grip = belief.robot.name, Grip.ON if belief.effector else Grip.OFF
-        if self.grips[arm] is grip:
-            return
-        if not self._switches(arm):
-            self._grip(arm, grip)
+        if self.grips[robot] is not grip and not self._switches(robot):
+            self._grip(robot, grip)
 
     def _allowed_s(self, command: Command) -> float:
-        """How long a command may take: by its distance, never below the robot's `timeout_s`."""
+        """How long a command may take: as it says itself, or by its distance, then not below `timeout_s`."""
         timing, robot = self.model.timing, self.model.robots[command.robot]
-        if not isinstance(command, Motion):
+        if command.at_most_s is not None:
+            return command.at_most_s
+        if not isinstance(command, Work):
             return timing.effector_timeout_s
         here = self.beliefs[robot.name].known_position
-        travel_s = robot.travel_s(here, command.way) if command.way else HOMING_S
+        way = command.way if isinstance(command, Motion) else ()
+        travel_s = robot.travel_s(here, way) if way else HOMING_S
         return max(robot.timeout_s, travel_s * timing.deadline_factor + timing.deadline_floor_s)
 
     def _settles_at(self, command: Command, now: float, deadline: float) -> float | None:
@@ -409,7 +436,8 @@ class Dispatcher:
             return min(now + self.model.timing.stop_timeout_s, deadline)
         if not isinstance(command, Switch) or evidence_level is Evidence.IDS:
             return None
-        if evidence_level is Evidence.JOINTS and belief.effector is not None:
+        told = command.sets and all(belief.fact(name) is not None for name, _ in command.sets)
+        if evidence_level is Evidence.JOINTS and told:
             return None
         return now + self.model.timing.effector_settle_s
 
@@ -420,6 +448,7 @@ class Dispatcher:
     def _book(self, entry: Entry, verdict: Verdict, now: float) -> None:
         """Feed the ledger; a motion that failed and may still be under way is halted."""
         before = entry.state
+        entry.answer = verdict.answer
         self.ledger.feed(entry.command.id, verdict.feed, now, _explained(entry, verdict.failure))
         self.version += entry.state is not before
         if entry.state is State.DONE:
@@ -427,7 +456,7 @@ class Dispatcher:
         elif verdict.feed is Feed.REJECTED:
             self._reject(entry.command.robot, verdict.failure)
         failed = entry.state is State.FAILED and verdict.feed is not Feed.REJECTED
-        if failed and entry.is_motion and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
+        if failed and entry.halts and verdict.failure and verdict.failure.reason not in KNOWN_STILL:
             self._stop(entry.command.robot, StopMode.HALT)
 
     def _reject(self, robot: str, failure: Failure | None) -> None:
@@ -437,8 +466,8 @@ class Dispatcher:
         self.beliefs[robot].barred |= stopped and not self.model.robots[robot].has_stop
 
     def _done(self, command: Command) -> None:
-        if isinstance(command, SetEffector):
-            self._grip(command.robot, Grip.ON if command.on else Grip.OFF)
+        if isinstance(command, Switch) and command.grips is not None:
+            self._grip(command.robot, Grip.ON if command.grips else Grip.OFF)
         elif isinstance(command, Motion) and command.way:
             self.reached[command.robot] = command.way[-1]
         elif isinstance(command, Home):
@@ -454,6 +483,11 @@ class Dispatcher:
             sentence = f"{belief.robot.name}: {silence} while {entry.doing}"
             failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
             self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+
+
+def _grips(command: Command) -> bool:
+    """Whether it has to do with what its robot holds."""
+    return isinstance(command, Switch) and command.grips is not None
 
 
 def _returned(belief: Belief, report: Report) -> bool:

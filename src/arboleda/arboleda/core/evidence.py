@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from .belief import APART_S, Belief
+from .facts import Facts, Value, shown
 from .ledger import Entry, Feed, State
-from .messages import Command, Failure, Home, Motion, Reason, Report, SetEffector, Switch
+from .messages import Command, Failure, Home, Motion, Process, Query, Reason, Report, Switch
 from .model import Evidence, MotionState, Position
 
 REFUSALS: dict[str, Reason] = {
@@ -27,10 +28,11 @@ JITTER_S = APART_S  # two positions may arrive so much closer together than they
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What a report proves: a feed for the ledger, with its cause where it is a failure."""
+    """What a report proves: a feed for the ledger, its cause where it is a failure, the answer to a query."""
 
     feed: Feed
     failure: Failure | None = None
+    answer: Value | None = None
 
 
 class Before(NamedTuple):
@@ -62,7 +64,7 @@ def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -
 def _look(entry: Entry, belief: Belief, report: Report) -> None:
     """Keep what a report shows about the command since it was sent."""
     seen = entry.seen
-    _look_at_place(entry, belief, report)
+    _look_at_goal(entry, belief, report)
     seen.moving = seen.moving or report.state is MotionState.MOVING
     if report.state is not None:
         stopped = report.state is MotionState.STOPPED
@@ -73,28 +75,35 @@ def _look(entry: Entry, belief: Belief, report: Report) -> None:
     seen.ended = report.done or seen.ended
 
 
-def _look_at_place(entry: Entry, belief: Belief, report: Report) -> None:
-    """Keep since when each position is the goal, and how far along its way the robot was seen."""
+def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
+    """Keep since when all that is told is the goal, and how far along its way the robot was seen."""
     seen, place = entry.seen, belief.position_in(report)
-    if place is None:
+    if place is None and not _tells(report, entry.sets):
         return
-    if len(entry.way) > 1 and place != seen.place:
+    if place is not None and len(entry.way) > 1 and place != seen.place:
         seen.place = place
         ahead = entry.way[seen.passed + 1 :]
         seen.passed += ahead.index(place) + 1 if place in ahead else 0
     seen.on_goal_since = (seen.on_goal_since or report.at) if _at_end(entry, belief) else None
 
 
+def _tells(report: Report, facts: Facts) -> bool:
+    return any(report.fact(name) is not None for name, _ in facts)
+
+
 def _at_end(entry: Entry, belief: Belief) -> bool:
-    """Whether the last position is the goal; a way that comes by there before was seen driven to its end."""
+    """Whether what it told last is the goal; a way that comes by there before was seen driven to its end."""
     driven = len(entry.way) <= 1 or entry.seen.passed == len(entry.way) - 1
     return driven and reached(entry, belief)
 
 
 def reached(entry: Entry, belief: Belief) -> bool:
-    """Whether the believed position is the goal of a motion that has one."""
-    position = belief.position
-    return position is not None and entry.way != () and belief.robot.stands_at(position, entry.way[-1])
+    """Whether what is believed is the goal of a command that has one: its position, and what it sets."""
+    if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
+        return False
+    if not entry.way:
+        return entry.sets != ()
+    return belief.position is not None and belief.robot.stands_at(belief.position, entry.way[-1])
 
 
 def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
@@ -104,7 +113,8 @@ def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
 
 def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
     link = _broken_link(entry, before, belief, report)
-    return link or _refused(entry, report) or _reboot(entry, before, belief, report)
+    ended = _refused(entry, report) or _gave_up(entry, report)
+    return link or ended or _reboot(entry, before, belief, report)
 
 
 def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
@@ -125,6 +135,12 @@ def _refused(entry: Entry, report: Report) -> Verdict | None:
     reason = REFUSALS.get(word, Reason.REJECTED)
     sentence = f"{entry.command.robot}: refused the command for {entry.doing} ({word})"
     return Verdict(feed=Feed.REJECTED, failure=Failure(reason=reason, sentence=sentence))
+
+
+def _gave_up(entry: Entry, report: Report) -> Verdict | None:
+    if report.failed != entry.command.id:
+        return None
+    return _failed(entry, Reason.DEVICE_FAULT, f"gave up ({report.failure or 'no reason given'})")
 
 
 def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
@@ -173,18 +189,19 @@ def _device(entry: Entry, report: Report) -> Verdict | None:
         return None
     if report.state is MotionState.FAULT:
         return _failed(entry, Reason.DEVICE_FAULT, "the board reports a fault")
-    if not entry.is_motion:
+    if not entry.is_work:
         return None
     if report.state is MotionState.NOT_HOMED and not isinstance(entry.command, Home):
         return _failed(entry, Reason.NOT_HOMED, "the position is unknown, the robot is not homed,")
-    if report.state is MotionState.STOP_LATCHED and entry.state is not State.CANCELLING:
+    stopping = entry.state is State.CANCELLING or entry.finishes
+    if report.state is MotionState.STOP_LATCHED and not stopping:
         sentence = f"{entry.command.robot}: stopped and latched while {entry.doing}"
         return Verdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=sentence))
     return None
 
 
 def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
-    if entry.cancelled_at is None or not entry.is_motion:
+    if entry.cancelled_at is None or not entry.halts:
         return None
     return Verdict(feed=Feed.HALTED) if belief.still_since(entry.cancelled_after) else None
 
@@ -198,10 +215,10 @@ def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     return verdict
 
 
-def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     finished = report.done == entry.command.id
     if finished and report.state is MotionState.STOPPED:
-        return _off_target(entry) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
+        return _off_target(entry, belief) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
     if entry.accepted_at is None:
         return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
     if report.state is MotionState.STOPPED and _elsewhere(entry, belief):
@@ -210,8 +227,8 @@ def _move_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None
 
 
 def _elsewhere(entry: Entry, belief: Belief) -> bool:
-    """Whether a motion that leads to a named position has not led there."""
-    return entry.way != () and not reached(entry, belief)
+    """Whether a command that has a goal has not led there."""
+    return (entry.way != () or entry.sets != ()) and not reached(entry, belief)
 
 
 def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -234,12 +251,27 @@ def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | N
 
 def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
     seen = entry.seen
-    if not seen.moving or seen.stopped_since is None or belief.position == entry.origin:
+    if not seen.moving or seen.stopped_since is None or at < seen.stopped_since + QUIET_S:
+        return False
+    if not entry.way:
+        return True
+    if belief.position == entry.origin:
         return False  # who never left may have said only the end of an earlier move
-    return at >= seen.stopped_since + QUIET_S and belief.rested_since(seen.stopped_since + APART_S)
+    return belief.rested_since(seen.stopped_since + APART_S)
 
 
-def _move_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """What a process sets may have been so before it began: it has to be seen at work, and at its end."""
+    seen = entry.seen
+    if seen.moving and seen.stopped_since is not None:
+        if not entry.sets or seen.on_goal_since is not None:
+            return Verdict(feed=Feed.DONE)
+        if _stays_short(entry, belief, report.at):
+            return _short(entry)
+    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _work_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     if entry.seen.moving and report.state is MotionState.STOPPED and entry.cancelled_at is None:
         return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
     return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
@@ -250,12 +282,20 @@ def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     return None
 
 
-def _effector_reported(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    """UInt8 commands carry no id over ROS 2: the value the robot reports confirms them."""
-    command = entry.command
-    if isinstance(command, SetEffector) and report.effector is command.on:
-        return Verdict(feed=Feed.DONE)
-    return None
+def _set_as_told(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
+    if not entry.sets:
+        return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
+    told = all(report.fact(name) == value for name, value in entry.sets)
+    return Verdict(feed=Feed.DONE) if told else None
+
+
+def _answered(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """Only an answer that names the query is one: another may be to an earlier question."""
+    if report.answered == entry.command.id and report.answer is not None:
+        return Verdict(feed=Feed.DONE, answer=report.answer)
+    taken = report.accepted == entry.command.id and entry.state is State.SENT
+    return Verdict(feed=Feed.ACCEPTED) if taken else None
 
 
 def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
@@ -265,8 +305,13 @@ def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | Non
     return Verdict(feed=Feed.ACCEPTED) if entry.seen.unhomed and entry.state is State.SENT else None
 
 
-def _off_target(entry: Entry) -> Verdict:
-    return _failed(entry, Reason.NOT_REACHED, "reported the move done but stands off its target")
+def _off_target(entry: Entry, belief: Belief) -> Verdict:
+    name = next((name for name, value in entry.sets if belief.fact(name) != value), None)
+    if name is None:
+        return _failed(entry, Reason.NOT_REACHED, "reported the move done but stands off its target")
+    told = belief.fact(name)
+    seen = "does not say its" if told is None else f"says {shown(told)} of its"
+    return _failed(entry, Reason.NOT_REACHED, f"reported the work done but {seen} {name}")
 
 
 def _short(entry: Entry) -> Verdict:
@@ -275,14 +320,20 @@ def _short(entry: Entry) -> Verdict:
 
 Rule = Callable[[Entry, Belief, Report], "Verdict | None"]
 RULES: dict[tuple[type[Command], Evidence], Rule] = {
-    (Motion, Evidence.IDS): _move_by_ids,
+    (Motion, Evidence.IDS): _work_by_ids,
     (Motion, Evidence.JOINTS): _move_by_joints,
-    (Motion, Evidence.STATE): _move_by_state,
+    (Motion, Evidence.STATE): _work_by_state,
     (Home, Evidence.IDS): _homed_by_ids,
     (Home, Evidence.JOINTS): _unproven,
     (Home, Evidence.STATE): _unproven,
-    (Switch, Evidence.IDS): _effector_reported,
-    (Switch, Evidence.JOINTS): _effector_reported,
+    (Process, Evidence.IDS): _work_by_ids,
+    (Process, Evidence.JOINTS): _process_by_facts,
+    (Process, Evidence.STATE): _work_by_state,
+    (Switch, Evidence.IDS): _set_as_told,
+    (Switch, Evidence.JOINTS): _set_as_told,
+    (Query, Evidence.IDS): _answered,
+    (Query, Evidence.JOINTS): _answered,
+    (Query, Evidence.STATE): _answered,
     (Command, Evidence.IDS): _unproven,
     (Command, Evidence.JOINTS): _unproven,
     (Command, Evidence.STATE): _unproven,

@@ -10,7 +10,8 @@ from typing import Any
 
 from .belief import Moment
 from .errors import IllegalTransition
-from .messages import Command, Failure, Motion
+from .facts import Value
+from .messages import Command, Failure, Motion, OnStop, Work
 from .model import Position
 
 
@@ -65,7 +66,7 @@ class Seen:
     def __init__(self) -> None:
         self.moving = False
         self.stopped_since: float | None = None  # since when its state code says stopped, without a break
-        self.on_goal_since: float | None = None  # since when each position that it reports is the goal
+        self.on_goal_since: float | None = None  # since when all that it reports of its goal is the goal
         self.place: Position | None = None
         self.passed = -1  # up to which position of its way the reported ones show that it has come
         self.unhomed = False
@@ -93,8 +94,12 @@ class Entry:
         self.interference: str | None = None  # the last command of somebody else meanwhile, in a sentence
         self.seen = Seen()
         self.rule: Callable[..., Any] | None = None  # what proves it, once it was looked up
-        self.is_motion = isinstance(command, Motion)
+        self.answer: Value | None = None  # to a query
+        self.is_work = isinstance(command, Work)
+        self.halts = isinstance(command, Work) and command.on_stop is OnStop.HALT
+        self.finishes = self.is_work and not self.halts  # whoever stops waiting for it
         self.way = command.way if isinstance(command, Motion) else ()
+        self.sets = command.sets
 
     @property
     def open(self) -> bool:

@@ -7,6 +7,7 @@ from enum import Enum
 from functools import cached_property
 from operator import attrgetter
 
+from .facts import Facts, Value
 from .model import MotionState, Position
 
 
@@ -20,6 +21,7 @@ class Reason(str, Enum):
     DEADLINE = "deadline"
     STOPPED_SHORT = "stopped_short"
     NOT_REACHED = "not_reached"
+    PRECONDITION = "precondition"
     DEVICE_FAULT = "device_fault"
     STOP_UNCONFIRMED = "stop_unconfirmed"
     STOPPED = "stopped"
@@ -76,6 +78,13 @@ class Verb(str, Enum):
     UNLOAD = "unload"
 
 
+class OnStop(str, Enum):
+    """What a machine does with its work when it is stopped, or when nobody waits for the work any more."""
+
+    HALT = "halt"
+    FINISH = "finish"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Command:
     """What a robot is told to do; its base says what the engine must know of it, whatever it is in detail."""
@@ -83,9 +92,33 @@ class Command:
     id: str
     robot: str
 
+    @property
+    def sets(self) -> Facts:
+        """The facts that it makes true; where the robot reports facts, they prove it."""
+        return ()
 
-class Motion(Command):
-    """Moves the robot: one at a time, halted when its step is left, ends when the evidence says so."""
+    @property
+    def needs(self) -> Facts:
+        """The facts that must be true when it is given."""
+        return ()
+
+    @property
+    def at_most_s(self) -> float | None:
+        """How long it may take, s; None where the robot and its way say that."""
+        return None
+
+
+class Work(Command):
+    """Keeps its robot busy: one at a time, refused while the robot is stopped or not homed."""
+
+    @property
+    def on_stop(self) -> OnStop:
+        """What becomes of it when its step is left, or its cell is held or stopped."""
+        return OnStop.HALT
+
+
+class Motion(Work):
+    """Moves the robot: halted when its step is left, ends when the evidence says so."""
 
     @property
     def way(self) -> tuple[Position, ...]:
@@ -96,8 +129,21 @@ class Motion(Command):
         return ()
 
 
+class Process(Work):
+    """Work that a machine does by itself; one that finishes goes on whoever stops waiting for it."""
+
+
 class Switch(Command):
     """Sets something that stays as it is set: never halted, ends when it is reported, or has settled."""
+
+    @property
+    def grips(self) -> bool | None:
+        """True: its robot may hold a part from now on; False: it lets go; None: it has to do with no part."""
+        return None
+
+
+class Query(Command):
+    """Asks for an answer, one at a time; forgotten when its step is left, even while its robot is stopped."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,6 +173,14 @@ class SetEffector(Switch):
     """Switch an arm's effector."""
 
     on: bool
+
+    @property
+    def sets(self) -> Facts:
+        return (("effector", self.on),)
+
+    @property
+    def grips(self) -> bool:
+        return self.on
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -235,7 +289,9 @@ class Report:
 
     `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
     `boot_id` the board's; `accepted`, `done` and `rejected` are
-    command ids, the last of each; `refusal` is the word that came with `rejected`. `foreign_refused` and
+    command ids, the last of each; `refusal` is the word that came with `rejected`. `failed` is the last
+    command that the robot itself gave up, `failure` its word for why; `answered` is the last query that it
+    answered, with `answer`. `facts` are what it reports beside the fields here. `foreign_refused` and
     `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
     """
 
@@ -248,15 +304,27 @@ class Report:
     done: str | None = None
     rejected: str | None = None
     refusal: str | None = None
+    failed: str | None = None
+    failure: str | None = None
+    answered: str | None = None
+    answer: Value | None = None
     state: MotionState | None = None
     q: tuple[float, ...] | None = None
     node: int | None = None
     homed: bool | None = None
     effector: bool | None = None
     piece: bool | None = None
+    facts: Facts | None = None
     foreign_refused: int | None = None
     foreign_obeyed: int | None = None
     foreign: str | None = None
+
+    def fact(self, name: str) -> Value | None:
+        """What it says of a fact; None where it says nothing."""
+        if name in BUILT_IN:
+            value: Value | None = getattr(self, name)
+            return value
+        return next((value for fact, value in self.facts or () if fact == name), None)
 
     @cached_property
     def words(self) -> tuple[object, ...]:
@@ -275,6 +343,7 @@ class Report:
         return report
 
 
+BUILT_IN = frozenset({"homed", "effector", "piece"})  # facts that have a field of their own
 _words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
 
 

@@ -149,7 +149,17 @@ class Robot:
     assume_homed: bool = False
     home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
     has_stop: bool = True
-    position_key: ClassVar[str]  # under which key of a report its position is
+    position_key: ClassVar[str | None] = None  # the key of a report that has its position, if any
+
+    @property
+    def held_fact(self) -> str | None:
+        """The fact, a yes or no, that says whether it holds something; None where it cannot hold anything."""
+        return None
+
+    @property
+    def works(self) -> bool:
+        """Whether it can be given work; what only answers or switches always stands still."""
+        return True
 
     @property
     def reference(self) -> Position | None:
@@ -185,7 +195,11 @@ class Arm(Robot):
     tolerance: tuple[float, ...] | None = None
     piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
     queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
-    position_key: ClassVar[str] = "q"
+    position_key: ClassVar[str | None] = "q"
+
+    @property
+    def held_fact(self) -> str:
+        return "effector"
 
     @cached_property
     def reference(self) -> tuple[float, ...]:
@@ -230,7 +244,7 @@ class Mobile(Robot):
     model: str
     grid: Grid
     speed: float
-    position_key: ClassVar[str] = "node"
+    position_key: ClassVar[str | None] = "node"
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a path; one edge is added for a robot that starts elsewhere."""

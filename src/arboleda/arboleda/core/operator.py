@@ -171,7 +171,7 @@ class Operator:
     def _works(self, arm: str) -> bool:
         """Whether a tree counts on what an arm has, or the arm moves without one: homing needs none."""
         cell = self._cells[self._dispatcher.model.cell_of[arm].name]
-        moves = any(entry.is_motion for entry in self._dispatcher.ledger.of_robot(arm))
+        moves = any(entry.is_work for entry in self._dispatcher.ledger.of_robot(arm))
         return moves or cell.tree is not None
 
     def _planned_unloading(self, scope: str) -> Callable[[], None]:
@@ -255,8 +255,8 @@ class Operator:
             return refusal
         if name not in self._reached:
             return f"{name} is only drawn (link: none)"
-        if motion := self._dispatcher.motion_of(name):
-            return f"{name} is still {motion.doing}"
+        if work := self._dispatcher.work_of(name):
+            return f"{name} is still {work.doing}"
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
         if by_hand and robot.says_homed:
             return f"{name} says itself whether it is homed; home {name} runs its routine"

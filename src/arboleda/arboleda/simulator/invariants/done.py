@@ -34,7 +34,7 @@ def tiny_moves_succeed(look: Look) -> Iterator[str]:
 
 def _undisturbed(truth: Truth, booked: Booked) -> bool:
     entry, robot = booked.entry, truth.robot(booked.command.robot)
-    if robot is None or not entry.is_motion or entry.cancelled_at is not None:
+    if robot is None or not entry.is_work or entry.cancelled_at is not None:
         return False
     return robot.homed and not robot.latched and truth.books.calm_since(booked.sent_at)
 

@@ -1,0 +1,17 @@
+"""What a device reports of itself beside its state and its position: named values."""
+
+from __future__ import annotations
+
+Value = bool | int | float | str
+"""What a fact can be: `"open"` of a door, True of a clamp, 1001 of a program."""
+Facts = tuple[tuple[str, Value], ...]
+"""Facts by name."""
+
+
+def shown(value: Value) -> str:
+    """A value as a plant file has it.
+
+    >>> shown(True), shown("open"), shown(0.5)
+    ('true', 'open', '0.5')
+    """
+    return str(value).lower() if isinstance(value, bool) else str(value)
