@@ -17,6 +17,7 @@ from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
 from arboleda.testing import Rig, Witness, faults, shipped
+from arboleda.wire.board import Board, Message
 from arboleda.wire.hop import FromPlant
 
 
@@ -35,6 +36,12 @@ class Found:
         with as_file(files("arboleda") / "plants" / "shared.yaml") as path:
             return load(path)
 
+
+NEW_PLANT_IN_A_STALL = (
+    Fault(kind="piece_false", at=1.0, seconds=4.2, target="arm_back", word="a piece"),
+    Fault(kind="bridge_restart", at=2.0, seconds=1.5, target="bridge"),
+    Fault(kind="bridge_stall", at=3.3, seconds=3.7, target="bridge"),
+)
 
 FOUND = {
     "a halt that never left seemed to settle the move before it, which a stalled board obeyed late": Found(
@@ -291,6 +298,11 @@ FOUND = {
             Fault(kind="hop_partition", at=38.184, seconds=1.523, target="plant", word="to bridge, held"),
         ),
     ),
+    "a bridge that stalled seemed to tell a new plant words that its board took back in the same step": Found(
+        seed=1054,
+        seconds=8,
+        faults=NEW_PLANT_IN_A_STALL,
+    ),
 }
 
 
@@ -298,6 +310,20 @@ FOUND = {
 def test_every_invariant_holds_where_it_once_broke(found: Found) -> None:
     result = Simulation(found.model, found.seed, explicit(found.faults)).run(seconds=found.seconds)
     assert result.broken is None, result.broken
+
+
+def test_a_new_plant_is_told_nothing_but_the_last_words_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hear_plant(board: Board, at: float, epoch: int) -> list[Message]:
+        """Says already what the board says only later in the same step."""
+        return [replace(each, piece=False) if each.piece else each for each in told(board, at, epoch)]
+
+    told = Board.hear_plant
+    monkeypatch.setattr(Board, "hear_plant", hear_plant)
+    found = Found(seed=1054, seconds=8, faults=NEW_PLANT_IN_A_STALL)
+    result = Simulation(found.model, found.seed, explicit(found.faults)).run(seconds=found.seconds)
+    assert str(result.broken).startswith(
+        "telemetry_is_reported: arm_back is reported with what it has not said"
+    )
 
 
 @pytest.fixture

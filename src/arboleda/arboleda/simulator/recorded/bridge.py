@@ -475,25 +475,26 @@ class _Board:
             self._say(REPORTS, f"the link to {name} was lost, and nobody was told")
         if lost and self._up and not self._fell and not self._is_new:
             self._say(REPORTS, f"{name} is reported lost, and is there")
-        rest = list(told)
+        before = [self._words[2] if self._words else None, *told]
+        rest = list(zip(before, told, strict=False))
         for delivery in self._telling:
-            report = next((each for each in rest if self._says(each, delivery)), None)
-            if report is None:
-                self._say(REPORTS, f"{delivery.payload!r} of {name} is not reported as it is: {rest}")
+            pair = next((each for each in rest if self._says(each[1], delivery)), None)
+            if pair is None:
+                self._say(REPORTS, f"{delivery.payload!r} of {name} is not reported as it is: {told}")
                 return
-            rest.remove(report)
-        for report in rest:
-            if not self._is_known(report):
+            rest.remove(pair)
+        for last, report in rest:
+            if not self._is_known(report, last):
                 self._say(REPORTS, f"{name} is reported with what it has not said: {report}")
 
-    def _is_known(self, report: Report) -> bool:
-        """Whether it repeats the last words, as for a plant that was not heard before, or what may count."""
+    def _is_known(self, report: Report, last: Report | None) -> bool:
+        """Whether it repeats the one before, as for a plant that was not heard before, or what may count."""
         counted = next((delivery for delivery in self._maybe if self._says(report, delivery)), None)
         if counted is not None:
             self._take(counted, _read(counted.payload, self.robot) or {})
             self._telling = []
             return True
-        return self._is_new_plant and bool(self._words) and _content(report) == _content(self._words[2])
+        return self._is_new_plant and last is not None and _content(report) == _content(last)
 
     def _says(self, report: Report, delivery: Delivery) -> bool:
         """Whether a report says what telemetry says, of our commands too."""
