@@ -34,7 +34,7 @@ TASKS = (
         "To cancel a task that has ended is not refused.",
         edit(
             Operator._planned_cancel,
-            'raise Refused(f"task {id} has ended already ({task.state.value})")',
+            "raise Refused(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))",
             "return lambda: None",
         ),
         weather={"operator_cancel": 30.0},
@@ -86,7 +86,7 @@ TASKS = (
         edit(
             Operator.act,
             "self._planned(request, scope)()",
-            "act = Journal(verb=request.verb, scope=scope, cell=None, sentence='')\n"
+            "act = Journal(verb=request.verb, scope=scope, cell=None, sentence=NONE())\n"
             "    self._dispatcher.outbox.append(act)\n"
             "    self._planned(request, scope)()",
         ),
@@ -121,7 +121,7 @@ TASKS = (
     mutant(
         "sentences_are_for_people",
         "Who sends a bad task text is told the exception, not its sentence.",
-        edit(Plant._on_task_request, "str(refusal)", "repr(refusal)"),
+        edit(Plant._on_task_request, "refusal.sentence", "Phrase('own', repr(refusal))()"),
         weather={"bad_task": 30.0},
     ),
 )

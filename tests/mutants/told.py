@@ -148,7 +148,7 @@ ADVICE = (
     mutant(
         "refusals_are_foretold",
         "It is foretold that no verb is refused.",
-        edit(Operator.refusal, "return str(refused)", "return None"),
+        edit(Operator.refusal, "return refused.sentence", "return None"),
         weather={"operator_resume": 40.0},
     ),
     mutant(

@@ -51,8 +51,8 @@ def test_a_cell_at_work_is_held_and_its_next_task_waits(
     away(rig, seconds, *processes)
     held = rig.plant.cells["sis_a"]
     assert (held.state, held.trouble.reason) == (CellState.HELD, Reason.LINK_LOST)
-    assert f"the plant was away for {seconds:.0f}" in held.held_by
-    assert "retry sis_a or abandon sis_a" in held.held_by
+    assert f"the plant was away for {seconds:.0f}" in str(held.held_by)
+    assert "retry sis_a or abandon sis_a" in str(held.held_by)
     assert motions(rig) == [] and len(held.queue) == 1
     assert [type(each) for each in rig.sent if isinstance(each, Absence)] == [Absence]
 

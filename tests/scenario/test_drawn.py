@@ -44,4 +44,4 @@ def test_a_task_that_needs_it_is_refused(rig: Rig) -> None:
 def test_what_somebody_says_in_its_name_does_not_bring_it_online(rig: Rig) -> None:
     rig.tell(Report(at=rig.now, robot="rm_sis_a", node=0, state=MotionState.STOPPED))
     mobile = rig.snapshot()["robots"][1]
-    assert (mobile["online"], mobile["obstacle"]) == (False, "rm_sis_a is only drawn (link: none)")
+    assert (mobile["online"], str(mobile["obstacle"])) == (False, "rm_sis_a is only drawn (link: none)")

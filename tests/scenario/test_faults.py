@@ -654,7 +654,7 @@ def test_fault(row: Row, spot: Spot, level: Evidence) -> None:
     assert witness.part.get("ra1", "pick-up") == (expected.part if had_it else "pick-up")
     if expected.task is TaskState.FAILED:
         assert course.noticed is not None and course.noticed - course.began <= notice_s
-        assert spot.robot in change.sentence or change.reason is Reason.INTERNAL
+        assert spot.robot in str(change.sentence) or change.reason is Reason.INTERNAL
     if where is CellState.HELD:
         said = str(cell.held_by)
         assert ("retry sis_a" in said and "abandon sis_a" in said) or "stop sis_a, then clear sis_a" in said

@@ -548,7 +548,7 @@ def test_a_task_starts_once_the_homing_before_it_has_ended(rig: Rig) -> None:
     assert rig.operate(Verb.HOME, "rm_sis_a") is None
     task = rig.submit("sis_a 0B 7").task
     rig.wait(0.3)
-    assert rig.outcomes()[task].sentence == "rm_sis_a is still homing"
+    assert str(rig.outcomes()[task].sentence) == "rm_sis_a is still homing"
     rig.to_bridge.troubles.clear()
     rig.wait(30.0)
     assert rig.outcomes()[task].state is TaskState.DONE

@@ -49,7 +49,7 @@ def test_a_bridge_that_restarts_in_a_move_fails_it_as_link_lost(evidence: Eviden
     restart_bridge(rig, gone_s)
     change = outcome(rig)
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.LINK_LOST)
-    assert change.sentence.startswith("ra1: ")
+    assert str(change.sentence).startswith("ra1: ")
 
 
 @LEVELS

@@ -35,7 +35,7 @@ def test_the_task_fails_and_says_that_nobody_of_ours_commanded_it(rig: Rig, step
     rig.open_effector("ra_1")
     rig.wait(60.0, until=lambda: rig.plant.at_rest)
     assert (the_end(rig).state.value, the_end(rig).reason) == ("failed", Reason.PART_LOST)
-    assert "not commanded by this plant" in the_end(rig).sentence
+    assert "not commanded by this plant" in str(the_end(rig).sentence)
     assert rig.plant.cells["sis_a"].state is CellState.IDLE
     ons = [each.on for each in rig.sent if isinstance(each, SetEffector)]
     assert ons == [True], "nothing is left to carry back"
@@ -56,7 +56,7 @@ def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_w
     rig.open_effector("ra_1")
     rig.wait(1.0)
     held = rig.plant.cells["sis_a"]
-    assert "ra1 has no part to go on with: abandon sis_a" in held.held_by
+    assert "ra1 has no part to go on with: abandon sis_a" in str(held.held_by)
     assert rig.operate(Verb.RESUME, "sis_a") and rig.operate(Verb.RETRY, "sis_a")
     assert rig.operate(Verb.ABANDON, "sis_a") is None
     rig.wait(60.0, until=lambda: rig.plant.at_rest)

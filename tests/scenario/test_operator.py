@@ -148,7 +148,7 @@ def test_a_verb_is_done_or_refused_and_changes_nothing(
     foretold = rig.plant.refusal(OperatorRequest(at=rig.now, verb=verb, scope=scope))
     assert facts(rig) == before
     refusal = rig.operate(verb, scope)
-    assert refusal == foretold
+    assert refusal == (None if foretold is None else str(foretold))
     news = [message for message in rig.sent[sent:] if isinstance(message, (Journal, Command))]
     if verb is Verb.STOP or verb in allowed:
         assert refusal is None
@@ -240,7 +240,7 @@ def test_what_went_wrong_in_a_hold_is_told_in_words_that_stay_true(stage: Stage)
     held(rig)
     rig.power_off("ra_1")
     rig.wait(3.0)
-    assert cell(rig).trouble.sentence == "ra1 was lost"
+    assert str(cell(rig).trouble.sentence) == "ra1 was lost"
 
 
 def test_clear_is_refused_while_a_robot_moves(stage: Stage) -> None:
@@ -265,7 +265,7 @@ def test_a_board_that_does_not_confirm_a_stop_is_named(stage: Stage, evidence: E
     stop_s = rig.model.timing.stop_timeout_s
     assert rig.wait(stop_s + 0.1, until=lambda: cell(rig).state is CellState.ABORTED)
     assert cell(rig).trouble.reason is Reason.STOP_UNCONFIRMED
-    assert "ra1 did not confirm the stop" in cell(rig).trouble.sentence
+    assert "ra1 did not confirm the stop" in str(cell(rig).trouble.sentence)
     assert "ra1 is not still yet" in str(rig.operate(Verb.CLEAR, "sis_a"))
 
 
@@ -355,7 +355,7 @@ def test_a_fault_while_held_makes_resume_impossible(stage: Stage, evidence: Evid
         evidence is Evidence.IDS and fault == "the arm's board reboots"
     )  # its effector went off, and says so
     refusal = str(rig.operate(Verb.RESUME, "sis_a"))
-    assert (refusal == cell(rig).held_by and "abandon sis_a" in refusal) or "stop sis_a" in refusal
+    assert (refusal == str(cell(rig).held_by) and "abandon sis_a" in refusal) or "stop sis_a" in refusal
     assert ("no part to go on with" in refusal) is robbed
     rig.wait(10.0)
     assert witness.motions_since(mark, rig.model.robots) == []
@@ -434,7 +434,7 @@ def test_a_held_task_whose_part_was_released_can_only_be_abandoned(stage: Stage,
     rig.wait(30.0, until=lambda: rig.plant.at_rest)
     (change,) = rig.outcomes().values()
     assert (change.state, change.reason) == (TaskState.FAILED, Reason.PART_LOST)
-    assert change.sentence == "ra1 let go of its part on the operator's word"
+    assert str(change.sentence) == "ra1 let go of its part on the operator's word"
     assert witness.part["ra1"] == "floor" and witness.false_successes == []
 
 
@@ -470,7 +470,7 @@ def test_a_rebooted_arm_is_homed_by_the_verb(stage: Stage) -> None:
     rig.crash("ra_1")
     rig.wait(1.0)
     rig.submit(TASK)
-    assert cell(rig).waiting_for() == "ra1 is not homed"
+    assert str(cell(rig).waiting_for()) == "ra1 is not homed"
     mark = len(rig.to_boards)
     rig.wait(20.0)
     assert witness.motions_since(mark, rig.model.robots) == [], "the position is unknown"
@@ -563,10 +563,10 @@ def test_a_cancel_says_whether_an_operator_or_the_client_asked_for_it(stage: Sta
         assert rig.answers[-1].refusal is None
         task = rig.plant.intake.tasks[f"t{number}"]
         assert rig.wait(60.0, until=lambda task=task: task.state is TaskState.CANCELLED)
-    said = {task: change.sentence for task, change in rig.outcomes().items()}
+    said = {task: str(change.sentence) for task, change in rig.outcomes().items()}
     by = ("operator", "client", "operator", "client")
     assert said == {f"t{number}": f"cancelled by the {who}" for number, who in enumerate(by)}
-    acts = [act.sentence for act in rig.plant.acts]
+    acts = [str(act.sentence) for act in rig.plant.acts]
     assert acts == ["cancel t2", "cancel t3 by its client", "cancel t0", "cancel t1 by its client"]
 
 
@@ -691,4 +691,4 @@ def test_a_full_queue_is_counted_in_words_for_one_and_for_many(limit: int, waiti
     for _ in range(limit + 1):
         rig.submit(TASK)
         rig.wait(0.1)
-    assert rig.submit(TASK).sentence == f"sis_a has {waiting}, its limit; send it again later"
+    assert str(rig.submit(TASK).sentence) == f"sis_a has {waiting}, its limit; send it again later"

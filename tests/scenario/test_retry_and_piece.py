@@ -205,7 +205,7 @@ def test_a_piece_that_never_comes_is_waited_for_as_long_as_declared(
         Reason.NO_PIECE,
         CellState.IDLE,
     )
-    assert change.sentence == "ra1: no piece at pick-up"
+    assert str(change.sentence) == "ra1: no piece at pick-up"
     assert witness.switches == [], "nothing was gripped, so nothing is let go"
 
 
@@ -332,7 +332,7 @@ def test_a_part_that_falls_is_noticed_once_it_is_gone_for_the_debounce_time(
     assert timing.piece_debounce_s <= rig.now - fell_at <= timing.piece_debounce_s + 0.3
     change = ended(rig)
     assert (change.reason, cell(rig).state) == (Reason.PART_LOST, CellState.IDLE)
-    assert change.sentence == "ra1: the part was lost on the way"
+    assert str(change.sentence) == "ra1: the part was lost on the way"
     assert (witness.part["ra1"], honest(witness)) == ("floor", True)
 
 

@@ -58,7 +58,7 @@ def test_where_the_plant_file_says_so_it_is_refused_with_a_sentence() -> None:
     rig.wait(0.5)
     assert trigger(rig, "ra1") is TaskState.QUEUED
     assert trigger(rig, "ra1") is TaskState.REFUSED
-    assert "in its own cycle" in rig.changes[-1].sentence
+    assert "in its own cycle" in str(rig.changes[-1].sentence)
     assert rig.submit("ra1 palletizing").state is TaskState.QUEUED  # a person's task is no trigger
     assert rig.wait(90, until=lambda: all_done(rig))
     assert trigger(rig, "ra1") is TaskState.QUEUED

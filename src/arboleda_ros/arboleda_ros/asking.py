@@ -48,7 +48,7 @@ class Asker:
         except Exception:  # a caller must not wait for an answer that never comes
             LOG.exception("%s %s failed", verb.value, scope or "plant")
             return "internal error"
-        return answer.refusal
+        return None if answer.refusal is None else str(answer.refusal)
 
     def submit(self, text: str) -> TaskChanged:
         """Ask for a task; what became of it first, refused too, or NoAnswer."""

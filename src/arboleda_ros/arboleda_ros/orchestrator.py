@@ -32,6 +32,7 @@ from arboleda.core.messages import (
     TaskRequest,
 )
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.core.sentence import as_sentence, in_json
 from arboleda.wire import rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
 
@@ -157,7 +158,8 @@ class OrchestratorPort(Port):
 
     def _task_changed(self, change: TaskChanged) -> None:
         self._keep_room()
-        self._task_status.publish(String(data=json.dumps(view.change(change), ensure_ascii=False)))
+        text = json.dumps(view.change(change), ensure_ascii=False, default=in_json)
+        self._task_status.publish(String(data=text))
         self._asker.answered(change)
         if self._offer is not None:
             self._offer.changed(change)
@@ -226,7 +228,7 @@ class OrchestratorPort(Port):
         sentence = rejections.overheard(command, self._senders.of(f"{robot.name}/{PLAIN[kind]}"))
         if self._others.is_due(sentence, self._clock()):
             self._log.warning(sentence)
-        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=sentence))
+        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=as_sentence(sentence)))
 
     def _on_request(self, message: String) -> None:
         self._on_event(TaskRequest(at=self._clock(), text=message.data))

@@ -30,11 +30,12 @@ from arboleda.core.messages import (
     Verb,
 )
 from arboleda.core.plant import Plant
+from arboleda.core.sentence import OWN
 from arboleda.testing.plants import shipped
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 ON = SetEffector(id="7-1", robot="ra1", on=True)
-ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence="everything stopped")
+ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped"))
 
 
 class Script(Plant):
@@ -135,7 +136,7 @@ def test_once_something_cannot_be_kept_robots_are_only_told_to_stop(plant, store
     assert plant.robots.messages == [halt, latch, Heartbeat(epoch=7)]
     assert [str(crash) for crash in crashes] == ["The disk is full."]
     assert plant.plant.heard == [
-        Undelivered(at=event.at, id=command.id, robot="ra1", sentence="The disk is full.")
+        Undelivered(at=event.at, id=command.id, robot="ra1", sentence=OWN(text="The disk is full."))
         for event, command in zip(plant.plant.heard, (ON, clear), strict=True)
     ]
 
@@ -397,7 +398,7 @@ def test_what_a_stopped_process_had_decided_is_not_sent_when_it_goes_on(plant, m
     plant.loop.turn()
     undelivered = [event for event in plant.plant.heard if isinstance(event, Undelivered)]
     assert [event.id for event in undelivered] == [ON.id, move.id]
-    assert "away for 20.0 s" in undelivered[0].sentence
+    assert "away for 20.0 s" in str(undelivered[0].sentence)
 
 
 def test_an_absence_is_one_line_in_the_log(plant, caplog):

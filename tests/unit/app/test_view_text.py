@@ -7,6 +7,7 @@ import pytest
 
 from arboleda.app import view_text
 from arboleda.app.parts.slices import Slices
+from arboleda.core.sentence import in_json
 from arboleda.testing import Rig, shipped
 
 
@@ -27,7 +28,7 @@ def test_a_snapshot_has_a_part_for_every_row() -> None:
     rig.submit("sis_a 0B 7")
     rig.wait(9.0)
     snapshot = rig.snapshot()
-    assert text_of(snapshot) == json.dumps(snapshot, ensure_ascii=False)
+    assert text_of(snapshot) == json.dumps(snapshot, ensure_ascii=False, default=in_json)
     rows = sum(len(value) for value in snapshot.values() if isinstance(value, list))
     assert len(list(view_text.in_parts(snapshot))) == rows >= 10
 

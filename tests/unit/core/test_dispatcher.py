@@ -60,7 +60,7 @@ def test_a_robot_that_moves_takes_no_second_motion_and_opens_nothing(dispatcher:
     dispatcher.send(move, "sis_a", "moving", 100.1)
     second = dispatcher.send(move, "sis_a", "moving", 100.2)
     failures = [second.failure, dispatcher.obstacle_to_opening("ra1")]
-    assert [failure and failure.sentence for failure in failures] == [
+    assert [failure and str(failure.sentence) for failure in failures] == [
         "ra1 had an open motion command: no moving",
         "ra1 has an open motion command",
     ]

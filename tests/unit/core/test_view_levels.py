@@ -93,9 +93,9 @@ def test_an_idle_cell_that_cannot_work_is_told_with_what_leads_out() -> None:
     rig.wait(2.0)
     snapshot = rig.snapshot()
     (cell,) = snapshot["cells"]
-    assert (cell["state"], cell["not_ready"]) == ("idle", "ra1 is offline; bring ra1 back")
+    assert (cell["state"], str(cell["not_ready"])) == ("idle", "ra1 is offline; bring ra1 back")
     assert view.standing(cell) == "blocked"
-    assert cell["advice"] == [
+    assert [dict(each, said=str(each["said"]), why=str(each["why"])) for each in cell["advice"]] == [
         {
             "do": "bring_back",
             "hand": True,
@@ -110,7 +110,7 @@ def test_an_idle_cell_that_cannot_work_is_told_with_what_leads_out() -> None:
         }
     ]
     *_, (_, _, level, message, values) = view.diagnostics(snapshot)
-    assert (level, message, values["waiting_for"]) == (WARN, cell["not_ready"], cell["not_ready"])
+    assert (level, message, values["waiting_for"]) == (WARN, str(cell["not_ready"]), str(cell["not_ready"]))
     assert values["advice"] == "bring ra1 back"
 
 
@@ -122,7 +122,7 @@ def test_a_paused_queue_is_told_before_anything_waits_in_it() -> None:
         rig.wait(1.0)
     (cell,) = rig.snapshot()["cells"]
     said = "the queue of sis_a is paused; resume sis_a starts it"
-    assert (cell["not_ready"], cell["waiting_for"]) == (said, None)
+    assert (str(cell["not_ready"]), cell["waiting_for"]) == (said, None)
     assert view.standing(cell) == "paused"
     assert rig.operate(Verb.RESUME, "sis_a") is None
     (cell,) = rig.snapshot()["cells"]

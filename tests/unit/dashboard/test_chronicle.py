@@ -20,7 +20,7 @@ def act(**said: Any) -> dict[str, Any]:
 
 def told_of(rig: Any, kind: str) -> list[tuple[str, str, str]]:
     events = rig.story.chronicle.events
-    return [(each["subject"], each["what"], each["sentence"]) for each in events if each["kind"] == kind]
+    return [(each["subject"], each["what"], str(each["sentence"])) for each in events if each["kind"] == kind]
 
 
 def test_a_task_is_told_from_its_queue_to_its_end(told: Callable[..., Any]) -> None:
@@ -62,7 +62,7 @@ def test_a_plant_that_does_nothing_has_nothing_to_tell_of_its_cells(told: Callab
 def test_what_operators_did_before_this_start_comes_first() -> None:
     chronicle = Chronicle([act(at=5.0, scope="lot42", cell="sis_b", sentence="cancel lot42")])
     (event,) = chronicle.events
-    assert (event["at"], event["cell"], event["sentence"]) == (5.0, "sis_b", "cancel lot42")
+    assert (event["at"], event["cell"], str(event["sentence"])) == (5.0, "sis_b", "cancel lot42")
 
 
 def test_an_act_keeps_its_cell_and_its_date_on_every_later_start(told: Callable[..., Any]) -> None:

@@ -508,14 +508,14 @@ def test_a_node_of_somebody_else_has_no_say_while_the_plant_is_heard(world, robo
     assert orders(world, fault("foreign_command", robot, word=word)) == []
     assert world.bridge.counters[robot].refused == 1
     (noticed,) = world.plant.dispatcher.interference.noticed
-    assert "/stranger was refused (foreign)" in noticed.sentence
+    assert "/stranger was refused (foreign)" in str(noticed.sentence)
 
 
 def test_a_stop_of_somebody_else_counts_and_is_told_of(world):
     world.advance(1.0)
     assert len(orders(world, fault("foreign_command", "ra1", word="stop"))) == 1
     (noticed,) = world.plant.dispatcher.interference.noticed
-    assert noticed.sentence == "ra1: stop_cmd 1 of /stranger was obeyed"
+    assert str(noticed.sentence) == "ra1: stop_cmd 1 of /stranger was obeyed"
 
 
 def test_nobody_foreign_commands_a_bridge_that_hears_no_plant(world):

@@ -39,6 +39,7 @@ from arboleda.core.messages import (
     Verb,
 )
 from arboleda.core.model import Arm, Evidence, ForeignCommands, PlantModel, Retry
+from arboleda.core.sentence import Phrase
 from arboleda.core.task import Recipe
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
@@ -556,7 +557,7 @@ def test_no_internal_failure(bites, monkeypatch):
 
 
 def test_sentences_are_for_people(monkeypatch, bites):
-    monkeypatch.setattr("arboleda.core.text.FORM", "KeyError('storage')")
+    monkeypatch.setattr("arboleda.core.text.FORM", Phrase("text.form", "KeyError('storage')"))
     watch = Watch()
     watch.task("")
     bites(watch)

@@ -107,7 +107,7 @@ class Store:
 
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
-        row = (unix_s, entry.verb.value, entry.scope, entry.sentence, entry.cell)
+        row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell) VALUES (?, ?, ?, ?, ?)"
         self._commit(insert, row, durable=True)
 

@@ -22,6 +22,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.core.outside import plain
+from arboleda.core.sentence import Sentence
 
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
@@ -117,9 +118,9 @@ def table(snapshot: dict[str, Any]) -> Group:
     return Group(drawn, *zones, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
 
 
-def _words(text: str, style: str = "") -> Text:
+def _words(text: str | Sentence, style: str = "") -> Text:
     """Text of a snapshot, which may be that of another program: no markup, and nothing a terminal obeys."""
-    return Text(plain(text, LONGEST), style=style)
+    return Text(plain(str(text), LONGEST), style=style)
 
 
 def _size(console: Console) -> int:
@@ -181,10 +182,10 @@ def _obstacles(snapshot: dict[str, Any]) -> list[str]:
     """What keeps a robot without a task from working; a latch alone is told of all robots in one line, and
     what its idle cell says already not again.
     """
-    told = " ".join(cell["not_ready"] or "" for cell in snapshot["cells"])
+    told = " ".join(str(cell["not_ready"] or "") for cell in snapshot["cells"])
     idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
-    robots = [each for each in robots if each["obstacle"] not in told]
+    robots = [each for each in robots if str(each["obstacle"]) not in told]
     return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 

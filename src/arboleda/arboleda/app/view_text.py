@@ -6,7 +6,9 @@ import json
 from collections.abc import Generator, Mapping
 from typing import Any
 
-_encode = json.JSONEncoder(ensure_ascii=False).encode
+from arboleda.core.sentence import in_json
+
+_encode = json.JSONEncoder(ensure_ascii=False, default=in_json).encode
 
 
 def in_parts(snapshot: Mapping[str, Any]) -> Generator[None, None, str]:

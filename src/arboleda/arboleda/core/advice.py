@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
 from .messages import Verb
+from .sentence import NOTHING, Phrase, Sentence
 
 
 class Hand(str, Enum):
@@ -28,30 +29,35 @@ class Advice:
 
     do: Verb | Hand
     scope: str
-    why: str
+    why: Sentence
     by_hand: bool = False
     instead: bool = False
     moves: tuple[str, ...] = ()
     drops: tuple[str, ...] = ()
-    refusal: str | None = None
+    refusal: Sentence | None = None
 
 
-SAID: dict[Hand, str] = {
-    Hand.BRING_BACK: "bring {} back",
-    Hand.REPAIR: "repair {}",
-    Hand.REFERENCE: "home {} at its own controls",
-    Hand.CHECK: "see that nobody is in {}",
+DO: dict[Verb | Hand, Phrase] = {
+    **{verb: Phrase(f"do.{verb.value}", f"{verb.value} {{scope}}") for verb in Verb},
+    Hand.BRING_BACK: Phrase("do.bring_back", "bring {scope} back"),
+    Hand.REPAIR: Phrase("do.repair", "repair {scope}"),
+    Hand.REFERENCE: Phrase("do.reference", "home {scope} at its own controls"),
+    Hand.CHECK: Phrase("do.check", "see that nobody is in {scope}"),
 }
+HOME_BY_HAND = Phrase("do.home_by_hand", "home {scope} --by-hand")
+THEN = Phrase("do.then", "{first}, then {second}")
+OR = Phrase("do.or", "{first} or {second}")
 
 
-def in_words(advice: Advice) -> str:
+def in_words(advice: Advice) -> Sentence:
     """What is to be done, as a person types or says it."""
-    if isinstance(advice.do, Hand):
-        return SAID[advice.do].format(advice.scope)
-    return f"{advice.do.value} {advice.scope}{' --by-hand' if advice.by_hand else ''}"
+    return (HOME_BY_HAND if advice.by_hand else DO[advice.do])(scope=advice.scope)
 
 
-def sentence(ways: Sequence[Advice]) -> str:
-    """All of it in one sentence; "" where there is nothing to do."""
-    said = "".join(f"{' or ' if each.instead else ', then '}{in_words(each)}" for each in ways)
-    return said.removeprefix(", then ").removeprefix(" or ")
+def sentence(ways: Iterable[Advice]) -> Sentence:
+    """All of it in one sentence; NOTHING where there is nothing to do."""
+    said = NOTHING
+    for each in ways:
+        joined = OR if each.instead else THEN
+        said = joined(first=said, second=in_words(each)) if said else in_words(each)
+    return said

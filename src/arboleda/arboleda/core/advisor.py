@@ -9,8 +9,11 @@ from .advice import Advice, Hand
 from .cell import CellRun
 from .cell_states import CellState
 from .messages import OperatorRequest, Reason, Verb
+from .sentence import Phrase, Sentence
 
-Refusal = Callable[[OperatorRequest], "str | None"]
+WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
+MAY_BE_IN = Phrase("zone.may_be_in", "{arm} may still be in {zone}, which is quarantined")
+Refusal = Callable[[OperatorRequest], "Sentence | None"]
 
 
 class Advisor:
@@ -37,7 +40,7 @@ class Advisor:
         found: dict[Advice, None] = dict.fromkeys(lead(self, run, asked | {cell}))
         return tuple(found)
 
-    def _refused(self, advice: Advice) -> str | None:
+    def _refused(self, advice: Advice) -> Sentence | None:
         if isinstance(advice.do, Hand):
             return None
         return self._refusal(_request(advice.do, advice.scope, by_hand=advice.by_hand))
@@ -61,8 +64,10 @@ class Advisor:
         uproots = any(each.do is Verb.HOME and each.scope == arm for each in readying)
         if run.task is None:
             yield from self._recovering(run, asked)
-        elif run.stranded or uproots:
-            yield _abandon(run, f"{arm} will have been homed" if uproots else run.stranded or "")
+        elif uproots:
+            yield _abandon(run, WILL_BE_HOMED(arm=arm))
+        elif run.stranded:
+            yield _abandon(run, run.stranded)
         else:
             verb = Verb.RETRY if run.trouble else Verb.RESUME
             yield Advice(do=verb, scope=run.cell.name, why=run.why_held, moves=_movers(run))
@@ -111,7 +116,7 @@ class Advisor:
             by_reason += self._homing(run, arm, astray.sentence, asked)
         yield from by_reason
 
-    def _homing(self, run: CellRun, robot: str, why: str, asked: frozenset[str]) -> Iterator[Advice]:
+    def _homing(self, run: CellRun, robot: str, why: Sentence, asked: frozenset[str]) -> Iterator[Advice]:
         by_routine = run.context.homes_by_routine(robot)
         if by_routine:
             if robot == run.cell.arm.name:
@@ -142,7 +147,7 @@ class Advisor:
     def _overriding(self, zones: Sequence[str], other: CellRun, *, instead: bool) -> Iterator[Advice]:
         holder = other.cell.arm.name
         for zone in zones:
-            why = f"{holder} may still be in {zone}, which is quarantined"
+            why = MAY_BE_IN(arm=holder, zone=zone)
             yield Advice(do=Hand.CHECK, scope=zone, why=why, instead=instead)
             if self._refusal(_request(Verb.OVERRIDE, zone)) is not None:
                 yield Advice(do=Verb.STOP, scope=other.cell.name, why=why)
@@ -162,13 +167,13 @@ def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:
             return
 
 
-def _stopping(run: CellRun, why: str) -> Iterator[Advice]:
+def _stopping(run: CellRun, why: Sentence) -> Iterator[Advice]:
     """Somebody else stopped a robot: our own stop, which can be cleared."""
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):
         yield Advice(do=verb, scope=run.cell.name, why=why)
 
 
-def _abandon(run: CellRun, why: str) -> Advice:
+def _abandon(run: CellRun, why: Sentence) -> Advice:
     return Advice(do=Verb.ABANDON, scope=run.cell.name, why=why, moves=(run.cell.arm.name,))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from operator import attrgetter, methodcaller
 from typing import NamedTuple
@@ -11,6 +11,7 @@ from typing import NamedTuple
 from .facts import Facts, Value
 from .messages import BUILT_IN, Failure, Reason, Report
 from .model import Evidence, Link, MotionState, Position, Robot
+from .sentence import Phrase
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
 APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
@@ -274,18 +275,17 @@ class Belief:
         if trouble is None:
             return None
         said = trouble.was if was else trouble.said
-        return Failure(reason=trouble.reason, sentence=f"{self.robot.name} {said}")
+        return Failure(reason=trouble.reason, sentence=said(robot=self.robot.name, **trouble.plants))
 
     def _unanswered(self) -> Trouble:
         """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""
         if self.plant is None or self.plant < self.plant_epoch:
             return UNANSWERED
-        said, was = (each.format(self.plant, self.plant_epoch) for each in (FENCED, WAS_FENCED))
-        return Trouble(Reason.LINK_LOST, said, was)
+        return FENCED._replace(plants={"obeyed": self.plant, "ours": self.plant_epoch})
 
     @property
     def trouble(self) -> Trouble | None:
-        """What an obstacle is made of, without the robot's name."""
+        """What an obstacle is made of, whose ever it is."""
         if self.drawn:
             return DRAWN
         if not self.online:
@@ -302,28 +302,62 @@ class Trouble(NamedTuple):
     """What is said of a robot while it is so, and of what it was the cause afterwards."""
 
     reason: Reason
-    said: str
-    was: str
+    said: Phrase
+    was: Phrase
+    plants: Mapping[str, int] = {}
 
 
-FENCED = (
-    "is fenced off: its bridge obeys plant {}, which started after this one ({}); "
-    "end that plant, then start the bridge anew, or this plant where it brings the bridge"
+FENCED = Trouble(
+    Reason.LINK_LOST,
+    Phrase(
+        "robot.fenced",
+        "{robot} is fenced off: its bridge obeys plant {obeyed}, which started after this one ({ours}); "
+        "end that plant, then start the bridge anew, or this plant where it brings the bridge",
+    ),
+    Phrase(
+        "robot.was_fenced",
+        "{robot} was fenced off: its bridge obeyed plant {obeyed}, which started after this one ({ours})",
+    ),
 )
-WAS_FENCED = "was fenced off: its bridge obeyed plant {}, which started after this one ({})"
-DRAWN = Trouble(Reason.LINK_LOST, "is only drawn (link: none)", "is only drawn (link: none)")
-OFFLINE = Trouble(Reason.LINK_LOST, "is offline", "was lost")
-UNHEARD = Trouble(Reason.LINK_LOST, "was not heard yet", "had not been heard yet")
+ONLY_DRAWN = Phrase("robot.only_drawn", "{robot} is only drawn (link: none)")
+DRAWN = Trouble(Reason.LINK_LOST, ONLY_DRAWN, ONLY_DRAWN)
+OFFLINE = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.offline", "{robot} is offline"),
+    Phrase("robot.was_lost", "{robot} was lost"),
+)
+UNHEARD = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.unheard", "{robot} was not heard yet"),
+    Phrase("robot.was_unheard", "{robot} had not been heard yet"),
+)
 UNANSWERED = Trouble(
     Reason.LINK_LOST,
-    "has a bridge that does not hear this plant yet",
-    "had a bridge that did not hear this plant yet",
+    Phrase("robot.unanswered", "{robot} has a bridge that does not hear this plant yet"),
+    Phrase("robot.was_unanswered", "{robot} had a bridge that did not hear this plant yet"),
 )
-UNHOMED = Trouble(Reason.NOT_HOMED, "is not homed", "was not homed")
-MOVING = Trouble(Reason.REJECTED, "is still moving", "was still moving")
-STOPPED = Trouble(Reason.STOPPED, "is stopped (latched)", "was stopped (latched)")
+UNHOMED = Trouble(
+    Reason.NOT_HOMED,
+    Phrase("robot.not_homed", "{robot} is not homed"),
+    Phrase("robot.was_not_homed", "{robot} was not homed"),
+)
+MOVING = Trouble(
+    Reason.REJECTED,
+    Phrase("robot.moving", "{robot} is still moving"),
+    Phrase("robot.was_moving", "{robot} was still moving"),
+)
+STOPPED = Trouble(
+    Reason.STOPPED,
+    Phrase("robot.stopped", "{robot} is stopped (latched)"),
+    Phrase("robot.was_stopped", "{robot} was stopped (latched)"),
+)
+FAULTY = Trouble(
+    Reason.DEVICE_FAULT,
+    Phrase("robot.in_fault", "{robot} is in fault"),
+    Phrase("robot.was_in_fault", "{robot} was in fault"),
+)
 TROUBLES: dict[MotionState | None, Trouble] = {
     MotionState.MOVING: MOVING,
-    MotionState.FAULT: Trouble(Reason.DEVICE_FAULT, "is in fault", "was in fault"),
+    MotionState.FAULT: FAULTY,
     MotionState.STOP_LATCHED: STOPPED,
 }

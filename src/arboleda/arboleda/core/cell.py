@@ -13,11 +13,12 @@ from .advice import Advice
 from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
 from .context import Context
-from .counting import counted
 from .errors import QueueFull
+from .grips import Grip
 from .ledger import State
 from .messages import Failure, Reason, TaskState
 from .model import Cell
+from .sentence import Phrase, Sentence
 from .task import Order, Task
 from .tree_run import TreeRun
 
@@ -41,7 +42,7 @@ class CellRun:
         self.task: Task | None = None
         self.run = TreeRun(context)
         self.trouble: Failure | None = None  # why it is held
-        self.stranded: str | None = None  # why no step of a held task can go on from there
+        self.stranded: Sentence | None = None  # why no step of a held task can go on from there
         self.dirty = False
         self.closed = False
         self._changed = changed
@@ -59,56 +60,60 @@ class CellRun:
     def enqueue(self, task: Task) -> None:
         """Take a task in; QueueFull at the limit."""
         if len(self.queue) >= self.cell.queue_limit:
-            waiting = counted(len(self.queue), "task")
-            raise QueueFull(f"{self.cell.name} has {waiting} waiting, its limit; send it again later")
+            full = FULL_OF_ONE if len(self.queue) == 1 else FULL
+            raise QueueFull(full(cell=self.cell.name, number=len(self.queue)))
         self.queue.append(task)
 
-    def waiting_for(self) -> str | None:
+    def waiting_for(self) -> Sentence | None:
         """Why the next task does not start, for the operator; None where nothing is in its way."""
         name = self.cell.name
         if self.closed:
-            return "the plant is ending"
+            return ENDING()
         if self.state is CellState.EXECUTE:
-            return f"{name} is busy"
+            return BUSY(cell=name)
         if self.state is CellState.IDLE:
             return self.not_ready
-        why = f" ({self.trouble.sentence})" if self.trouble else ""
-        return self.held_by or f"{name} is {self.state.said}{why}; {self._next()}"
+        if self.trouble is None or self.state is CellState.HELD:
+            return self.held_by or STANDS(cell=name, state=self.state.said, next=self._next())
+        why = self.trouble.sentence
+        return STANDS_BECAUSE(cell=name, state=self.state.said, why=why, next=self._next())
 
     @property
-    def not_ready(self) -> str | None:
+    def not_ready(self) -> Sentence | None:
         """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
             return None
         return self._unready() or (self.why_paused if self.queue_paused else None)
 
     @property
-    def held_by(self) -> str | None:
+    def held_by(self) -> Sentence | None:
         """What holds the cell and what can be done about it; None where it is not held."""
         if self.state is not CellState.HELD:
             return None
-        stranded = f"{self.stranded}: " if self.stranded else ""
-        return f"{self.cell.name} is held ({self.why_held}); {stranded}{self._next()}"
+        name, why, ways = self.cell.name, self.why_held, self._next()
+        if self.stranded:
+            return HELD_STRANDED(cell=name, why=why, stranded=self.stranded, next=ways)
+        return HELD(cell=name, why=why, next=ways)
 
     @property
-    def why_held(self) -> str:
+    def why_held(self) -> Sentence:
         """The cause of a hold."""
-        return self.trouble.sentence if self.trouble else "by the operator"
+        return self.trouble.sentence if self.trouble else BY_OPERATOR()
 
     @property
-    def why_stopped(self) -> str:
+    def why_stopped(self) -> Sentence:
         """The cause of a stop, or that it was not confirmed."""
-        return self.trouble.sentence if self.trouble else f"{self.cell.name} was stopped by the operator"
+        return self.trouble.sentence if self.trouble else STOPPED(cell=self.cell.name)
 
     @property
-    def why_paused(self) -> str:
-        name = self.cell.name
-        return f"the queue of {name} is paused; resume {name} starts it"
+    def why_paused(self) -> Sentence:
+        return QUEUE_PAUSED(cell=self.cell.name)
 
-    def _next(self) -> str:
-        """What leads out of the present state, in words."""
-        ways = NEXT.get(self.state) or advice.sentence(self._ways_out(self.cell.name))
-        return ways or self._busy() or "wait"
+    def _next(self) -> Sentence:
+        """What leads out of the present state."""
+        if self.state in NEXT:
+            return NEXT[self.state]()
+        return advice.sentence(self._ways_out(self.cell.name)) or self._busy() or WAIT()
 
     def advance(self, *, woken: bool) -> bool:
         """Do what can be done now: tick the tree until it rests, start the next task; whether it did."""
@@ -138,7 +143,7 @@ class CellRun:
         self.trouble = None
         self._stopped_after = self.context.moments()
         self._stop_by = self.context.now + self.context.timing.stop_timeout_s
-        failure = Failure(reason=Reason.STOPPED, sentence=f"{self.cell.name} was stopped by the operator")
+        failure = Failure(reason=Reason.STOPPED, sentence=STOPPED(cell=self.cell.name))
         self.interrupt(failure)
         self.context.cancel_all()
         self.context.wake_at(self._stop_by)
@@ -183,7 +188,7 @@ class CellRun:
             self._leave_as_it_is()
             return
         self.become(Cause.ABANDON)
-        given_up = Failure(reason=Reason.CANCELLED, sentence="abandoned by the operator")
+        given_up = Failure(reason=Reason.CANCELLED, sentence=ABANDONED())
         self.task.fail(self.trouble or given_up)
         self._recover()
 
@@ -208,7 +213,7 @@ class CellRun:
     def close(self) -> None:
         """The plant ends: the running task is interrupted, no other one starts."""
         self.closed = True
-        self.interrupt(Failure(reason=Reason.INTERRUPTED, sentence="the plant was asked to end"))
+        self.interrupt(Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END()))
         self.context.cancel_all()
 
     def interrupt(self, failure: Failure) -> None:
@@ -275,7 +280,7 @@ class CellRun:
         gone = self.context.part_gone()
         if gone is not None and self.task is not None and not self.stranded:
             self.trouble = gone
-            self.stranded = f"{self.cell.arm.name} has no part to go on with"
+            self.stranded = NO_PART(arm=self.cell.arm.name)
             self.dirty = True
 
     def _leave_as_it_is(self) -> None:
@@ -291,7 +296,7 @@ class CellRun:
         if moving and self.context.now < self._stop_by:
             return False
         if moving:
-            sentence = f"{', '.join(moving)} did not confirm the stop"
+            sentence = STOP_UNCONFIRMED(robots=tuple(moving))
             self.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
         self.become(Cause.HALTED)
         return True
@@ -300,24 +305,22 @@ class CellRun:
         only_grip = self.trouble is not None and self.trouble.reason is Reason.INTERRUPTED
         return only_grip and not self.context.holding()
 
-    def _unready(self) -> str | None:
+    def _unready(self) -> Sentence | None:
         if busy := self._busy():
             return busy
         found = [self.context.obstacle(robot.name) for robot in self.cell.reached]
         found += [self.context.astray(), self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)
 
-    def _busy(self) -> str | None:
+    def _busy(self) -> Sentence | None:
         """What a robot of the cell is still doing."""
-        open_commands = self.context.open_commands()
-        return (
-            f"{open_commands[0].command.robot} is still {open_commands[0].doing}" if open_commands else None
-        )
+        first = next(iter(self.context.open_commands()), None)
+        return STILL_DOING(robot=first.command.robot, doing=first.doing) if first else None
 
     def _grip_unsettled(self) -> Failure | None:
         if not self.context.holding():
             return None
-        sentence = f"{self.cell.arm.name} may hold a part, its effector is {self.context.grip.value}"
+        sentence = MAY_HOLD(arm=self.cell.arm.name, grip=GRIPS[self.context.grip]())
         return Failure(reason=Reason.INTERRUPTED, sentence=sentence)
 
     def _fault(self) -> Failure | None:
@@ -347,15 +350,14 @@ class CellRun:
     def uproot(self) -> None:
         """The arm is homed: a task that is held can only be abandoned."""
         if self.task is not None:
-            self.stranded = f"{self.cell.arm.name} was homed meanwhile"
+            self.stranded = HOMED_MEANWHILE(arm=self.cell.arm.name)
 
     def let_go(self) -> None:
         """The operator has the effector opened: a task that is held has lost the part in it."""
         if self.task is not None and self.context.holding():
             arm = self.cell.arm.name
-            sentence = f"{arm} let go of its part on the operator's word"
-            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=sentence)
-            self.stranded = f"{arm} has no part to go on with"
+            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=arm))
+            self.stranded = NO_PART(arm=arm)
 
     def _recover(self) -> None:
         """Drop what runs, halting it, and run the recovery alone."""
@@ -375,7 +377,7 @@ class CellRun:
         task, found, leaf = self.task, self.context.failure, self.context.failed_leaf
         self.run.drop()
         if not recovered:
-            unknown = Failure(reason=Reason.INTERNAL, sentence=f"{self.cell.name} failed without a cause")
+            unknown = Failure(reason=Reason.INTERNAL, sentence=NO_CAUSE(cell=self.cell.name))
             self._stuck(self.context.last_failure or unknown)
         else:
             self.become(Cause.ENDED)
@@ -399,11 +401,34 @@ class CellRun:
         self._changed(task)
 
 
+FULL = Phrase("cell.full", "{cell} has {number:,} tasks waiting, its limit; send it again later")
+FULL_OF_ONE = Phrase("cell.full_of_one", "{cell} has {number} task waiting, its limit; send it again later")
+ENDING = Phrase("plant.ending", "the plant is ending")
+BUSY = Phrase("cell.busy", "{cell} is busy")
+STANDS = Phrase("cell.stands", "{cell} is {state}; {next}")
+STANDS_BECAUSE = Phrase("cell.stands_because", "{cell} is {state} ({why}); {next}")
+HELD = Phrase("cell.held", "{cell} is held ({why}); {next}")
+HELD_STRANDED = Phrase("cell.held_stranded", "{cell} is held ({why}); {stranded}: {next}")
+BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
+STOPPED = Phrase("cell.stopped", "{cell} was stopped by the operator")
+QUEUE_PAUSED = Phrase("cell.queue_paused", "the queue of {cell} is paused; resume {cell} starts it")
+ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
+ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")
+NO_CAUSE = Phrase("cell.no_cause", "{cell} failed without a cause")
+STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
+STILL_DOING = Phrase("robot.still_doing", "{robot} is still {doing}")
+MAY_HOLD = Phrase("part.may_hold", "{arm} may hold a part, its effector is {grip}")
+LET_GO = Phrase("part.let_go", "{arm} let go of its part on the operator's word")
+NO_PART = Phrase("part.gone", "{arm} has no part to go on with")
+HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
+GRIPS = {grip: Phrase(f"grip.{grip.value}", grip.value) for grip in Grip}
+WAIT = Phrase("next.wait", "wait")
+UNTIL_STILL = Phrase("next.until_still", "wait until it stands still")
 NEXT = {
-    CellState.HOLDING: "wait until it stands still",
-    CellState.ABORTING: "wait until it stands still",
-    CellState.CLEARING: "wait until its robots have left their stop",
-    CellState.RESETTING: "wait",
+    CellState.HOLDING: UNTIL_STILL,
+    CellState.ABORTING: UNTIL_STILL,
+    CellState.CLEARING: Phrase("next.until_cleared", "wait until its robots have left their stop"),
+    CellState.RESETTING: WAIT,
 }
 
 WAITS: dict[CellState, Callable[[CellRun], bool]] = {

@@ -8,6 +8,7 @@ from __future__ import annotations
 from enum import Enum
 
 from .errors import IllegalTransition
+from .sentence import Phrase, Sentence
 
 
 class CellState(str, Enum):
@@ -24,9 +25,17 @@ class CellState(str, Enum):
     RESETTING = "resetting"
 
     @property
-    def said(self) -> str:
+    def said(self) -> Sentence:
         """The word as it stands in a sentence, after "the cell is"."""
-        return f"in {self.value}" if self is CellState.EXECUTE else self.value
+        return SAID[self]
+
+
+SAID = {
+    state: Phrase(
+        f"state.{state.value}", f"in {state.value}" if state is CellState.EXECUTE else state.value
+    )()
+    for state in CellState
+}
 
 
 class Cause(str, Enum):
@@ -52,6 +61,7 @@ class Cause(str, Enum):
     READY = "ready"
 
 
+NO_WAY = Phrase("cell.no_way", "{cell} is {state}: no {cause} there")
 TABLE: dict[tuple[CellState, Cause], CellState] = {
     (CellState.IDLE, Cause.TASK): CellState.EXECUTE,
     (CellState.IDLE, Cause.STUCK): CellState.HELD,
@@ -80,5 +90,5 @@ def after(state: CellState, cause: Cause, cell: str) -> CellState:
     """The next state; IllegalTransition where the table has no row."""
     found = TABLE.get((state, cause))
     if found is None:
-        raise IllegalTransition(f"{cell} is {state.said}: no {cause.value} there")
+        raise IllegalTransition(NO_WAY(cell=cell, state=state.said, cause=cause.value))
     return found

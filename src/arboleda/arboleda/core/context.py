@@ -14,9 +14,16 @@ from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
 from .model import Cell, Evidence, MotionState, Pose, Timing
+from .sentence import Phrase
 from .zones import Zones
 
 __all__ = ["Context", "Make"]
+ASTRAY = Phrase("zone.astray", "{arm} is not seen at a pose outside the shared zones; home {arm} mends that")
+ASTRAY_BY_HAND = Phrase(
+    "zone.astray_by_hand",
+    "{arm} is not seen at a pose outside the shared zones; "
+    "home {arm} --by-hand, once it stands at its reference, mends that",
+)
 
 
 class Context:
@@ -207,7 +214,7 @@ class Context:
         if here is None or not heights:
             return self.cell.home.q
         rows = zip(self.cell.arm.joints, here, *heights, strict=True)
-        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
+        return tuple(q if joint.pinion_radius_m is None else min(q, *up) for joint, q, *up in rows)
 
     def piece(self, since: float) -> bool | None:
         """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""
@@ -228,9 +235,8 @@ class Context:
         unknown = not self._dispatcher.beliefs[arm].supervised and arm not in self._dispatcher.reached
         if not self.cell.zones or unknown or self._dispatcher.place(cell) is not None:
             return None
-        by_hand = "" if cell.arm.says_homed else " --by-hand, once it stands at its reference,"
-        sentence = f"{arm} is not seen at a pose outside the shared zones; home {arm}{by_hand} mends that"
-        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+        astray = ASTRAY if cell.arm.says_homed else ASTRAY_BY_HAND
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=arm))
 
     def take_zones(self, zones: frozenset[str], *, inside: bool = False) -> bool:
         """Ask for zones, all at once; whether the arm has them.

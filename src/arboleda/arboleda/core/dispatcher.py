@@ -32,11 +32,32 @@ from .messages import (
     Work,
 )
 from .model import Cell, Evidence, Link, MotionState, PlantModel, Pose, Position
+from .sentence import BOTH, Phrase, Sentence, as_sentence
 from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
 Memory = Mapping[Fact, Mapping[str, str]]
+NOT_GIVEN = Phrase("command.not_given", "{why}: no {doing}")
+BUSY_MOVING = (
+    Phrase("robot.open_motion", "{robot} has an open motion command"),
+    Phrase("robot.had_open_motion", "{robot} had an open motion command"),
+)
+BUSY_WORKING = (
+    Phrase("robot.open_work", "{robot} has not ended its last work"),
+    Phrase("robot.had_open_work", "{robot} had not ended its last work"),
+)
+NEEDS = Phrase("robot.needs", "{robot} needs {fact} to be {value}, and says {told}")
+NEEDED = Phrase("robot.needed", "{robot} needs {fact} to be {value}, and said {told}")
+NEEDS_UNSAID = Phrase("robot.needs_unsaid", "{robot} needs {fact} to be {value}, and never said it")
+OPENED = Phrase("effector.opened", "{arm}: the effector opened while it held a part, {how}")
+UNBIDDEN = Phrase("effector.unbidden", "not commanded by this plant")
+AS_REBOOTED = Phrase("effector.as_rebooted", "as its board rebooted")
+NO_TELEMETRY = Phrase("command.no_telemetry", "{robot}: no telemetry for {seconds:g} s while {doing}")
+NOT_FINISHED = Phrase("command.not_finished", "{robot}: did not finish within {seconds:.1f} s while {doing}")
+NOT_STOPPED = Phrase(
+    "command.not_stopped", "{robot}: did not confirm that it stopped within {seconds:.1f} s while {doing}"
+)
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
@@ -65,7 +86,7 @@ class Dispatcher:
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
         # who let go unbidden since the last command to its effector, and how
-        self.opened: dict[str, str] = {}
+        self.opened: dict[str, Sentence] = {}
         self.reached: dict[str, Position] = {}  # the goal of each robot's last motion, once it is done
         self._kept: dict[tuple[Fact, str], str | None] = {
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
@@ -73,7 +94,9 @@ class Dispatcher:
         self.under_way = UnderWay(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
-        self.rejected: dict[str, tuple[int, str]] = {}  # how often a robot refused, and the last why
+        self.rejected: dict[
+            str, tuple[int, Sentence | None]
+        ] = {}  # how often a robot refused, and the last why
         self.interference = Interferences()
         self._count = 0
 
@@ -93,7 +116,7 @@ class Dispatcher:
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
         obstacle = self._obstacle_to(command, by_hand=by_hand, was=True)
         if obstacle is not None:
-            failure = replace(obstacle, sentence=f"{obstacle.sentence}: no {doing}")
+            failure = replace(obstacle, sentence=NOT_GIVEN(why=obstacle.sentence, doing=doing))
             entry.refuse(failure, too_early=self._may_be_the_end_of_its_last_move(command.robot))
             return entry
         entry.origin = self.beliefs[command.robot].position
@@ -244,7 +267,7 @@ class Dispatcher:
             self.version += 1
             self.ledger.changed.add(self.model.cell_of[report.robot].name)
 
-    def interfere(self, robot: str, sentence: str, now: float, *, obeyed: bool) -> None:
+    def interfere(self, robot: str, sentence: Sentence, now: float, *, obeyed: bool) -> None:
         """Somebody else commanded a robot; what it did of that may be why an open command fails."""
         self.interference.note(robot, sentence, now, obeyed=obeyed)
         self.version += 1
@@ -255,7 +278,7 @@ class Dispatcher:
         """A bridge counts the commands of others; each count that rose is news."""
         refused, obeyed = self.interference.rise(report)
         if report.foreign is not None and (refused or obeyed):
-            self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
+            self.interfere(report.robot, as_sentence(report.foreign), report.at, obeyed=obeyed)
 
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves; `before` is None where it only repeats what was believed."""
@@ -292,7 +315,7 @@ class Dispatcher:
     def _forget_place(self, robot: str) -> None:
         self.reached.pop(robot, None)
 
-    def undelivered(self, id: str, robot: str, sentence: str, now: float) -> None:
+    def undelivered(self, id: str, robot: str, sentence: Sentence, now: float) -> None:
         """Fail a command that could not leave this process."""
         failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
         for entry in self.ledger.of_robot(robot):
@@ -342,8 +365,8 @@ class Dispatcher:
     def _obstacle_to(self, command: Command, *, by_hand: bool, was: bool = False) -> Failure | None:
         robot = command.robot
         if (busy := self._busy_with(command)) is not None:
-            what = "an open motion command" if isinstance(busy.command, Motion) else "not ended its last work"
-            return Failure(reason=Reason.REJECTED, sentence=f"{robot} {'had' if was else 'has'} {what}")
+            now, before = BUSY_MOVING if isinstance(busy.command, Motion) else BUSY_WORKING
+            return Failure(reason=Reason.REJECTED, sentence=(before if was else now)(robot=robot))
         if isinstance(command, Query):
             return self.beliefs[robot].unreachable(was=was)
         obstacle = self.obstacle(robot, was=was)
@@ -369,8 +392,12 @@ class Dispatcher:
         for name, value in command.needs:
             told = belief.fact(name)
             if told != value:
-                says = f"{'said' if was else 'says'} {shown(told)}" if told is not None else "never said it"
-                sentence = f"{command.robot} needs {name} to be {shown(value)}, and {says}"
+                robot, wanted = command.robot, shown(value)
+                if told is None:
+                    sentence = NEEDS_UNSAID(robot=robot, fact=name, value=wanted)
+                else:
+                    needs = NEEDED if was else NEEDS
+                    sentence = needs(robot=robot, fact=name, value=wanted, told=shown(told))
                 return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
 
@@ -399,10 +426,10 @@ class Dispatcher:
         arm = belief.robot.name
         if self.grips[arm] is not Grip.ON or self._switches(arm):
             return
-        how = "as its board rebooted" if rebooted else "not commanded by this plant"
-        sentence = f"{arm}: the effector opened while it held a part, {how}"
+        how = AS_REBOOTED if rebooted else UNBIDDEN
+        sentence = OPENED(arm=arm, how=how())
         others = None if rebooted else self.interference.lately_obeyed(arm, belief.heard_at or 0.0)
-        self.opened[arm] = f"{sentence}; {others}" if others else sentence
+        self.opened[arm] = BOTH(first=sentence, second=others) if others else sentence
 
     def _switches(self, arm: str) -> bool:
         return any(_grips(entry.command) for entry in self.ledger.of_robot(arm))
@@ -460,8 +487,8 @@ class Dispatcher:
             self._stop(entry.command.robot, StopMode.HALT)
 
     def _reject(self, robot: str, failure: Failure | None) -> None:
-        count, _ = self.rejected.get(robot, (0, ""))
-        self.rejected[robot] = (count + 1, failure.sentence if failure else "")
+        count, _ = self.rejected.get(robot, (0, None))
+        self.rejected[robot] = (count + 1, failure.sentence if failure else None)
         stopped = failure is not None and failure.reason is Reason.STOPPED
         self.beliefs[robot].barred |= stopped and not self.model.robots[robot].has_stop
 
@@ -479,8 +506,8 @@ class Dispatcher:
         self.version += 1
         self.ledger.changed.add(self.model.cell_of[belief.robot.name].name)
         for entry in self.ledger.of_robot(belief.robot.name):
-            silence = f"no telemetry for {belief.stale_after_s:g} s"
-            sentence = f"{belief.robot.name}: {silence} while {entry.doing}"
+            name, silence_s = belief.robot.name, belief.stale_after_s
+            sentence = NO_TELEMETRY(robot=name, seconds=silence_s, doing=entry.doing)
             failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
             self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
 
@@ -501,15 +528,15 @@ def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
     """A failure that a command of somebody else may have caused says so."""
     if failure is None or entry.interference is None:
         return failure
-    return replace(failure, sentence=f"{failure.sentence}; {entry.interference}")
+    return replace(failure, sentence=BOTH(first=failure.sentence, second=entry.interference))
 
 
 def _overdue(entry: Entry) -> Verdict:
     if entry.settles_at is not None and entry.settles_at <= entry.deadline:
         return Verdict(feed=Feed.DONE)
     stopping = entry.state is State.CANCELLING
-    what = "did not confirm that it stopped" if stopping else "did not finish"
+    what = NOT_STOPPED if stopping else NOT_FINISHED
     waited = entry.deadline - (entry.cancelled_at if entry.cancelled_at is not None else entry.sent_at)
-    sentence = f"{entry.command.robot}: {what} within {waited:.1f} s while {entry.doing}"
+    sentence = what(robot=entry.command.robot, seconds=waited, doing=entry.doing)
     reason = Reason.STOP_UNCONFIRMED if stopping else Reason.DEADLINE
     return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))

@@ -11,9 +11,15 @@ ArboledaError            one sentence for a person; never shown as a traceback
 
 from __future__ import annotations
 
+from .sentence import Sentence, as_sentence
+
 
 class ArboledaError(Exception):
-    """Any error Arboleda reports: `str(error)` is one sentence an operator can act on."""
+    """Any error Arboleda reports: one sentence an operator can act on, given as such or as its text."""
+
+    @property
+    def sentence(self) -> Sentence:
+        return as_sentence(self)
 
 
 class TextError(ArboledaError):

@@ -15,6 +15,7 @@ from .facts import Facts, Value, shown
 from .ledger import Entry, Feed, State
 from .messages import Command, Failure, Home, Motion, Process, Query, Reason, Report, Switch
 from .model import Evidence, MotionState, Position
+from .sentence import Phrase
 
 REFUSALS: dict[str, Reason] = {
     "no_link": Reason.LINK_LOST,
@@ -24,6 +25,35 @@ REFUSALS: dict[str, Reason] = {
 QUIET_S = 0.3  # what a command takes to a robot, one telemetry period, and APART_S for its answer
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
 JITTER_S = APART_S  # two positions may arrive so much closer together than they were made
+
+NO_TELEMETRY_FOR = Phrase(
+    "command.no_telemetry_for", "{robot}: no telemetry for {seconds:.1f} s while {doing}"
+)
+LINK_LOST = Phrase("command.link_lost", "{robot}: the link was lost while {doing}")
+BRIDGE_RESTARTED = Phrase("command.bridge_restarted", "{robot}: the bridge restarted while {doing}")
+REFUSED = Phrase("command.refused", "{robot}: refused the command for {doing} ({word})")
+BOARD_REBOOTED = Phrase("command.board_rebooted", "{robot}: the board rebooted while {doing}")
+JOINTS_JUMPED = Phrase(
+    "command.joints_jumped", "{robot}: the joints jumped, the board must have rebooted, while {doing}"
+)
+BOARD_FAULT = Phrase("command.board_fault", "{robot}: the board reports a fault while {doing}")
+POSITION_UNKNOWN = Phrase(
+    "command.position_unknown", "{robot}: the position is unknown, the robot is not homed, while {doing}"
+)
+STOPPED = Phrase("command.stopped", "{robot}: stopped and latched while {doing}")
+OFF_TARGET = Phrase(
+    "command.off_target", "{robot}: reported the move done but stands off its target while {doing}"
+)
+FACT_UNSAID = Phrase(
+    "command.fact_unsaid",
+    "{robot}: reported the work done but does not say its {fact} while {doing}",
+)
+FACT_OTHER = Phrase(
+    "command.fact_other",
+    "{robot}: reported the work done but says {value} of its {fact} while {doing}",
+)
+GAVE_UP = Phrase("command.gave_up", "{robot}: gave up ({word}) while {doing}")
+SHORT_OF_TARGET = Phrase("command.short_of_target", "{robot}: stopped before its target while {doing}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,9 +136,13 @@ def reached(entry: Entry, belief: Belief) -> bool:
     return belief.position is not None and belief.robot.stands_at(belief.position, entry.way[-1])
 
 
-def _failed(entry: Entry, reason: Reason, what: str) -> Verdict:
-    sentence = f"{entry.command.robot}: {what} while {entry.doing}"
-    return Verdict(feed=Feed.FAILED, failure=Failure(reason=reason, sentence=sentence))
+def _failed(entry: Entry, reason: Reason, what: Phrase, **values: str | float) -> Verdict:
+    return Verdict(feed=Feed.FAILED, failure=_failure(entry, reason, what, **values))
+
+
+def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float) -> Failure:
+    sentence = what(robot=entry.command.robot, doing=entry.doing, **values)
+    return Failure(reason=reason, sentence=sentence)
 
 
 def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
@@ -121,10 +155,11 @@ def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -
     if report.state is MotionState.NO_LINK:
         silence_s = 0.0 if belief.heard_at is None else report.at - belief.heard_at
         silent = silence_s >= belief.stale_after_s
-        what = f"no telemetry for {silence_s:.1f} s" if silent else "the link was lost"
-        return _failed(entry, Reason.LINK_LOST, what)
+        if silent:
+            return _failed(entry, Reason.LINK_LOST, NO_TELEMETRY_FOR, seconds=silence_s)
+        return _failed(entry, Reason.LINK_LOST, LINK_LOST)
     if before.epoch is not None and report.epoch is not None and report.epoch != before.epoch:
-        return _failed(entry, Reason.LINK_LOST, "the bridge restarted")
+        return _failed(entry, Reason.LINK_LOST, BRIDGE_RESTARTED)
     return None
 
 
@@ -133,21 +168,20 @@ def _refused(entry: Entry, report: Report) -> Verdict | None:
         return None
     word = report.refusal or "no reason given"
     reason = REFUSALS.get(word, Reason.REJECTED)
-    sentence = f"{entry.command.robot}: refused the command for {entry.doing} ({word})"
-    return Verdict(feed=Feed.REJECTED, failure=Failure(reason=reason, sentence=sentence))
+    return Verdict(feed=Feed.REJECTED, failure=_failure(entry, reason, REFUSED, word=word))
 
 
 def _gave_up(entry: Entry, report: Report) -> Verdict | None:
     if report.failed != entry.command.id:
         return None
-    return _failed(entry, Reason.DEVICE_FAULT, f"gave up ({report.failure or 'no reason given'})")
+    return _failed(entry, Reason.DEVICE_FAULT, GAVE_UP, word=report.failure or "no reason given")
 
 
 def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
     if rebooted(before, belief, report):
-        return _failed(entry, Reason.REBOOTED, "the board rebooted")
+        return _failed(entry, Reason.REBOOTED, BOARD_REBOOTED)
     if belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report):
-        return _failed(entry, Reason.REBOOTED, "the joints jumped, the board must have rebooted,")
+        return _failed(entry, Reason.REBOOTED, JOINTS_JUMPED)
     return None
 
 
@@ -188,15 +222,14 @@ def _device(entry: Entry, report: Report) -> Verdict | None:
     if report.state not in OBJECTIONS:
         return None
     if report.state is MotionState.FAULT:
-        return _failed(entry, Reason.DEVICE_FAULT, "the board reports a fault")
+        return _failed(entry, Reason.DEVICE_FAULT, BOARD_FAULT)
     if not entry.is_work:
         return None
     if report.state is MotionState.NOT_HOMED and not isinstance(entry.command, Home):
-        return _failed(entry, Reason.NOT_HOMED, "the position is unknown, the robot is not homed,")
+        return _failed(entry, Reason.NOT_HOMED, POSITION_UNKNOWN)
     stopping = entry.state is State.CANCELLING or entry.finishes
     if report.state is MotionState.STOP_LATCHED and not stopping:
-        sentence = f"{entry.command.robot}: stopped and latched while {entry.doing}"
-        return Verdict(feed=Feed.HALTED, failure=Failure(reason=Reason.STOPPED, sentence=sentence))
+        return Verdict(feed=Feed.HALTED, failure=_failure(entry, Reason.STOPPED, STOPPED))
     return None
 
 
@@ -308,14 +341,15 @@ def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | Non
 def _off_target(entry: Entry, belief: Belief) -> Verdict:
     name = next((name for name, value in entry.sets if belief.fact(name) != value), None)
     if name is None:
-        return _failed(entry, Reason.NOT_REACHED, "reported the move done but stands off its target")
+        return _failed(entry, Reason.NOT_REACHED, OFF_TARGET)
     told = belief.fact(name)
-    seen = "does not say its" if told is None else f"says {shown(told)} of its"
-    return _failed(entry, Reason.NOT_REACHED, f"reported the work done but {seen} {name}")
+    if told is None:
+        return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)
+    return _failed(entry, Reason.NOT_REACHED, FACT_OTHER, fact=name, value=shown(told))
 
 
 def _short(entry: Entry) -> Verdict:
-    return _failed(entry, Reason.STOPPED_SHORT, "stopped before its target")
+    return _failed(entry, Reason.STOPPED_SHORT, SHORT_OF_TARGET)
 
 
 Rule = Callable[[Entry, Belief, Report], "Verdict | None"]

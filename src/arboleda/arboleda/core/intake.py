@@ -5,8 +5,11 @@ from __future__ import annotations
 from . import text
 from .errors import QueueFull, TextError
 from .model import PlantModel
+from .sentence import Phrase
 from .task import Task
 
+ENDING = Phrase("task.plant_ending", "the plant is ending; no new task is taken")
+ID_TAKEN = Phrase("task.id_taken", "#{id} is already the id of '{text}'; use another id")
 HISTORY = 1000  # tasks remembered by id; ended ones are forgotten first
 
 
@@ -23,14 +26,14 @@ class Intake:
     def task(self, words: str) -> Task:
         """The new or already known task of a text; TextError or QueueFull says why there is none."""
         if self.closed:
-            raise QueueFull("the plant is ending; no new task is taken")
+            raise QueueFull(ENDING())
         order = text.parse(words, self.model)
         known = self.tasks.get(order.id) if order.id else None
         if known is None:
             self._count += 1
             return Task(order.id or f"t-{self.epoch}-{self._count}", order)
         if known.order.text != order.text:
-            raise TextError(f"#{known.id} is already the id of '{known.order.text}'; use another id")
+            raise TextError(ID_TAKEN(id=known.id, text=known.order.text))
         return known
 
     def knows(self, task: Task) -> bool:

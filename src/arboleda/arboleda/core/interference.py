@@ -6,6 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from .messages import Report
+from .sentence import Sentence
 
 KEPT = 20
 LATELY_S = 5.0  # in which a robot reports what a command has brought about
@@ -18,7 +19,7 @@ class Noticed:
     number: int
     at: float
     robot: str
-    sentence: str
+    sentence: Sentence
 
 
 class Interferences:
@@ -27,19 +28,19 @@ class Interferences:
     def __init__(self) -> None:
         self.noticed: deque[Noticed] = deque(maxlen=KEPT)
         self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
-        self._obeyed: dict[str, tuple[float, str]] = {}
+        self._obeyed: dict[str, tuple[float, Sentence]] = {}
         self._count = 0
 
-    def note(self, robot: str, sentence: str, at: float, *, obeyed: bool) -> None:
+    def note(self, robot: str, sentence: Sentence, at: float, *, obeyed: bool) -> None:
         self._count += 1
         if obeyed:
             self._obeyed[robot] = (at, sentence)
         self.noticed.append(Noticed(number=self._count, at=at, robot=robot, sentence=sentence))
 
-    def lately_obeyed(self, robot: str, now: float) -> str | None:
-        """What a robot did LATELY_S ago or later that somebody else commanded, in a sentence."""
-        at, sentence = self._obeyed.get(robot, (0.0, ""))
-        return sentence if sentence and now <= at + LATELY_S else None
+    def lately_obeyed(self, robot: str, now: float) -> Sentence | None:
+        """What a robot did LATELY_S ago or later that somebody else commanded."""
+        at, sentence = self._obeyed.get(robot, (0.0, None))
+        return sentence if now <= at + LATELY_S else None
 
     def rise(self, report: Report) -> tuple[bool, bool]:
         """Whether a report tells of newly refused, and of newly obeyed ones since its bridge's start."""

@@ -10,7 +10,12 @@ from py_trees.common import Status
 from .context import Context, Make
 from .ledger import Entry, State
 from .messages import Failure, Notice, Reason
+from .sentence import NOTHING, Phrase, Sentence, as_sentence
 
+CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
+AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")
+NOT_FREE = Phrase("zone.not_free", "{arm}: zone {zones} was not free within {seconds:g} s")
+NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
 Guard = Callable[[], "Failure | None"]
 RETRYABLE = frozenset(
     {
@@ -26,9 +31,20 @@ RETRYABLE = frozenset(
 
 
 class Leaf(Behaviour):
-    """A leaf of ours; `last_failure` keeps the sentence when py_trees has forgotten the status."""
+    """A leaf of ours: `told` is its feedback message as a sentence, and `last_failure` keeps the one of a
+    failure when py_trees has forgotten the status.
+    """
 
-    last_failure: str | None = None
+    told: Sentence = NOTHING
+    last_failure: Sentence | None = None
+
+    @property
+    def feedback_message(self) -> str:
+        return str(self.told)
+
+    @feedback_message.setter
+    def feedback_message(self, text: str) -> None:
+        self.told = as_sentence(text) if text else NOTHING
 
     def tick(self) -> Iterator[Behaviour]:
         """As py_trees ticks a leaf, but without words for a log and without a list of all statuses."""
@@ -51,7 +67,7 @@ class Leaf(Behaviour):
 
     def failed(self, failure: Failure) -> Status:
         """FAILURE, with its sentence for people."""
-        self.feedback_message = self.last_failure = failure.sentence
+        self.told = self.last_failure = failure.sentence
         return Status.FAILURE
 
 
@@ -96,7 +112,7 @@ class Act(Leaf):
 
     def send(self) -> None:
         """Give the command, or give it anew."""
-        self.feedback_message = self.doing
+        self.told = as_sentence(self.doing)
         self.again_at = None
         self.patient_until = self.context.now + self.context.timing.stop_timeout_s
         self._give()
@@ -120,13 +136,13 @@ class Act(Leaf):
             if self.then is not None:
                 self.then()
             return Status.SUCCESS
-        cancelled = Failure(reason=Reason.CANCELLED, sentence=f"cancelled while {self.doing}")
+        cancelled = Failure(reason=Reason.CANCELLED, sentence=CANCELLED(doing=self.doing))
         failure = self.entry.failure or cancelled
         retry = self.context.cell.retry
         if failure.reason in RETRYABLE and self.tries < retry.times:
             self.tries += 1
             self.last_failure = failure.sentence
-            self.feedback_message = f"{failure.sentence}; try {self.tries} of {retry.times} follows"
+            self.told = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
             self.again_at = self.context.now + retry.backoff_s
             self.context.wake_at(self.again_at)
             return Status.RUNNING
@@ -312,8 +328,8 @@ class TakeZones(Await):
         return self.context.take_zones(self.zones, inside=self.inside)
 
     def _not_free(self) -> Failure:
-        arm, names = self.context.cell.arm.name, ", ".join(sorted(self.zones))
-        sentence = f"{arm}: zone {names} was not free within {self.seconds:g} s"
+        zones = tuple(sorted(self.zones))
+        sentence = NOT_FREE(arm=self.context.cell.arm.name, zones=zones, seconds=self.seconds)
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:
@@ -327,5 +343,5 @@ class LeaveZones(Await):
 
     def __init__(self, name: str, context: Context) -> None:
         arm = context.cell.arm.name
-        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=f"{arm} was not seen outside its zones")
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=arm))
         super().__init__(name, context, context.leave_zones, context.timing.stop_timeout_s, lambda: failure)

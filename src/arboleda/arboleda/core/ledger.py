@@ -13,6 +13,7 @@ from .errors import IllegalTransition
 from .facts import Value
 from .messages import Command, Failure, Motion, OnStop, Work
 from .model import Position
+from .sentence import Sentence
 
 
 class State(str, Enum):
@@ -91,7 +92,7 @@ class Entry:
         self.cancelled_at: float | None = None
         self.cancelled_after = Moment(0, -math.inf)
         self.failure: Failure | None = None
-        self.interference: str | None = None  # the last command of somebody else meanwhile, in a sentence
+        self.interference: Sentence | None = None  # the last command of somebody else meanwhile
         self.seen = Seen()
         self.rule: Callable[..., Any] | None = None  # what proves it, once it was looked up
         self.answer: Value | None = None  # to a query

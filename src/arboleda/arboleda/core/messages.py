@@ -9,6 +9,7 @@ from operator import attrgetter
 
 from .facts import Facts, Value
 from .model import MotionState, Position
+from .sentence import NOTHING, Sentence
 
 
 class Reason(str, Enum):
@@ -39,7 +40,7 @@ class Failure:
     """One reason and one sentence for the operator."""
 
     reason: Reason
-    sentence: str
+    sentence: Sentence
 
 
 class TaskState(str, Enum):
@@ -219,7 +220,7 @@ class TaskChanged:
     cell: str | None
     state: TaskState
     reason: Reason | None = None
-    sentence: str = ""
+    sentence: Sentence = NOTHING
     request: str | None = None
     for_now: bool = False
 
@@ -230,7 +231,7 @@ class OperatorAnswer:
 
     verb: Verb
     scope: str
-    refusal: str | None = None
+    refusal: Sentence | None = None
     request: str | None = None
 
 
@@ -259,7 +260,7 @@ class Journal:
     verb: Verb
     scope: str
     cell: str | None
-    sentence: str
+    sentence: Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -367,7 +368,7 @@ class Undelivered:
     at: float
     id: str
     robot: str
-    sentence: str
+    sentence: Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -376,7 +377,7 @@ class Interference:
 
     at: float
     robot: str
-    sentence: str
+    sentence: Sentence
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 
-from .cell import CellRun
+from .advice import DO, OR
+from .belief import ONLY_DRAWN
+from .cell import STILL_DOING, CellRun
 from .cell_states import Cause, CellState
 from .dispatcher import Dispatcher
 from .errors import ArboledaError, IllegalTransition
@@ -15,12 +17,67 @@ from .intake import Intake
 from .messages import Failure, Journal, OperatorRequest, Reason, SetEffector, TaskState, Verb
 from .model import Arm, Evidence
 from .outside import quoted
-from .zones import Zones
+from .sentence import Phrase, Sentence, Value
+from .zones import NONE, Zones
 
 
 class Refused(ArboledaError):
     """A verb that changes nothing now; the sentence says why and what is possible."""
 
+
+PLANT = Phrase("scope.plant", "plant")
+DID = Phrase("did.verb", "{verb}")
+DID_BY_HAND = Phrase("did.by_hand", "{verb} by hand")
+DECLARED_HOMED = Phrase("did.declared_homed", "home {scope} by hand")
+DID_BY_CLIENT = Phrase("did.by_client", "{verb} by its client")
+NO_TASK = Phrase(
+    "refusal.no_task",
+    "there is no task {task}; open tasks: {open}; cells and robots of this plant: {known}",
+)
+AND_MORE = Phrase("and_more", "{first} and {more} more")
+NO_SCOPE = Phrase(
+    "refusal.no_scope", "{scope} is neither a cell nor a robot of this plant; there are {known}"
+)
+STILL_WORKS = Phrase(
+    "refusal.still_works",
+    "{robot} has not given up its work in {zone}; stop {cell}, then override {zone}",
+)
+NO_STATION = Phrase("refusal.no_station", "{station} is not a station of {cell}")
+STATION_EMPTY = Phrase("refusal.station_empty", "no part is known to be in station {station} of {cell}")
+RACK_EMPTY = Phrase("refusal.rack_empty", "no part is known to be in the rack of {cell}")
+TASK_ENDED = Phrase("refusal.task_ended", "task {task} has ended already ({state})")
+TASK_STATES = {state: Phrase(f"task_state.{state.value}", state.value) for state in TaskState}
+MAY_CROSS = Phrase(
+    "refusal.may_cross",
+    "{arm} may cross zone {zone}, which {holder} holds; home it once the zone is free",
+)
+SAYS_ITSELF = Phrase(
+    "refusal.says_itself", "{robot} says itself whether it is homed; home {robot} runs its routine"
+)
+SAYS_UNHOMED = Phrase(
+    "refusal.says_unhomed", "{robot} says that it is not homed; home {robot} runs its routine"
+)
+SAYS_UNHOMED_BY_HAND = Phrase(
+    "refusal.says_unhomed_by_hand",
+    "{robot} says that it is not homed; home {robot} at its own controls first",
+)
+CANNOT_REPORT = Phrase(
+    "refusal.cannot_report",
+    "{robot} cannot report a homing; put it at its reference and say: home {robot} --by-hand",
+)
+ONLY_ABORTED = Phrase("refusal.only_aborted", "{cell} is {state}; only an aborted cell can be cleared")
+NOT_STILL = Phrase("refusal.not_still", "{robots} is not still yet")
+QUEUE_RUNS = Phrase("refusal.queue_runs", "{cell} is idle and its queue runs")
+ONLY_HELD = Phrase(
+    "refusal.only_held", "{cell} is {state}; only a held cell or a paused queue can be resumed"
+)
+NOT_OPENED = Phrase("refusal.not_opened", "{why}: no releasing by hand")
+HOLD_FIRST = Phrase("refusal.hold_first", "{cell} is {state}; hold or stop it first")
+NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
+OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cell that is {allowed}")
+NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
+RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
+NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
 ACTS_KEPT = 20  # what a screen shows of them; the journal has all
 SHOWN = 10  # tasks that a sentence names
@@ -34,7 +91,7 @@ class OperatorAct:
     at: float
     scope: str
     cell: str | None  # None for the whole plant and for a zone, which several cells may share
-    sentence: str
+    sentence: Sentence
 
 
 class Operator:
@@ -63,19 +120,18 @@ class Operator:
         scope = _scope(request)
         self._planned(request, scope)()
         cell = self._cell_of(request, scope)
-        how = " by hand" if request.by_hand else " by its client" if request.client else ""
-        sentence = f"{request.verb.value} {scope or 'plant'}{how}"
+        sentence = _did(request, scope)
         self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, cell=cell, sentence=sentence))
         number = self.acts[-1].number + 1 if self.acts else 1
         act = OperatorAct(number=number, at=self._clock(), scope=scope, cell=cell, sentence=sentence)
         self.acts.append(act)
 
-    def refusal(self, request: OperatorRequest) -> str | None:
+    def refusal(self, request: OperatorRequest) -> Sentence | None:
         """Why a request would be refused now; None where it would be done."""
         try:
             self._planned(request, _scope(request))
         except Refused as refused:
-            return str(refused)
+            return refused.sentence
         return None
 
     def _planned(self, request: OperatorRequest, scope: str) -> Callable[[], None]:
@@ -132,13 +188,15 @@ class Operator:
         name, names = scope.lower(), self._dispatcher.beliefs
         if name in ("", "plant") or name in self._cells or name in names:
             return name
-        open_tasks = [id for id, task in self._intake.tasks.items() if task.ended_at is None]
-        more = f" and {len(open_tasks) - SHOWN} more" if len(open_tasks) > SHOWN else ""
-        there = f"{', '.join(open_tasks[:SHOWN]) or 'none'}{more}"
-        known = ", ".join([*self._cells, *names])
-        raise Refused(
-            f"there is no task {quoted(scope)}; open tasks: {there}; cells and robots of this plant: {known}"
-        )
+        known = (*self._cells, *names)
+        raise Refused(NO_TASK(task=quoted(scope), open=self._open_tasks(), known=known))
+
+    def _open_tasks(self) -> Value:
+        """The ids of as many as a sentence can name."""
+        ids = tuple(id for id, task in self._intake.tasks.items() if task.ended_at is None)
+        if len(ids) > SHOWN:
+            return AND_MORE(first=ids[:SHOWN], more=len(ids) - SHOWN)
+        return ids or NONE()
 
     def _robots(self, scope: str) -> set[str]:
         """The robots of a scope: the plant, a cell, or one robot."""
@@ -149,18 +207,17 @@ class Operator:
             return {robot.name for robot in self._cells[scope].cell.robots}
         if scope in names:
             return {scope}
-        known = ", ".join([*self._cells, *names])
-        raise Refused(f"{quoted(scope)} is neither a cell nor a robot of this plant; there are {known}")
+        raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *names)))
 
     def _planned_override(self, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
         if holder is not None and self._zones.is_quarantined(zone) and self._works(holder):
             name = self._dispatcher.model.cell_of[holder].name  # what it does there counts on the zone
-            raise Refused(f"{holder} has not given up its work in {zone}; stop {name}, then override {zone}")
+            raise Refused(STILL_WORKS(robot=holder, zone=zone, cell=name))
         try:
             self._zones.require_quarantined(zone)
         except IllegalTransition as error:
-            raise Refused(str(error)) from error
+            raise Refused(error.sentence) from error
         return partial(self._override, zone)
 
     def _override(self, zone: str) -> None:
@@ -180,13 +237,14 @@ class Operator:
         robots = self._robots(name)
         cells = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
         if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
-            raise Refused(f"{quoted(station)} is not a station of {name or 'plant'}")
+            raise Refused(NO_STATION(station=quoted(station), cell=_whole(name)))
         number = int(station) if station else None
         if not any(
             cell.context.stored if number is None else number in cell.context.stored for cell in cells
         ):
-            where = f"station {number} of {name}" if station else f"the rack of {name or 'plant'}"
-            raise Refused(f"no part is known to be in {where}")
+            if number is None:
+                raise Refused(RACK_EMPTY(cell=_whole(name)))
+            raise Refused(STATION_EMPTY(station=number, cell=name))
         return partial(self._unload, cells, number)
 
     def _unload(self, cells: list[CellRun], number: int | None) -> None:
@@ -199,7 +257,7 @@ class Operator:
         if task.state is TaskState.QUEUED:
             return partial(cell.drop, task, failure)
         if task is not cell.task:
-            raise Refused(f"task {id} has ended already ({task.state.value})")
+            raise Refused(TASK_ENDED(task=id, state=TASK_STATES[task.state]()))
         if why := _not_cancellable(self, cell, set()):
             raise Refused(why)
         return partial(cell.cancel, failure)
@@ -236,7 +294,7 @@ class Operator:
         if name == cell.cell.arm.name:
             cell.uproot()
 
-    def not_free_for_homing(self, robots: set[str]) -> str | None:
+    def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
         """Why arms may not set out for their reference: from where they stand they may cross any zone."""
         taken: dict[str, str] = {}
         arms = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
@@ -245,28 +303,27 @@ class Operator:
             for zone in sorted(cell.cell.zones):
                 holder = self._zones.holder(zone) or taken.setdefault(zone, arm)
                 if holder != arm:
-                    return f"{arm} may cross zone {zone}, which {holder} holds; home it once the zone is free"
+                    return MAY_CROSS(arm=arm, zone=zone, holder=holder)
         return None
 
-    def _not_homeable(self, name: str, *, by_hand: bool) -> str | None:
+    def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
         belief = self._dispatcher.beliefs[name]
         if refusal := _in(CellState.IDLE, CellState.HELD)(self, cell, set()):
             return refusal
         if name not in self._reached:
-            return f"{name} is only drawn (link: none)"
+            return ONLY_DRAWN(robot=name)
         if work := self._dispatcher.work_of(name):
-            return f"{name} is still {work.doing}"
+            return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS
         if by_hand and robot.says_homed:
-            return f"{name} says itself whether it is homed; home {name} runs its routine"
+            return SAYS_ITSELF(robot=name)
         if belief.says_unhomed and (by_hand or not has_routine):
-            way = f"home {name} runs its routine" if has_routine else f"home {name} at its own controls first"
-            return f"{name} says that it is not homed; {way}"
+            return SAYS_UNHOMED(robot=name) if has_routine else SAYS_UNHOMED_BY_HAND(robot=name)
         if by_hand:
             return None
         if not has_routine:
-            return f"{name} cannot report a homing; put it at its reference and say: home {name} --by-hand"
+            return CANNOT_REPORT(robot=name)
         obstacle = self._dispatcher.obstacle(name)
         return obstacle.sentence if obstacle and obstacle.reason is not Reason.NOT_HOMED else None
 
@@ -276,13 +333,13 @@ class Operator:
                 self._dispatcher.latch(robot.name)
         cell.stop()
 
-    def _not_clearable(self, cell: CellRun, robots: set[str]) -> str | None:
+    def _not_clearable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
-            return f"{cell.cell.name} is {cell.state.said}; only an aborted cell can be cleared"
+            return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.said)
         mine = [robot.name for robot in cell.cell.robots if robot.name in robots]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
-        moving = [belief.robot.name for belief in beliefs if belief.online and not belief.still]
-        return f"{', '.join(moving)} is not still yet" if moving else None
+        moving = tuple(belief.robot.name for belief in beliefs if belief.online and not belief.still)
+        return NOT_STILL(robots=moving) if moving else None
 
     def _clear(self, cell: CellRun, robots: set[str]) -> None:
         for robot in cell.cell.robots:
@@ -297,22 +354,22 @@ class Operator:
         cell.become(Cause.RESET)
         cell.become(Cause.READY)
 
-    def _not_resumable(self, cell: CellRun, robots: set[str]) -> str | None:
+    def _not_resumable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state is CellState.IDLE:
-            return None if cell.queue_paused else f"{cell.cell.name} is idle and its queue runs"
+            return None if cell.queue_paused else QUEUE_RUNS(cell=cell.cell.name)
         if cell.state is not CellState.HELD:
-            return f"{cell.cell.name} is {cell.state.said}; only a held cell or a paused queue can be resumed"
+            return ONLY_HELD(cell=cell.cell.name, state=cell.state.said)
         if cell.task is None or cell.trouble is not None or cell.stranded:
             return cell.held_by
         return None
 
-    def _not_releasable(self, cell: CellRun, robots: set[str]) -> str | None:
+    def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
-            return f"{cell.cell.name} is {cell.state.said}; hold or stop it first"
+            return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
         if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
-            return f"{cell.cell.mobile.name} has no effector"
+            return NO_EFFECTOR(robot=cell.cell.mobile.name)
         obstacle = self._dispatcher.obstacle_to_opening(cell.cell.arm.name)
-        return f"{obstacle.sentence}: no releasing by hand" if obstacle else None
+        return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 
     def _release(self, cell: CellRun, robots: set[str]) -> None:
         cell.let_go()
@@ -326,51 +383,66 @@ def _scope(request: OperatorRequest) -> str:
     return scope if request.verb is Verb.CANCEL else scope.lower()
 
 
-def _always(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+def _did(request: OperatorRequest, scope: str) -> Sentence:
+    """What an operator, or a task's own client, has done."""
+    if request.by_hand and request.verb is Verb.HOME:
+        return DECLARED_HOMED(scope=_whole(scope))
+    did = DID_BY_HAND if request.by_hand else DID_BY_CLIENT if request.client else DID
+    return did(verb=DO[request.verb](scope=_whole(scope)))
+
+
+def _whole(scope: str) -> Value:
+    return scope or PLANT()
+
+
+def _always(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     return None
 
 
-def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], str | None]:
-    def check(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], Sentence | None]:
+    def check(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in states:
             return None
-        allowed = " or ".join(state.said for state in states)
-        return f"{cell.cell.name} is {cell.state.said}; this needs a cell that is {allowed}"
+        first, *others = (state.said for state in states)
+        allowed = reduce(lambda said, other: OR(first=said, second=other), others, first)
+        return OTHER_STATE(cell=cell.cell.name, state=cell.state.said, allowed=allowed)
 
     return check
 
 
-def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
     if refusal is None and cell.stranded:
         return cell.held_by
     if refusal is None and cell.task is not None and cell.trouble is None:
-        return f"{cell.cell.name} is held without a fault; resume {cell.cell.name} goes on"
+        return NO_FAULT(cell=cell.cell.name)
     return refusal
 
 
-def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
     if refusal is None and cell.task is None and cell.context.holding():
-        return f"{cell.cell.arm.name} may hold a part; release {cell.cell.arm.name} first"
+        return RELEASE_FIRST(arm=cell.cell.arm.name)
     return refusal
 
 
-def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> str | None:
+def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     if cell.task is None:
-        return f"{cell.cell.name} has no running task"
+        return NO_RUNNING_TASK(cell=cell.cell.name)
     return _in(CellState.EXECUTE, CellState.HELD)(operator, cell, robots)
 
 
-CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence="cancelled by the operator")
-CANCELLED_BY_CLIENT = Failure(reason=Reason.CANCELLED, sentence="cancelled by the client")
+BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
+BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
+CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence=BY_OPERATOR())
+CANCELLED_BY_CLIENT = Failure(reason=Reason.CANCELLED, sentence=BY_CLIENT())
 
 
 def _cancelled_by(request: OperatorRequest) -> Failure:
     return CANCELLED_BY_CLIENT if request.client else CANCELLED_BY_OPERATOR
 
 
-Check = Callable[[Operator, CellRun, "set[str]"], "str | None"]
+Check = Callable[[Operator, CellRun, "set[str]"], "Sentence | None"]
 Do = Callable[[Operator, CellRun, "set[str]"], None]
 ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.STOP: (_always, Operator._stop),

@@ -41,11 +41,15 @@ from .model import Cell, PlantModel
 from .operator import Operator, OperatorAct, Refused
 from .outside import plain
 from .recipes import RECIPES, Recipes
+from .sentence import NOTHING, Phrase, Sentence
 from .task import Order, Recipe, Task
 from .zones import Zones
 
 HEARTBEAT_S = 0.25
-DEFECT = "this failed on an internal error; the log has its details"
+DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
+BROKE_IN_STEP = Phrase("cell.broke_in_step", "{cell}: {kind} in a step: {error}")
+AWAY = Phrase("plant.away", "the plant was away for {seconds:.1f} s")
+OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file refuses a trigger then")
 # A plant steps at least as often as it beats. Boards stop by themselves after 1 s without a beat, so whoever
 # was away for longer finds robots that stand, however long the plant file lets them be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
@@ -89,7 +93,7 @@ class Plant:
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
         self._next_wake = math.inf
         self._changes = 0
-        self._told_errors: dict[str, str] = {}  # by cell, since somebody asked for something
+        self._told_errors: dict[str, Sentence] = {}  # by cell, since somebody asked for something
         self._next_beat = now
         self._steps = False
         self.away_after_s = min(max(model.timing.stale_after_s, SHORTEST_ABSENCE_S), LONGEST_STALL_S)
@@ -132,7 +136,7 @@ class Plant:
         """What leads a cell out of its present state, in the order to do it; nothing where it works."""
         return self._advisor.advice(cell)
 
-    def refusal(self, request: OperatorRequest) -> str | None:
+    def refusal(self, request: OperatorRequest) -> Sentence | None:
         """Why a request of an operator would be refused now; None where it would be done."""
         return self._operator.refusal(request)
 
@@ -172,7 +176,7 @@ class Plant:
             cell=task.order.cell,
             state=task.state,
             reason=task.failure.reason if task.failure else None,
-            sentence=task.failure.sentence if task.failure else sentence or "",
+            sentence=task.failure.sentence if task.failure else sentence or NOTHING,
             request=request,
         )
         self.dispatcher.outbox.append(change)
@@ -226,7 +230,8 @@ class Plant:
     def _break_down(self, cell: str, error: Exception) -> None:
         """Hold a cell in which something raised; the error is told whole, once until somebody acts."""
         self._changes += 1
-        sentence = f"{cell}: {type(error).__name__} in a step: {plain(' '.join(str(error).split()))}"
+        text = plain(" ".join(str(error).split()))
+        sentence = BROKE_IN_STEP(cell=cell, kind=type(error).__name__, error=text)
         failure = Failure(reason=Reason.INTERNAL, sentence=sentence)
         if self._told_errors.get(cell) != sentence:
             self._told_errors[cell] = sentence
@@ -248,8 +253,7 @@ class Plant:
         before an operator says so, and the time away does not pass for the trees.
         """
         left, self.now = self.now, self.now + away_s
-        sentence = f"the plant was away for {away_s:.1f} s"
-        failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
+        failure = Failure(reason=Reason.LINK_LOST, sentence=AWAY(seconds=away_s))
         self.dispatcher.outbox.append(Absence(seconds=away_s))
         self._to_home.clear()
         self._touched.update(self.cells)
@@ -329,10 +333,10 @@ class Plant:
                 self.intake.remember(task)
         except (TextError, QueueFull) as refusal:
             for_now = isinstance(refusal, QueueFull)
-            self.dispatcher.outbox.append(_refused(request, str(refusal), for_now=for_now))
+            self.dispatcher.outbox.append(_refused(request, refusal.sentence, for_now=for_now))
             return
         except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
-            self.dispatcher.outbox += [_refused(request, DEFECT), InternalError(cell="", error=error)]
+            self.dispatcher.outbox += [_refused(request, DEFECT()), InternalError(cell="", error=error)]
             return
         self._task_changed(task, request.request)
 
@@ -341,9 +345,7 @@ class Plant:
         cell = self.cells[task.order.cell]
         own = [each for each in (cell.task, *cell.queue) if each and each.order.recipe is Recipe.PALLETIZING]
         if request.trigger and own and not cell.cell.arm.queue_triggers:
-            raise QueueFull(
-                f"{cell.cell.arm.name} is in its own cycle; its plant file refuses a trigger then"
-            )
+            raise QueueFull(OWN_CYCLE(arm=cell.cell.arm.name))
 
     def _on_operator_request(self, request: OperatorRequest) -> None:
         self._changes += 1
@@ -351,9 +353,9 @@ class Plant:
         try:
             self._operator.act(request)
         except (Refused, IllegalTransition) as error:
-            refusal = str(error)
+            refusal = error.sentence
         except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
-            refusal = DEFECT
+            refusal = DEFECT()
             self.dispatcher.outbox.append(InternalError(cell="", error=error))
         answer = OperatorAnswer(
             verb=request.verb, scope=request.scope, refusal=refusal, request=request.request
@@ -366,7 +368,7 @@ class Plant:
             self._guard(name, cell.close)
 
 
-def _refused(request: TaskRequest, sentence: str, *, for_now: bool = False) -> TaskChanged:
+def _refused(request: TaskRequest, sentence: Sentence, *, for_now: bool = False) -> TaskChanged:
     return TaskChanged(
         task="",
         text=plain(request.text),

@@ -17,9 +17,17 @@ from .context import Context
 from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, Require, TakeZones, Unless
 from .messages import Failure, FollowPath, MoveJoints, Reason, SetEffector, SystemStart
 from .model import Path, Pose
+from .sentence import Phrase
 from .task import Order, Recipe
 
 MAIN, RECOVERY = PHASES = ("main", "recovery")
+UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
+NOT_AT_START = Phrase(
+    "path.not_at_start", "{mobile} stands on node {node}, path {path} starts at node {start}"
+)
+PART_LOST = Phrase("part.lost", "{arm}: the part was lost on the way")
+NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
+NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
 SETTLE_S = 1.0  # after the last stop was confirmed or given up
 Visit = tuple[Pose, list[Behaviour]]  # a pose of the arm, and the work to do there
 Recipes = Mapping[Recipe, Callable[[Order, Context], Behaviour]]
@@ -113,8 +121,7 @@ def _settle(context: Context) -> Behaviour:
 
     def unsettled() -> Failure:
         failure = context.obstacle(arm, was=True)
-        sentence = f"{arm} had commands that did not end"
-        return failure or Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
+        return failure or Failure(reason=Reason.STOP_UNCONFIRMED, sentence=UNENDED(arm=arm))
 
     return Await("settle", context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
 
@@ -135,8 +142,12 @@ def _not_at_start(context: Context, path: Path) -> Failure | None:
     start, mobile = path.nodes[0], context.cell.mobile.name
     if context.node() == start:
         return None
-    sentence = f"{mobile} stands on node {context.node()}, path {path.code} starts at node {start}"
+    sentence = NOT_AT_START(mobile=mobile, node=_named(context.node()), path=path.code, start=start)
     return Failure(reason=Reason.REJECTED, sentence=sentence)
+
+
+def _named(node: int | None) -> int | str:
+    return "?" if node is None else node
 
 
 def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool = False) -> Behaviour:
@@ -192,7 +203,7 @@ def _part_lost(context: Context) -> Failure | None:
     """The part left an effector that holds it while it was carried."""
     if not context.cell.piece_check or not context.carried or context.piece(0.0) is not False:
         return None
-    sentence = f"{context.cell.arm.name}: the part was lost on the way"
+    sentence = PART_LOST(arm=context.cell.arm.name)
     return Failure(reason=Reason.PART_LOST, sentence=sentence)
 
 
@@ -209,7 +220,7 @@ def _grip(context: Context, pose: Pose) -> list[Behaviour]:
     if not context.cell.piece_check:
         return [on]
     arm, retry, wait_s = context.cell.arm.name, context.cell.retry, context.timing.piece_wait_s
-    none = Failure(reason=Reason.NO_PIECE, sentence=f"{arm}: no piece at {pose.name}")
+    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=arm, pose=pose.name))
     patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
     attempts = [_attempt(context, pose, number) for number in range(retry.times + 1)]
     return [
@@ -222,8 +233,7 @@ def _grip(context: Context, pose: Pose) -> list[Behaviour]:
 def _attempt(context: Context, pose: Pose, number: int) -> Behaviour:
     """Effector on and the piece seen in it; a later attempt opens the effector first."""
     arm, retry = context.cell.arm.name, context.cell.retry
-    sentence = f"{arm}: the piece at {pose.name} was not gripped"
-    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=sentence)
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=arm, pose=pose.name))
     final = number == retry.times
     seen = Piece("piece gripped", context, context.timing.piece_wait_s, missed, final=final)
     return _sequence(

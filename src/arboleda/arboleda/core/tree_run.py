@@ -13,7 +13,9 @@ from .errors import ArboledaError
 from .leaves import Act
 from .ledger import State
 from .messages import Failure, InternalError, Reason
+from .sentence import Phrase
 
+BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
 TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
 
 
@@ -84,7 +86,8 @@ class TreeRun:
         return (self._context.sent, statuses)
 
     def _raised(self, error: Exception) -> Status:
-        sentence = f"{self._context.cell.name}: {type(error).__name__} in the tree: {error}"
+        cell, kind = self._context.cell.name, type(error).__name__
+        sentence = BROKE_IN_TREE(cell=cell, kind=kind, error=str(error))
         self._context.fail(Failure(reason=Reason.INTERNAL, sentence=sentence))
         self._tell(error)
         return Status.FAILURE

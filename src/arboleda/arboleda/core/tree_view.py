@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from .leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless
+from .sentence import NOTHING, Sentence
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
@@ -41,7 +42,7 @@ def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) ->
             "name": node.name,
             "kind": kind(node),
             "status": node.status.value,
-            "feedback": node.feedback_message,
+            "feedback": _feedback(node),
             "description": _description(node),
             "parameters": _parameters(node),
             "since_s": since_s,
@@ -131,8 +132,13 @@ def _command_times(node: Act, now: float) -> Times:
     return now - node.entry.sent_at, node.entry.deadline - now
 
 
-def _failure(node: Behaviour) -> str | None:
+def _feedback(node: Behaviour) -> Sentence | str:
+    """What it says of itself; "" where that is nothing."""
+    return getattr(node, "told", NOTHING) or node.feedback_message
+
+
+def _failure(node: Behaviour) -> Sentence | str | None:
     """The sentence of its last failure."""
-    if node.status is Status.FAILURE and node.feedback_message:
-        return node.feedback_message
+    if node.status is Status.FAILURE and (said := _feedback(node)):
+        return said
     return getattr(node, "last_failure", None)

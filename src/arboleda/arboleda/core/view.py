@@ -1,4 +1,4 @@
-"""The plant as plain data (dicts, lists, str, numbers, None) for screens; read only."""
+"""The plant as plain data (dicts, lists, str, numbers, None) and sentences for screens; read only."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .messages import OperatorRequest, TaskChanged, Verb
 from .model import Arm, Cell, PlantModel
 from .operator import OperatorAct
 from .plant import Plant
+from .sentence import BOTH, NOTHING, Sentence
 from .task import Task
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
@@ -178,12 +179,12 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
     }
 
 
-def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> str | None:
+def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
     """Why an idle cell would start no task, and what to do; a queue that is paused says so itself."""
     why = cell.not_ready
     if why is None or why == cell.why_paused or not ways:
         return why
-    return f"{why}; {sentence(ways)}"
+    return BOTH(first=why, second=sentence(ways))
 
 
 def _advice(advice: Advice) -> dict[str, Any]:
@@ -201,7 +202,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
     }
 
 
-def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, str]:
+def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, Sentence]:
     """The verbs that would be refused there now, and why; homing by hand is `home_by_hand`."""
     asked = {verb.value: OperatorRequest(at=plant.now, verb=verb, scope=scope) for verb in verbs}
     if Verb.HOME in verbs:
@@ -234,7 +235,7 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "cell": task.order.cell,
         "state": task.state.value,
         "reason": task.failure.reason.value if task.failure else None,
-        "sentence": task.failure.sentence if task.failure else "",
+        "sentence": task.failure.sentence if task.failure else NOTHING,
         "failed_in": task.failed_in,
         "elapsed_s": None if started is None else ended - started,
         "started_at": started,
@@ -279,7 +280,7 @@ def _command(entry: Entry | None, now: float) -> dict[str, Any] | None:
     return {"id": id, "what": what, "state": entry.state.value, "age_s": now - entry.sent_at}
 
 
-def _rejected(known: tuple[int, str] | None) -> dict[str, Any]:
+def _rejected(known: tuple[int, Sentence | None] | None) -> dict[str, Any]:
     """How many commands a robot refused, and why the last one."""
     count, last = known or (0, None)
     return {"count": count, "last": last}
@@ -310,20 +311,20 @@ def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
     values = {key: str(value) for key, value in plain.items() if value is not None}
     if robot["telemetry_hz"] is not None:
         values["telemetry_hz"] = f"{robot['telemetry_hz']:.0f}"
-    return (f"arboleda: {robot['name']}", robot["mqtt"], level, robot["obstacle"] or "ready", values)
+    return (f"arboleda: {robot['name']}", robot["mqtt"], level, str(robot["obstacle"] or "ready"), values)
 
 
 def _cell_diagnostic(cell: dict[str, Any]) -> Diagnostic:
     well = (
         cell["state"] in (CellState.IDLE, CellState.EXECUTE) and not cell["paused"] and not cell["not_ready"]
     )
-    message = cell["held_by"] or cell["not_ready"] or cell["waiting_for"] or cell["state"]
+    message = str(cell["held_by"] or cell["not_ready"] or cell["waiting_for"] or cell["state"])
     values = {
         "state": cell["state"],
         "queued": str(len(cell["queue"])),
-        "step": cell["step"] or "",
-        "waiting_for": cell["not_ready"] or cell["waiting_for"] or "",
-        "advice": ", ".join(each["said"] for each in cell["advice"]),
+        "step": str(cell["step"] or ""),
+        "waiting_for": str(cell["not_ready"] or cell["waiting_for"] or ""),
+        "advice": ", ".join(str(each["said"]) for each in cell["advice"]),
     }
     level = OK if well else WARN
     return (f"arboleda: {cell['name']}", "", level, message, values)

@@ -7,6 +7,26 @@ from typing import Any
 
 from .errors import IllegalTransition
 from .outside import plain
+from .sentence import Phrase
+
+STILL_IN = Phrase(
+    "zone.still_in",
+    "{robot} may still be in {zones}, which is quarantined: "
+    "it gets none before it is back, homed and seen outside",
+)
+NO_MORE = Phrase(
+    "zone.no_more",
+    "{robot} holds {held} and asks for {asked}: nobody standing in a zone waits for another",
+)
+WAITS = Phrase("zone.waits", "{robot} waits for {waits} and asks for {asked}: withdraw first")
+TAKEN = Phrase("zone.taken", "zone {zone} is held by {holder}, not free for {robot}")
+NOT_QUARANTINED = Phrase(
+    "zone.not_quarantined", "zone {zone} is {now}; only a quarantined zone can be overridden"
+)
+HELD_BY = Phrase("zone.held_by", "held by {robot}, which still reports")
+FREE = Phrase("zone.free", "free")
+NO_ZONE = Phrase("zone.unknown", 'there is no zone "{zone}"; zones of this plant: {known}')
+NONE = Phrase("none", "none")
 
 
 class Zones:
@@ -64,16 +84,14 @@ class Zones:
             self._require_known(zone)
         held = self.held_by(robot)
         if held & self._quarantined:
-            rule = "it gets none before it is back, homed and seen outside"
-            raise IllegalTransition(f"{robot} may still be in {_named(held)}, which is quarantined: {rule}")
+            raise IllegalTransition(STILL_IN(robot=robot, zones=_named(held)))
         if zones <= held:
             return True
         if held:
-            rule = "nobody standing in a zone waits for another"
-            raise IllegalTransition(f"{robot} holds {_named(held)} and asks for {_named(zones)}: {rule}")
+            raise IllegalTransition(NO_MORE(robot=robot, held=_named(held), asked=_named(zones)))
         if self._waiting.setdefault(robot, zones) != zones:
-            asked = _named(self._waiting[robot])
-            raise IllegalTransition(f"{robot} waits for {asked} and asks for {_named(zones)}: withdraw first")
+            waits = _named(self._waiting[robot])
+            raise IllegalTransition(WAITS(robot=robot, waits=waits, asked=_named(zones)))
         return robot in self._grant()
 
     def claim(self, robot: str, zones: frozenset[str]) -> None:
@@ -83,7 +101,7 @@ class Zones:
         """
         for zone in sorted(zones):
             if self.holder(zone) not in (None, robot):
-                raise IllegalTransition(f"zone {zone} is held by {self.holder(zone)}, not free for {robot}")
+                raise IllegalTransition(TAKEN(zone=zone, holder=self.holder(zone) or "", robot=robot))
         self._holders.update(dict.fromkeys(zones, robot))
         self._robbed.discard(robot)
 
@@ -127,8 +145,8 @@ class Zones:
         self._require_known(zone)
         if zone not in self._quarantined:
             holder = self.holder(zone)
-            now = f"held by {holder}, which still reports" if holder else "free"
-            raise IllegalTransition(f"zone {zone} is {now}; only a quarantined zone can be overridden")
+            now = HELD_BY(robot=holder) if holder else FREE()
+            raise IllegalTransition(NOT_QUARANTINED(zone=zone, now=now))
 
     def _free(self, zones: frozenset[str]) -> tuple[str, ...]:
         self._quarantined -= zones
@@ -151,8 +169,8 @@ class Zones:
 
     def _require_known(self, zone: str) -> None:
         if zone not in self._names:
-            known = ", ".join(self._names) or "none"
-            raise IllegalTransition(f'there is no zone "{plain(zone, 40)}"; zones of this plant: {known}')
+            known = self._names or NONE()
+            raise IllegalTransition(NO_ZONE(zone=plain(zone, 40), known=known))
 
     def _row(self, zone: str) -> dict[str, Any]:
         state = (
@@ -162,5 +180,5 @@ class Zones:
         return {"zone": zone, "state": state, "robot": self.holder(zone), "waiting": waiting}
 
 
-def _named(zones: frozenset[str]) -> str:
-    return ", ".join(sorted(zones))
+def _named(zones: frozenset[str]) -> tuple[str, ...]:
+    return tuple(sorted(zones))

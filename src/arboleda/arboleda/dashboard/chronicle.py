@@ -6,11 +6,15 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from arboleda.core.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
+
+TASK_FAILED = Phrase("event.task", "{task}: {why}")
 EVENTS = 1000  # kept; older ones are forgotten
 ENDED_BADLY = frozenset({"failed", "refused"})
 
 Event = dict[str, Any]
 Row = dict[str, Any]
+Told = tuple["str | None", str, str, str, Sentence]
 
 
 class Chronicle:
@@ -42,16 +46,20 @@ class Chronicle:
 
     def _did(self, unix_s: float, act: Row) -> None:
         """An operator did something."""
-        self._add(unix_s, act["cell"], "operator", act["scope"] or "plant", "did", act["sentence"])
+        self._add(
+            unix_s, act["cell"], "operator", act["scope"] or "plant", "did", as_sentence(act["sentence"])
+        )
 
-    def _interference(self, snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
+    def _interference(self, snapshot: Row) -> Iterator[Told]:
         cell_of = _cells(snapshot)
         for each in snapshot["interference"]:
             if each["number"] > self._last_interference:
                 self._last_interference = each["number"]
                 yield cell_of.get(each["robot"]), "foreign", each["robot"], "commanded", each["sentence"]
 
-    def _add(self, at: float, cell: str | None, kind: str, subject: str, what: str, sentence: str) -> None:
+    def _add(
+        self, at: float, cell: str | None, kind: str, subject: str, what: str, sentence: Sentence
+    ) -> None:
         self._count += 1
         self.events.append(
             {
@@ -74,16 +82,17 @@ def _cells(snapshot: Row) -> dict[str, str]:
     return {name: cell["name"] for cell in snapshot["cells"] for name in (cell["arm"], cell["mobile"])}
 
 
-def _states(snapshot: Row) -> Iterator[tuple[str | None, str, str, str, str]]:
+def _states(snapshot: Row) -> Iterator[Told]:
     """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence."""
     for cell in snapshot["cells"]:
-        yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or ""
+        yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or NOTHING
         for name in (cell["arm"], cell["mobile"]):
             robot = next(each for each in snapshot["robots"] if each["name"] == name)
-            yield cell["name"], "robot", name, "online" if robot["online"] else "offline", ""
+            yield cell["name"], "robot", name, "online" if robot["online"] else "offline", NOTHING
     for task in snapshot["tasks"]:
         text = f"{task['text']} #{task['id']}"
-        sentence = f"{text}: {task['sentence']}" if task["sentence"] else text
+        why = task["sentence"]
+        sentence = TASK_FAILED(task=text, why=why) if why else OWN(text=text)
         yield task["cell"], "task", task["id"], task["state"], sentence
     for zone in snapshot["zones"]:
-        yield None, "zone", zone["zone"], zone["state"], zone["robot"] or ""
+        yield None, "zone", zone["zone"], zone["state"], OWN(text=zone["robot"] or "")

@@ -14,6 +14,7 @@ from nicegui.events import GenericEventArguments
 from arboleda.adapters.web.auth import SUBMIT, Role, allowed
 from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import Verb
+from arboleda.core.sentence import in_json
 
 from .feed import Feed
 from .plant_side import PlantSide
@@ -96,7 +97,7 @@ class Desk:
         except asyncio.TimeoutError:
             self._say(self._words("page.no_answer"), good=False)
         except ArboledaError as error:
-            self._say(self._words.say(str(error)), good=False)
+            self._say(self._words.say(error.sentence), good=False)
         return None
 
     def _is_stopped(self, scope: str) -> bool:
@@ -107,7 +108,7 @@ class Desk:
         return bool(robots) and all(robot["latched"] for robot in robots)
 
     def _download(self) -> None:
-        whole = json.dumps(self._feed.events, ensure_ascii=False, indent=1)
+        whole = json.dumps(self._feed.events, ensure_ascii=False, indent=1, default=in_json)
         self._client.download(whole.encode(), "arboleda-timeline.json", "application/json")
 
     def _say(self, sentence: str, *, good: bool) -> None:

@@ -9,8 +9,11 @@ from typing import Any
 
 import yaml
 
+from arboleda.core.sentence import Phrase, Sentence
+
 LANGUAGES = ("en", "es")
 SLOT = "{}"
+NOT_OF_THE_PAGE = ("phrases", "sentences")
 
 
 class Words:
@@ -21,7 +24,8 @@ class Words:
         self._phrases = [_Phrase(*pair) for pair in tree["phrases"].items()]
         self._phrases.sort(key=lambda phrase: phrase.weight, reverse=True)
         self._said: dict[str, str] = {}
-        self.flat = flat({key: value for key, value in tree.items() if key != "phrases"})
+        self._sentences: dict[str, str] = tree.get("sentences", {})
+        self.flat = flat({key: value for key, value in tree.items() if key not in NOT_OF_THE_PAGE})
 
     def __call__(self, key: str, **values: Any) -> str:
         """The words of a key, with values put in; KeyError where there is no such key."""
@@ -31,13 +35,19 @@ class Words:
         """What the plant's `word` is called; the word itself where nobody said."""
         return self.flat.get(f"{group}.{word}", word)
 
-    def say(self, sentence: str) -> str:
+    def say(self, sentence: str | Sentence) -> str:
         """A sentence or a step's name of the plant in this language; as it is where it is not known."""
+        if isinstance(sentence, Sentence):
+            return sentence.told(self._template, self.say)
         if sentence not in self._said:
             if len(self._said) > 2000:
                 self._said.clear()
             self._said[sentence] = self._translated(sentence)
         return self._said[sentence]
+
+    def _template(self, phrase: Phrase) -> str:
+        known = phrase.others.get(self.language) or self._sentences.get(phrase.key)
+        return phrase.english if known is None else known
 
     def _translated(self, sentence: str) -> str:
         for phrase in self._phrases:

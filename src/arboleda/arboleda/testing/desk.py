@@ -41,7 +41,7 @@ class Handle:
         self.id = change.task or None
         self.state = change.state.value
         self.reason = change.reason.value if change.reason else None
-        self.sentence = change.sentence
+        self.sentence = str(change.sentence)
         if self.history[-1:] != [self.state]:
             self.history.append(self.state)
 
@@ -79,7 +79,8 @@ class Desk:
         self._world.request_verb(verb, scope, by_hand=by_hand)
         self._world.settle()
         mine = [each for each in self._answers if (each.verb, each.scope) == (verb, scope)]
-        return mine[0].refusal if mine else NO_ANSWER
+        refusal = mine[0].refusal if mine else NO_ANSWER
+        return None if refusal is None else str(refusal)
 
     def _look(self) -> None:
         for message in self._world.moment.sent:

@@ -20,7 +20,7 @@ def works(rig: Rig, cell: str) -> bool:
 
 def advised(rig: Rig, cell: str) -> list[str]:
     """The advice in words, in order."""
-    return [in_words(each) for each in rig.plant.advice(cell)]
+    return [str(in_words(each)) for each in rig.plant.advice(cell)]
 
 
 def follow(rig: Rig, cell: str) -> list[str]:
@@ -31,7 +31,7 @@ def follow(rig: Rig, cell: str) -> list[str]:
         assert ways, f"after {done} nothing is advised: {rig.plant.cells[cell].waiting_for()}"
         assert len(done) < ENOUGH, f"{done} lead nowhere: {rig.plant.cells[cell].waiting_for()}"
         for each in _until_seen(ways):
-            done.append(in_words(each))
+            done.append(str(in_words(each)))
             assert each.refusal is None, f"{done[-1]} is advised first and refused: {each.refusal}"
             answers = len(rig.answers)
             do(rig, each)

@@ -56,12 +56,12 @@ def cell(world: World, name: str) -> CellLook:
         name=name,
         state=found["state"],
         task=found["task"]["id"] if found["task"] else None,
-        step=found["step"],
+        step=_text(found["step"]),
         queue=tuple(found["queue"]),
-        held_by=found["held_by"],
-        not_ready=found["not_ready"],
-        advice=tuple(each["said"] for each in found["advice"]),
-        waiting_for=found["waiting_for"],
+        held_by=_text(found["held_by"]),
+        not_ready=_text(found["not_ready"]),
+        advice=tuple(str(each["said"]) for each in found["advice"]),
+        waiting_for=_text(found["waiting_for"]),
     )
 
 
@@ -83,6 +83,10 @@ def robot(world: World, name: str) -> RobotLook:
         )
     assert isinstance(body, MobileBody)
     return RobotLook(**heard, node=body.true_node, believed_node=belief.node)
+
+
+def _text(said: object) -> str | None:
+    return None if said is None else str(said)
 
 
 def _shown(arm: Arm, q: Joints) -> Joints:

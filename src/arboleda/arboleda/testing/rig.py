@@ -42,7 +42,8 @@ class Rig(World):
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
         """An operator's act; why it was refused, None where it was done."""
         self.request_verb(verb, scope, by_hand=by_hand)
-        return self.answers[-1].refusal
+        refusal = self.answers[-1].refusal
+        return None if refusal is None else str(refusal)
 
     def tell(self, event: Event) -> None:
         super().tell(event)

@@ -77,5 +77,5 @@ def _rounded(number: re.Match[str]) -> str:
     return f"{float(number[0]):.4f}"
 
 
-def _joined(*words: str | None) -> str:
-    return ", ".join(word for word in words if word)
+def _joined(*words: object) -> str:
+    return ", ".join(str(word) for word in words if word)

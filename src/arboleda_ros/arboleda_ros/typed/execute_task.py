@@ -14,6 +14,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
 from arboleda.core.messages import Reason, TaskChanged, TaskState
+from arboleda.core.sentence import as_sentence
 
 from ..asking import Asker
 from . import values
@@ -131,7 +132,7 @@ class ExecuteTaskAction:
                     cell=None,
                     state=TaskState.FAILED,
                     reason=Reason.INTERRUPTED,
-                    sentence="the plant has ended before this task did",
+                    sentence=as_sentence("the plant has ended before this task did"),
                 ),
             )
 

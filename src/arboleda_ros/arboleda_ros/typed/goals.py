@@ -31,7 +31,7 @@ class Goal:
 
     def feed_back(self, step: str | None, progress: float | None) -> None:
         """Tell the client what is new; without a progress it stays where it was."""
-        told = (step or "", self.progress if progress is None else progress)
+        told = (str(step or ""), self.progress if progress is None else progress)
         if told != (self.step, self.progress):
             self.step, self.progress = told
             self.handle.publish_feedback(ExecuteTask.Feedback(step=self.step, progress=self.progress))
@@ -60,4 +60,4 @@ def _ended(change: TaskChanged, handle: ServerGoalHandle) -> ExecuteTask.Result:
     else:
         handle.abort()
     reason = change.reason.value if change.reason else ""
-    return ExecuteTask.Result(outcome=change.state.value, reason=reason, sentence=change.sentence)
+    return ExecuteTask.Result(outcome=change.state.value, reason=reason, sentence=str(change.sentence))

@@ -49,9 +49,9 @@ def _cell(cell: Mapping[str, Any]) -> dict[str, Any]:
         "cell": cell["name"],
         "state": cell["state"],
         "task": cell["task"]["id"] if cell["task"] else "",
-        "step": cell["step"] or "",
+        "step": str(cell["step"] or ""),
         "progress": cell["progress"] or 0.0,
         "queue_running": not cell["paused"],
         "queue": cell["queue"],
-        "waiting_for": cell["not_ready"] or cell["waiting_for"] or "",
+        "waiting_for": str(cell["not_ready"] or cell["waiting_for"] or ""),
     }

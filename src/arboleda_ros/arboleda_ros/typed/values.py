@@ -15,7 +15,7 @@ _ASKED = ("text", "cell", "recipe", "path", "station", "id")
 
 def task_message(plain: Mapping[str, Any]) -> Task:
     """A task as the view shows it, or a change of one; what is not known is empty."""
-    return Task(**{key: plain[key] or "" for key in _TASK})
+    return Task(**{key: str(plain[key] or "") for key in _TASK})
 
 
 def text_of(asked: Any) -> str:

@@ -13,6 +13,7 @@ from arboleda.adapters.web.changes import Reader, changed
 from arboleda.adapters.web.schema import Snapshot
 from arboleda.core import view
 from arboleda.core.plant import Plant
+from arboleda.core.sentence import in_json
 from arboleda.testing.plants import shipped
 
 
@@ -28,7 +29,10 @@ def after(before: dict, where: str, **keys: object) -> dict:
 
 
 def test_the_description_of_a_snapshot_is_true(before: dict) -> None:
-    assert Snapshot.model_validate_json(json.dumps(before), strict=True).plant == before["plant"]
+    assert (
+        Snapshot.model_validate_json(json.dumps(before, default=in_json), strict=True).plant
+        == before["plant"]
+    )
 
 
 def test_nothing_changed(before: dict) -> None:

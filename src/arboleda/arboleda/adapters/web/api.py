@@ -22,6 +22,7 @@ from . import limits, listing, login, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .nothing_else import NothingElse
+from .plain_json import PlainJson
 from .plant_side import PlantSide
 from .schema import ByHand, Done, Sentence, Snapshot, Task, TaskText
 
@@ -77,12 +78,12 @@ def routes(side: PlantSide) -> APIRouter:
     @api.get("/plant", response_model=Snapshot)
     async def plant() -> JSONResponse:
         """The whole plant: cells with their trees, robots, tasks, zones."""
-        return JSONResponse(side.snapshot())
+        return PlainJson(side.snapshot())
 
     @api.get("/tasks", response_model=list[Task])
     async def tasks() -> JSONResponse:
         """Every open task and those that ended last, in the order of their acceptance."""
-        return JSONResponse(side.snapshot()["tasks"])
+        return PlainJson(side.snapshot()["tasks"])
 
     @api.post(
         "/tasks", status_code=202, response_model=Task, responses=REFUSED, openapi_extra=_body(TaskText)
@@ -91,7 +92,7 @@ def routes(side: PlantSide) -> APIRouter:
         """Queue a task; 422 where its text is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
         task = await in_time(side.submit(task_text(await request.body())))
-        return JSONResponse(task, status_code=422 if task["state"] == "refused" else 202)
+        return PlainJson(task, status_code=422 if task["state"] == "refused" else 202)
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
@@ -99,7 +100,7 @@ def routes(side: PlantSide) -> APIRouter:
         known = side.find(task_id)
         if known is None:
             raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
-        return JSONResponse(known)
+        return PlainJson(known)
 
     verb_route: dict[str, Any] = {
         "response_model": Done,
@@ -122,7 +123,7 @@ def routes(side: PlantSide) -> APIRouter:
         require(request.scope["arboleda.role"], verb.value)
         answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
         if answer.refusal is not None:
-            return JSONResponse({"sentence": answer.refusal}, status_code=409)
+            return PlainJson({"sentence": answer.refusal}, status_code=409)
         return JSONResponse({"verb": verb.value, "scope": scope})
 
     return api

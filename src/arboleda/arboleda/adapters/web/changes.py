@@ -9,6 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.core.sentence import in_json
+
 from .plant_side import PlantSide, Snapshot
 
 HISTORY, WAITING, PENDING = 200, 256, 64
@@ -41,7 +43,7 @@ class Event:
 
 
 def event(id: str, kind: str, row: Row) -> Event:
-    return Event(id=id, text=f"id: {id}\nevent: {kind}\ndata: {json.dumps(row)}\n\n")
+    return Event(id=id, text=f"id: {id}\nevent: {kind}\ndata: {json.dumps(row, default=in_json)}\n\n")
 
 
 def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:

@@ -36,6 +36,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
+from arboleda.core.sentence import Phrase, as_sentence
 
 from ..loop import Loop
 from ..memory import remembered
@@ -47,6 +48,7 @@ LOG = logging.getLogger(__name__)
 TASKS = logging.getLogger("arboleda.tasks")
 REQUESTS = logging.getLogger("arboleda.requests")  # those that were refused
 OPERATORS = logging.getLogger("arboleda.operators")
+SENT_TOO_LATE = Phrase("command.too_late", "the plant was away for {seconds:.1f} s before it could send this")
 VIEW_S = 1.0
 # A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
 SETTLE_S = 0.01
@@ -189,7 +191,7 @@ class Orchestrator:
         """A process that was stopped in the middle of a step must not send what was right before."""
         late_s = clock.seconds() - self.plant.now
         if late_s > self.plant.away_after_s and isinstance(message, Command) and not _ends_motion(message):
-            raise TooLate(f"the plant was away for {late_s:.1f} s before it could send this")
+            raise TooLate(SENT_TOO_LATE(seconds=late_s))
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
@@ -221,7 +223,9 @@ class Orchestrator:
             self._amnesia = error
             self._crash("orchestrator", error)
         elif isinstance(message, Command):
-            event = Undelivered(at=clock.seconds(), id=message.id, robot=message.robot, sentence=str(error))
+            event = Undelivered(
+                at=clock.seconds(), id=message.id, robot=message.robot, sentence=as_sentence(error)
+            )
             self.loop.post(event)
         else:
             raise error
@@ -306,7 +310,7 @@ def task_line(change: TaskChanged) -> str:
 
 def act_line(act: Journal) -> str:
     """One line on what an operator did, with the cell where the sentence does not name it."""
-    return act.sentence if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
+    return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
 
 
 def _log(message: TaskChanged | OperatorAnswer) -> None:

@@ -29,7 +29,7 @@ def _row(moment: Moment, event: Event) -> dict[str, Any]:
             dated(event["at"], moment.unix_s),
             event["cell"] or words("events.plant"),
             words(f"events.{event['kind']}", subject=event["subject"], what=_what(moment, event)),
-            _sentence(moment, event),
+            words.say(event["sentence"]),
         ],
     }
 
@@ -38,11 +38,3 @@ def _what(moment: Moment, event: Event) -> str:
     if event["kind"] == "robot":
         return moment.words(f"links.{event['what']}")
     return moment.words.of(f"{event['kind']}_state", event["what"])
-
-
-def _sentence(moment: Moment, event: Event) -> str:
-    """A task's text stays as it was written; what comes after it is the plant's sentence."""
-    text, colon, rest = event["sentence"].partition(": ")
-    if event["kind"] == "task" and colon:
-        return f"{text}: {moment.words.say(rest)}"
-    return moment.words.say(event["sentence"]) if event["sentence"] else ""

@@ -9,9 +9,12 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.core.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
+from arboleda.core.cell import HELD, HELD_STRANDED
 from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import FollowPath, MoveJoints, TaskChanged, TaskState
 from arboleda.core.model import Arm, Cell, MotionState, Robot
+from arboleda.core.sentence import Phrase, Sentence
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -69,9 +72,13 @@ def queue(cell: KnownCell, row: Row) -> Iterator[str]:
     waits = row["queue"] and (state != "idle" or row["paused"])
     if waits and not row["waiting_for"]:
         yield f"{name} is {state}, its tasks are shown to wait for {row['waiting_for']!r}"
-    if state == "held" and f"{name} is held (" not in (row["held_by"] or ""):
+    if state == "held" and not _says_held(name, row["held_by"]):
         yield f"{name} is held, by what is shown by {row['held_by']!r}"
     yield from _progress(cell, row)
+
+
+def _says_held(cell: str, said: Sentence | None) -> bool:
+    return said is not None and said.phrase in (HELD, HELD_STRANDED) and said.values["cell"] == cell
 
 
 def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
@@ -97,7 +104,8 @@ def node(cell: KnownCell, there: Behaviour, row: Row, now: float) -> Iterator[st
     if word is not None and row["kind"] != word:
         yield f"{where} is shown as a {row['kind']}, it is a {word}"
     failed = there.status is Status.FAILURE and there.feedback_message
-    if row["feedback"] != there.feedback_message or (failed and row["failure"] != there.feedback_message):
+    shown = (str(row["feedback"]), str(row["failure"]) if failed else there.feedback_message)
+    if shown != (there.feedback_message, there.feedback_message):
         yield f"{where} is shown with {row['feedback']!r} and {row['failure']!r}"
     seconds = getattr(there, "seconds", None)
     timed = seconds is not None and row["kind"] in ("dwell", "await")
@@ -133,23 +141,23 @@ def command(last: SentCommand | None, now: float) -> Row | None:
     return {"id": last.command.id, "state": state, "age_s": now - last.at}
 
 
-def obstacle(known: KnownRobot, now: float, plant: int) -> str | None:
-    """A word that the sentence must have which says why a robot takes no command; "" where none may be."""
+def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:
+    """What may be said of why a robot takes no command, nothing where nothing is in its way; None: unsure."""
     if known.stop is Stopped.LATCHED:
-        return "stopped"
+        return (STOPPED.said,)
     if known.offline(now):
-        return "offline" if known.heard_at is not None else "not heard"
+        return (OFFLINE.said,) if known.heard_at is not None else (UNHEARD.said,)
     if known.robot.link.value == "mqtt" and known.epoch is not None and known.plant != plant:
-        return "bridge"
+        return (UNANSWERED.said, FENCED.said)
     if known.state in (MotionState.FAULT, MotionState.STOP_LATCHED):
-        return "fault" if known.state is MotionState.FAULT else "stopped"
+        return (FAULTY.said,) if known.state is MotionState.FAULT else (STOPPED.said,)
     if known.barred and known.state is not MotionState.MOVING:
-        return "stopped"
+        return (STOPPED.said,)
     if known.unhomed:
-        return "not homed"
+        return (UNHOMED.said,)
     if not known.robot.says_homed:
         return None  # it may have lost its place as only its joints show
-    return "moving" if known.state is MotionState.MOVING else ""
+    return (MOVING.said,) if known.state is MotionState.MOVING else ()
 
 
 def of_robot(row: Row, values: dict[str, str]) -> Iterator[str]:
@@ -169,9 +177,9 @@ def of_cell(row: Row) -> dict[str, str]:
     return {
         "state": row["state"],
         "queued": str(len(row["queue"])),
-        "step": row["step"] or "",
-        "waiting_for": row["not_ready"] or row["waiting_for"] or "",
-        "advice": ", ".join(each["said"] for each in row["advice"]),
+        "step": str(row["step"] or ""),
+        "waiting_for": str(row["not_ready"] or row["waiting_for"] or ""),
+        "advice": ", ".join(str(each["said"]) for each in row["advice"]),
     }
 
 

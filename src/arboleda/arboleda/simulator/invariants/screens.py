@@ -140,10 +140,10 @@ def _tasks(look: Look, shown: Row) -> Iterator[str]:
 
 
 def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
-    word = rows.obstacle(known, look.record.stepped_at, look.world.plant.epoch)
+    allowed = rows.obstacle(known, look.record.stepped_at, look.world.plant.epoch)
     said = row["obstacle"]
-    if word is not None and (word not in (said or "") or bool(word) is not (said is not None)):
-        yield f"{known.robot.name}: {said!r} is shown as what is in its way, it is {word!r}"
+    if allowed is not None and (said.phrase not in allowed if said else allowed):
+        yield f"{known.robot.name}: {said!r} is shown as what is in its way, it is one of {allowed}"
     last = look.record.commands.last.get(known.robot.name)
     expected = rows.command(last, look.record.stepped_at)
     if expected is None or expected["state"] is None:
@@ -223,7 +223,7 @@ def _diagnoses(shown: Row) -> Iterator[str]:
         yield from rows.of_robot(robot, values)
         bad = robot["state"] not in (None, 0, 1)
         expected = STALE if not robot["online"] else ERROR if bad else OK
-        if (whose, level, message) != (robot["mqtt"], expected, robot["obstacle"] or "ready"):
+        if (whose, level, message) != (robot["mqtt"], expected, str(robot["obstacle"] or "ready")):
             yield f"{robot['name']} has the diagnosis {level} {message!r}"
     for cell in shown["cells"]:
         _, level, message, values = told.pop(f"arboleda: {cell['name']}", (None, None, "", {}))

@@ -17,6 +17,7 @@ from arboleda.core.messages import (
     Verb,
 )
 from arboleda.core.model import Evidence, Link
+from arboleda.core.sentence import Sentence
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped
@@ -292,8 +293,8 @@ def sentences_are_for_people(look: Look) -> Iterable[str]:
             yield from _technical(message.refusal)
 
 
-def _technical(sentence: str | None) -> Iterator[str]:
-    if sentence is not None and (not sentence or any(word in sentence for word in TECHNICAL)):
+def _technical(sentence: Sentence | None) -> Iterator[str]:
+    if sentence is not None and (not sentence or any(word in str(sentence) for word in TECHNICAL)):
         yield f"people are told {sentence!r}"
 
 

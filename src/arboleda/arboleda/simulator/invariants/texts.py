@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 from arboleda.core.messages import TaskChanged, TaskRequest, TaskState
 from arboleda.core.model import PlantModel
+from arboleda.core.sentence import Value
+from arboleda.core.text import FORM, UNKNOWN_BUT_NEAR
 
 from .invariant import Look, When, invariant
 
 LONGEST = 200
-EXAMPLE = re.compile(r"e\.g\. (.+?), or ")
-HINT = re.compile(r"did you mean (\S+)\?")
 ID = re.compile(r"#(?!t-)[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
 
@@ -49,12 +49,16 @@ def _unhelpful(look: Look) -> Iterator[str]:
     for said in look.moment.sent:
         if not isinstance(said, TaskChanged) or said.state is not TaskState.REFUSED:
             continue
-        example = EXAMPLE.search(said.sentence)
-        if example and not _is_last_place(look.world.model, example[1]):
-            yield f"{example[1]!r} is given as an example, and is no task"
-        for hint in HINT.findall(said.sentence):
-            if hint not in said.sentence.partition("there are ")[2].partition(";")[0].split(", "):
+        for part in said.sentence.parts():
+            example = str(part.values["example"]) if part.phrase is FORM else None
+            if example is not None and not _is_last_place(look.world.model, example):
+                yield f"{example!r} is given as an example, and is no task"
+            if part.phrase is UNKNOWN_BUT_NEAR and part.values["near"] not in _list(part.values["there"]):
                 yield f"{said.sentence!r} hints at what there is not"
+
+
+def _list(value: Value) -> tuple[Value, ...]:
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _is_last_place(model: PlantModel, text: str) -> bool:
