@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import yaml
 
+from arboleda.app import config
 from arboleda.app.urdf import robot_urdf, root_link
 from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot
 from arboleda.dashboard.page import assets
@@ -258,6 +259,24 @@ def test_every_link_is_where_the_last_telemetry_puts_it(
     seen = kept()
     for name, place in places.items():
         follow(place, heard.poses[name], [(at, robots[name]) for at, robots in seen])
+
+
+def test_an_arm_of_ones_own_is_drawn_where_its_telemetry_puts_it(tmp_path: Path, look: Any) -> None:
+    file = Path(__file__).parents[2] / "examples/plants/own_arm.yaml"
+    model = config.load(file)
+    place = Place(model, "tender")
+    with running(tmp_path, "--no-ros", "--plant", str(file)) as plant, ExitStack() as opened:
+        heard = Heard(model, plant.broker)
+        opened.callback(heard.close)
+        page = look(plant.page)
+        wait_for(lambda: bool(heard.poses["tender"]))
+        kept = keep(page, "arboledaTwin.links()")
+        submit(page, "tending 0B 1")
+        wait_for(lambda: ended(page, 1), 40.0)
+        wait_for(
+            lambda: same(page.evaluate("arboledaTwin.links()")["tender"], place.links(heard.last("tender")))
+        )
+        follow(place, heard.poses["tender"], [(at, robots["tender"]) for at, robots in kept()])
 
 
 def test_nothing_is_sent_to_a_page_that_shows_something_else(plant: Plant, look: Any) -> None:

@@ -85,7 +85,12 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "mqtt version": ("3.1.1", "3.1", "2:15: mqtt_version", "must be 3.1.1 or 5, is 3.1"),
     "evidence": ("ids\n      limits", "id\n      limits", "18:17: ", 'ids, joints or state, is "id"'),
     "link": ("link: ros", "link: rso", "34:36: cells.sis_c.mobile.link", 'did you mean "ros"?'),
-    "model": ("model: scara", "model: skara", "14:14: ", 'or scara, is "skara"; did you mean "scara"?'),
+    "model": (
+        "model: scara",
+        "model: skara",
+        "14:14: ",
+        'scara or a file beside this one (models/my_arm.urdf), is "skara"; did you mean "scara"?',
+    ),
     "robot name": ("name: ra1", "name: RA-1", "13:13: ", "letters, digits and single underscores"),
     "double underscore": ("name: ra1", "name: ra__1", "13:13: ", "single underscores"),
     "cell name": ("  sis_a:", "  Sis A:", "11:3: cells.Sis A", "a cell's name must be"),

@@ -241,6 +241,8 @@ def check(
 ) -> None:
     """Check a plant file; every problem at once, each with its line. Exit status: 0 good, 2 problems."""
     model = config.load(file)
+    for note in config.notes(model):
+        print(f"{file}: note: {note}")
     for warning in (*config.warnings(model), *layout_check.warnings(model)):
         print(f"{file}: warning: {warning}")
     print(f"{file}: good: plant {model.name}; cells {', '.join(cell.name for cell in model.cells)}")

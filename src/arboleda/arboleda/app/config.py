@@ -31,12 +31,12 @@ def load(path: Path | None = None) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem."""
     if path is None:
         return parse("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
-    return parse(str(path), user_file.read_bytes(path, LARGEST))
+    return parse(str(path), user_file.read_bytes(path, LARGEST), path.parent)
 
 
-def parse(name: str, content: bytes) -> PlantModel:
-    """The same for the content of a file that problems call `name`."""
-    document = Document(name, content)
+def parse(name: str, content: bytes, folder: Path | None = None) -> PlantModel:
+    """The same for the content of a file that problems call `name`; `folder` is where its models are."""
+    document = Document(name, content, folder)
     plant = _plant(document)
     document.finish()
     if plant is None:
@@ -52,6 +52,14 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
         for robot in plant.robots.values()
         if not robot.has_stop
     )
+
+
+def notes(plant: PlantModel) -> tuple[str, ...]:
+    """What was assumed of the models that the plant has of its own."""
+    described = {
+        cell.arm.description: cell.arm.name for cell in reversed(plant.cells) if cell.arm.description
+    }
+    return tuple(f"{name}: {note}" for own, name in described.items() for note in own.notes)
 
 
 def broker_users(path: Path) -> dict[str, str]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from arboleda.core.errors import ArboledaError
-from arboleda.core.model import Cell, Mobile, Placement, PlantModel, Pose
+from arboleda.core.model import Arm, Cell, Mobile, Placement, PlantModel, Pose
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
@@ -72,15 +72,18 @@ class Stand:
 
     @property
     def reach_m(self) -> float:
-        """No point is farther from the arm's first axis, in plan, than its tool can be."""
+        """No point is farther from the arm's foot, in plan, than its tool can be."""
         frames = kinematics.place(self.body, self.cell.arm.reference)
-        chain = _chain(self.body)
-        turning = [link for link in chain if link["moves"] and link["moves"]["type"] == "turn"]
-        upright = all(abs(_axis(frames[link["link"]], link["moves"]["axis"])) > 1 - 1e-6 for link in turning)
-        points = [kinematics.at(frames[link["link"]]) for link in chain[chain.index(turning[0]) :]]
+        way = bodies.way(self.body)
+        moving = [link for link in way if link["moves"]]
+        turning = [link for link in moving if link["moves"]["type"] == "turn"]
+        upright = all(_is_upright(frames, link) for link in turning)
+        points = [kinematics.at(frames[link["link"]]) for link in way[way.index(moving[0]) :]]
         if upright:
             points = [(x, y, 0.0) for x, y, _ in points]
-        return sum(math.dist(a, b) for a, b in pairwise(points))
+        slides = sum(_slide_m(self.cell.arm, frames, link, upright) for link in moving)
+        first = math.hypot(*points[0][:2])
+        return first + sum(math.dist(a, b) for a, b in pairwise(points)) + slides
 
 
 def _pickups(stand: Stand) -> Iterator[str]:
@@ -178,22 +181,16 @@ def _half(shape: Body) -> float:
     return max(shape["size"][:2]) / 2 if shape["kind"] == "box" else float(shape["size"][0])
 
 
-def _chain(body: Body) -> list[Body]:
-    """The links from the root to the tool."""
-    tip = bodies.tip(body)
-
-    def below(link: Body) -> list[Body]:
-        if link["link"] == tip:
-            return [link]
-        ways = (below(child) for child in link["children"])
-        return next(([link, *way] for way in ways if way), [])
-
-    return below(body)
+def _is_upright(frames: Mapping[str, Matrix], link: Body) -> bool:
+    return abs(kinematics.upright(frames[link["link"]], link["moves"]["axis"])) > 1 - 1e-6
 
 
-def _axis(frame: Matrix, axis: Sequence[float]) -> float:
-    """How upright an axis of a frame is, from -1 to 1."""
-    return sum(a * b for a, b in zip(frame[2][:3], axis, strict=True))
+def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) -> float:
+    """How far a sliding joint may lengthen the arm, in plan where all else turns upright."""
+    if link["moves"]["type"] == "turn" or (upright and _is_upright(frames, link)):
+        return 0.0
+    joint = arm.joints[link["moves"]["index"]]
+    return max(abs(joint.lower), abs(joint.upper))
 
 
 def _overlap(a: Outline, b: Outline) -> bool:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from xml.etree.ElementTree import SubElement, fromstring, indent, tostring
+
 from arboleda.core.errors import ConfigError, StartError
 from arboleda.core.model import Arm, Mobile, PlantModel
 from arboleda_description.urdf import Limits, render
@@ -20,6 +23,8 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
     ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
     """
     robot = _named(plant, name)
+    if isinstance(robot, Arm) and robot.description is not None:
+        return _described(robot.description.urdf, prefix(robot), limits(robot))
     try:
         return render(robot.model, prefix=prefix(robot), limits=limits(robot))
     except ModuleNotFoundError as error:
@@ -44,6 +49,23 @@ def limits(robot: Arm | Mobile) -> dict[str, Limits]:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
     far = robot.grid.position(robot.grid.size - 1)
     return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
+
+
+def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
+    """The URDF of a model of the plant's own, with its prefix, and with ends for every joint that moves."""
+    robot = fromstring(urdf)
+    for named in (*robot.findall("link"), *robot.findall("joint")):
+        named.set("name", prefix + named.get("name", ""))
+    for end in (*robot.findall("joint/parent"), *robot.findall("joint/child")):
+        end.set("link", prefix + end.get("link", ""))
+    for joint in robot.findall("joint"):
+        if narrowed := limits.get(joint.get("name", "").removeprefix(prefix)):
+            limit = joint.find("limit")
+            limit = SubElement(joint, "limit", {"effort": "0"}) if limit is None else limit
+            joint.set("type", "revolute" if joint.get("type") == "continuous" else joint.get("type", ""))
+            limit.attrib |= {key: repr(value) for key, value in narrowed._asdict().items()}
+    indent(robot)
+    return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 
 
 def _named(plant: PlantModel, name: str) -> Arm | Mobile:

@@ -214,7 +214,7 @@ class Context:
         if here is None or not heights:
             return self.cell.home.q
         rows = zip(self.cell.arm.joints, here, *heights, strict=True)
-        return tuple(q if joint.pinion_radius_m is None else min(q, *up) for joint, q, *up in rows)
+        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
 
     def piece(self, since: float) -> bool | None:
         """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""

@@ -66,6 +66,7 @@ class Joint:
     acceleration: float
     step: float
     pinion_radius_m: float | None = None  # None: revolute; else the rack pinion of a prismatic axis
+    up: int = -1  # which way a prismatic axis lifts: -1 towards smaller values, 1 greater ones, 0 neither
 
     @property
     def unit(self) -> str:
@@ -78,6 +79,12 @@ class Joint:
     def quantised(self, value: float) -> float:
         """`value` as the motor can hold it."""
         return self.steps(value) * self.step
+
+    def higher(self, value: float, *others: float) -> float:
+        """The highest of these values where the joint lifts, else `value`."""
+        if self.pinion_radius_m is None or self.up == 0:
+            return value
+        return min(value, *others) if self.up < 0 else max(value, *others)
 
     def travel_s(self, distance: float) -> float:
         """Time of a rest-to-rest move over `distance` with constant acceleration."""
@@ -185,6 +192,14 @@ class Robot:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Description:
+    """A model of the plant's own: its URDF without a prefix, and what was assumed of it."""
+
+    urdf: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
 class Arm(Robot):
     """An arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
 
@@ -195,6 +210,7 @@ class Arm(Robot):
     tolerance: tuple[float, ...] | None = None
     piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
     queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
+    description: Description | None = None  # None: the model comes with arboleda_description
     position_key: ClassVar[str | None] = "q"
 
     @property

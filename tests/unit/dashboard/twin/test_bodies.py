@@ -7,12 +7,23 @@ import re
 import pytest
 
 from arboleda.app.urdf import root_link
-from arboleda.dashboard.twin import bodies
+from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.testing import shipped
 
 ROBOT = """<robot name="r"><link name="a"/><link name="b"><visual><geometry>{shape}</geometry></visual></link>
 <joint name="j" type="{kind}"><parent link="a"/><child link="b"/>{more}</joint></robot>"""
+
+MESH = '<mesh filename="package://mine/link.stl"/>'
+MESHES = """<robot name="r">
+<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>
+<link name="b"><visual><geometry><mesh filename="b.stl"/></geometry></visual>
+<collision><geometry><box size="1 2 3"/></geometry></collision></link>
+<link name="my_tool0"/><link name="tool0"/>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0.3 0 0.4"/>
+<axis xyz="0 0 2"/></joint>
+<joint name="k" type="fixed"><parent link="b"/><child link="my_tool0"/></joint>
+<joint name="l" type="fixed"><parent link="a"/><child link="tool0"/></joint></robot>"""
 
 ASTRAY = """<robot name="r"><link name="a"/>
 <joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint></robot>"""
@@ -64,16 +75,39 @@ def test_what_is_left_out_has_urdfs_defaults() -> None:
     ("text", "sentence"),
     [
         ("<robot", "not XML"),
+        (ROBOT.format(shape="<cone/>", kind="fixed", more=""), "one of box, cylinder, sphere, not cone"),
         (
-            ROBOT.format(shape='<mesh filename="x"/>', kind="fixed", more=""),
-            "one of box, cylinder, sphere, not mesh",
+            ROBOT.format(shape=MESH, kind="revolute", more='<axis xyz="0 0 0"/>'),
+            "an axis must point somewhere",
         ),
         (ROBOT.format(shape="", kind="fixed", more=""), "not nothing"),
         ('<robot name="r"><link name="a"/><link name="b"/></robot>', "has the roots a, b"),
         (ASTRAY, "the link c, which is not there"),
     ],
-    ids=["damaged", "a mesh", "no shape", "two roots", "a missing link"],
+    ids=["damaged", "a cone", "an axis of no length", "no shape", "two roots", "a missing link"],
 )
 def test_what_cannot_be_drawn_says_why(text: str, sentence: str) -> None:
     with pytest.raises(ValueError, match=re.escape(sentence)):
         bodies.read(text)
+
+
+def test_a_mesh_has_stand_ins_that_join_its_joints() -> None:
+    (ball, tube) = bodies.read(MESHES)["shapes"]
+    assert (ball["kind"], ball["color"]) == ("sphere", bodies.GREY)
+    assert (tube["kind"], tube["size"][1], tube["xyz"]) == ("cylinder", pytest.approx(0.5), [0.15, 0, 0.2])
+    ends = [kinematics.at(kinematics.pose(tube["xyz"], tube["rpy"]), (0, 0, z)) for z in (-0.25, 0.25)]
+    assert ends == [pytest.approx((0, 0, 0), abs=1e-9), pytest.approx((0.3, 0, 0.4))]
+
+
+def test_a_mesh_is_drawn_by_what_it_hits_with_where_that_is_plain() -> None:
+    shapes = bodies.read(MESHES)["children"][0]["shapes"]
+    assert [(shape["kind"], shape["size"]) for shape in shapes] == [("box", [1, 2, 3])]
+
+
+def test_an_axis_has_length_one() -> None:
+    assert bodies.read(MESHES)["children"][0]["moves"]["axis"] == [0, 0, 1]
+
+
+def test_the_tip_is_tool0_even_on_a_short_way() -> None:
+    assert bodies.tip(bodies.read(MESHES)) == "tool0"
+    assert [link["link"] for link in bodies.way(bodies.read(MESHES))] == ["a", "tool0"]

@@ -6,12 +6,14 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from arboleda.core.errors import ConfigError
 
+from .problems import Problems
 from .yaml_marks import Mark, Node, YamlFault, clipped, parse
 
 T = TypeVar("T")
@@ -36,24 +38,27 @@ BOUNDS = {
 }
 
 
-class Document:
-    """A file by the name people know it by; ConfigError at once where nothing in it can be read."""
+class Document(Problems):
+    """A file by the name people know it by; ConfigError at once where nothing in it can be read.
 
-    def __init__(self, name: str, raw: bytes) -> None:
-        self.name = name
-        self._problems: dict[tuple[int, int, str], None] = {}
+    `folder` is where the files are that it names; None for a content that lies in no folder.
+    """
+
+    def __init__(self, name: str, raw: bytes, folder: Path | None = None) -> None:
+        super().__init__(name)
+        self.folder = folder
         try:
             self._root, faults = parse(raw)
         except YamlFault as fault:
             raise ConfigError((self._line(fault.mark.line, fault.mark.column, fault.sentence),)) from None
         for lesser in faults:
-            self._keep(lesser.mark, lesser.sentence)
+            self.keep(lesser.mark, lesser.sentence)
 
     def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
         """Keeps one problem; its line is that of the deepest known part of `place`, or of the key `at`."""
         where = dotted(place)
         mark = self._mark(place) if at is None else self._key_mark(at)
-        self._keep(mark, f"{where}: {sentence}" if where else sentence)
+        self.keep(mark, f"{where}: {sentence}" if where else sentence)
 
     def unknown(self, place: Place, known: Iterable[str]) -> None:
         """Keeps the problem that the last key of `place` is not one of `known`."""
@@ -87,11 +92,6 @@ class Document:
         """The same for a value that is not a mapping of known keys."""
         return self._read(shape.validate_python, place, ())
 
-    def finish(self) -> None:
-        """ConfigError with every problem in the order of the file, if there is one."""
-        if self._problems:
-            raise ConfigError(tuple(self._line(*problem) for problem in sorted(self._problems)))
-
     def _read(self, validate: Callable[[Any], T], place: Place, known: tuple[str, ...]) -> T | None:
         if not self.has(place):
             return None
@@ -110,12 +110,6 @@ class Document:
             self.problem(place[:-1], f'the key "{key}" is missing')
         else:
             self.problem(place, _sentence(fault))
-
-    def _keep(self, mark: Mark, sentence: str) -> None:
-        self._problems[(mark.line, mark.column, sentence)] = None
-
-    def _line(self, line: int, column: int, sentence: str) -> str:
-        return f"{self.name}:{line}:{column}: {sentence}"
 
     def _mark(self, place: Place) -> Mark:
         return self._node(place).mark

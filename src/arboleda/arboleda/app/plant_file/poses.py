@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count, repeat
 
 from arboleda.core.counting import counted
 from arboleda.core.model import Joint, Pose
 
 from .document import Document, Place
 from .robot_models import TO_SI, millimetres
-from .shapes import PoseShape, PositionShape
+from .shapes import NUMBER, NUMBERS, PoseShape, PositionShape
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
 
@@ -51,50 +53,89 @@ class PoseReader:
         if not approach_mm:
             return pose
         place = (*place, "approach_mm")
-        index = next((i for i, joint in enumerate(self.joints) if joint.unit == "m"), None)
+        index = self._lifting(place)
         if index is None:
-            needs = f"an approach height needs a sliding joint; the {self.model} has none"
-            self.problem(place, needs)
             return None
-        joint, up = self.joints[index], pose.q[index] - millimetres(approach_mm)
-        if up < joint.lower - ROUNDING:
+        joint = self.joints[index]
+        up = pose.q[index] + joint.up * millimetres(approach_mm)
+        if not joint.lower - ROUNDING <= up <= joint.upper + ROUNDING:
             reach = f"would lift q{index + 1} to {in_file_unit(joint, up)}; allowed: {span(joint)}"
             self.problem(place, reach)
             return None
-        above = (*pose.q[:index], max(up, joint.lower), *pose.q[index + 1 :])
+        above = (*pose.q[:index], min(max(up, joint.lower), joint.upper), *pose.q[index + 1 :])
         return Pose(name=pose.name, q=pose.q, above=above)
 
-    def mm_fits(self, place: Place, *, needed: bool) -> bool:
-        """Whether `mm` is given where the arm has a sliding joint, and only there."""
-        given = self.document.has((*place, "mm"))
-        slides = any(joint.unit == "m" for joint in self.joints)
-        if given and not slides:
-            self.problem((*place, "mm"), f"the {self.model} has no sliding joint; delete it")
-        if needed and slides and not given:
-            self.problem(place, f'the key "mm" is missing: the {self.model} has a sliding joint')
-        return slides if given else not (needed and slides)
+    def heights(self, place: Place, *, needed: bool) -> tuple[float, ...] | None:
+        """`mm` in m, one value for each sliding joint; empty where it may be left out and is."""
+        slides = [joint for joint in self.joints if joint.unit == "m"]
+        place = (*place, "mm")
+        if not self.document.has(place):
+            if needed and slides:
+                joints = "a sliding joint" if len(slides) == 1 else counted(len(slides), "sliding joint")
+                self.problem(place[:-1], f'the key "mm" is missing: the {self.model} has {joints}')
+            return None if needed and slides else ()
+        if not slides:
+            self.problem(place, f"the {self.model} has no sliding joint; delete it")
+            return None
+        return self._listed(place, len(slides))
 
     def problem(self, place: Place, sentence: str, *, at: Place | None = None) -> None:
         """Keeps a problem, with the cell's name where the section is a shared one."""
         note = "" if place[0] == "cells" else f" (cell {self.cell})"
         self.document.problem(place, sentence + note, at=at)
 
+    def places_of_mm(self, place: Place) -> Iterator[Place]:
+        """Where each value of `mm` stands, from the base outwards."""
+        place = (*place, "mm")
+        if isinstance(self.document.value(place), list):
+            return ((*place, index) for index in count())
+        return repeat(place)
+
+    def _listed(self, place: Place, wanted: int) -> tuple[float, ...] | None:
+        """As many numbers as sliding joints; a single one needs no list."""
+        if not isinstance(self.document.value(place), list) and wanted == 1:
+            value = self.document.read_plain(NUMBER, place)
+            return None if value is None else (millimetres(value),)
+        values = self.document.read_plain(NUMBERS, place)
+        if values is not None and len(values) != wanted:
+            has, needed = counted(len(values), "value"), counted(wanted, "sliding joint")
+            self.problem(place, f"has {has}; the {self.model} has {needed}")
+            return None
+        return None if values is None else tuple(map(millimetres, values))
+
+    def _lifting(self, place: Place) -> int | None:
+        """The joint that lifts the tool: the last one that slides up and down."""
+        slides = [index for index, joint in enumerate(self.joints) if joint.unit == "m"]
+        upright = [index for index in slides if self.joints[index].up]
+        if not slides:
+            self.problem(place, f"an approach height needs a sliding joint; the {self.model} has none")
+        elif not upright:
+            none = f"the {self.model} has none that always does"
+            self.problem(place, f"an approach height needs a joint that slides up and down; {none}")
+        return upright[-1] if upright else None
+
     def _spread(self, shape: PositionShape, place: Place) -> tuple[float, ...] | None:
         turning = [joint for joint in self.joints if joint.unit == "rad"]
+        if turning and not self.document.has((*place, "deg")):
+            self.problem(place, 'the key "deg" is missing')
+            return None
         if len(shape.deg) != len(turning):
-            needed = counted(len(turning), "turning joint")
+            needed = counted(len(turning), "turning joint") if turning else "no turning joint"
             counts = f"has {counted(len(shape.deg), 'value')}; the {self.model} has {needed}"
             self.problem((*place, "deg"), counts)
             return None
-        if not self.mm_fits(place, needed=True):
+        heights = self.heights(place, needed=True)
+        if heights is None:
             return None
-        angles, height = iter(shape.deg), millimetres(shape.mm)
-        return tuple(TO_SI["deg"](next(angles)) if joint.unit == "rad" else height for joint in self.joints)
+        angles, slides = iter(shape.deg), iter(heights)
+        return tuple(
+            TO_SI["deg"](next(angles)) if joint.unit == "rad" else next(slides) for joint in self.joints
+        )
 
     def _places(self, place: Place) -> tuple[Place, ...]:
-        numbers = iter(range(len(self.joints)))
+        numbers, heights = count(), self.places_of_mm(place)
         return tuple(
-            (*place, "deg", next(numbers)) if joint.unit == "rad" else (*place, "mm") for joint in self.joints
+            (*place, "deg", next(numbers)) if joint.unit == "rad" else next(heights) for joint in self.joints
         )
 
     def _inside(self, index: int, value: float, place: Place) -> bool:

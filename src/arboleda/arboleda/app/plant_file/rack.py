@@ -11,7 +11,7 @@ from arboleda.core.model import Palletizing, Pose
 from .document import Place, shown
 from .pickups import Pickups, pickup_names
 from .poses import PoseReader
-from .robot_models import TO_SI, millimetres
+from .robot_models import TO_SI
 from .shapes import PalletizingShape, RackShape
 
 MOST = 9  # task texts name stations 0 to 8
@@ -59,7 +59,10 @@ def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[
 def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose | None]:
     """Row by row: q1 by column, q2 by row, the other joints as in `home`."""
     shape = reader.document.read(RackShape, place)
-    if shape is None or home is None or not reader.mm_fits(place, needed=False):
+    if shape is None or home is None or not _has_columns_and_rows(reader, place):
+        return []
+    heights = reader.heights(place, needed=False)
+    if heights is None:
         return []
     columns, rows = shape.columns_q1_deg, shape.rows_q2_deg
     if len(columns) * len(rows) > MOST:
@@ -67,12 +70,12 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
         count = f"{size} are more than {MOST} stations"
         reader.problem(place, count)
         return []
-    height = millimetres(shape.mm) if reader.document.has((*place, "mm")) else None
+    slides, spots = iter(heights), reader.places_of_mm(place)
     rest = tuple(
-        value if joint.unit == "rad" or height is None else height
+        next(slides, value) if joint.unit == "m" else value
         for joint, value in list(zip(reader.joints, home.q, strict=True))[2:]
     )
-    others = tuple((*place, "mm") for _ in rest)
+    others = tuple(next(spots) if joint.unit == "m" else place for joint in reader.joints[2:])
     poses: list[Pose | None] = []
     for row, column in product(range(len(rows)), range(len(columns))):
         q = (TO_SI["deg"](columns[column]), TO_SI["deg"](rows[row]), *rest)
@@ -80,6 +83,14 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
         pose = reader.checked(f"station {len(poses)}", q, places)
         poses.append(reader.lifted(pose, shape.approach_mm, place) if pose else None)
     return poses
+
+
+def _has_columns_and_rows(reader: PoseReader, place: Place) -> bool:
+    turns = [joint.unit == "rad" for joint in reader.joints[:2]] == [True, True]
+    if not turns:
+        rule = f"a rack by rule needs q1 and q2 that turn, and the {reader.model} has not"
+        reader.problem(place, f"{rule}; write the stations one by one: 0, 1, ...")
+    return turns
 
 
 def _named(reader: PoseReader, text: str, poses: dict[str, Pose], place: Place) -> Pose | None:

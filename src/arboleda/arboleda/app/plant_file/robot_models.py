@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from arboleda.core.model import Joint
+from arboleda.core.model import Description, Joint
 
 from .document import Document, Place, choice
 
@@ -25,10 +25,11 @@ Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
 @dataclass(frozen=True, kw_only=True)
 class ArmModel:
-    """A kind of arm: its joints from the base outwards."""
+    """A kind of arm: its joints from the base outwards; `description` where it is the plant's own."""
 
     name: str
     joints: tuple[Joint, ...]
+    description: Description | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +44,9 @@ def millimetres(value: float) -> float:
     """mm -> m."""
     return value / 1000
 
+
+FULL_TURN_RAD = 2 * math.pi  # either way: what a joint without ends is taken to turn
+PINION_MM = math.degrees(1.0)  # a pinion that moves its rack by 1 mm per degree
 
 TO_SI: dict[str, Callable[[float], float]] = {"deg": math.radians, "rad": float, "mm": millimetres}
 
@@ -93,9 +97,9 @@ class JointFile(Shape):
     """One joint; limits and speed in the unit their source gives, `step_deg` of the motor or its pinion."""
 
     name: str
-    type: Literal["revolute", "prismatic"]
+    type: Literal["revolute", "continuous", "prismatic"]
     step_deg: Positive
-    pinion_radius_mm: Positive = math.inf
+    pinion_radius_mm: Positive = PINION_MM
     limits_deg: Pair = []
     limits_rad: Pair = []
     limits_mm: Pair = []
@@ -136,7 +140,7 @@ def _documents(kind: str) -> dict[str, Document]:
 def _arm(document: Document) -> ArmModel:
     shape = document.read(ArmFile)
     places: list[Place] = [("joints", index) for index in range(len(shape.joints))] if shape else []
-    joints = [_joint(document, place) for place in places]
+    joints = [described_joint(document, place) for place in places]
     document.finish()
     return ArmModel(name=document.value(("model",)), joints=tuple(joint for joint in joints if joint))
 
@@ -149,17 +153,18 @@ def _mobile(document: Document) -> MobileModel:
     return MobileModel(name=document.value(("model",)), speed=millimetres(shape.speed_mm_s if shape else 0.0))
 
 
-def _joint(document: Document, place: Place) -> Joint | None:
+def described_joint(document: Document, place: Place) -> Joint | None:
+    """One entry of `joints`; None, with its problems kept, where something is wrong with it."""
     shape = document.read(JointFile, place)
     if shape is None:
         return None
-    units = ("deg", "rad") if shape.type == "revolute" else ("mm",)
-    limits = _quantity(document, place, "limits_{}", units)
+    units = ("mm",) if shape.type == "prismatic" else ("deg", "rad")
+    limits = _limits(document, place, shape, units)
     speed = _quantity(document, place, "speed_{}_s", units)
     acceleration = _quantity(document, place, "acceleration_{}_s2", units[:1])
     if not (limits and speed and acceleration):
         return None
-    pinion = None if shape.type == "revolute" else millimetres(shape.pinion_radius_mm)
+    pinion = millimetres(shape.pinion_radius_mm) if shape.type == "prismatic" else None
     step = math.radians(shape.step_deg) * (1.0 if pinion is None else pinion)
     return Joint(
         name=shape.name,
@@ -170,6 +175,23 @@ def _joint(document: Document, place: Place) -> Joint | None:
         step=step,
         pinion_radius_m=pinion,
     )
+
+
+def _limits(document: Document, place: Place, shape: JointFile, units: tuple[str, ...]) -> tuple[float, ...]:
+    """Both ends of a joint; empty, with the problem kept, where they cannot be."""
+    if shape.type == "continuous":
+        for key in ("limits_deg", "limits_rad", "limits_mm"):
+            if document.has((*place, key)):
+                document.problem(
+                    (*place, key), "a continuous joint has no ends; write revolute, or delete it"
+                )
+        return (-FULL_TURN_RAD, FULL_TURN_RAD)
+    limits = _quantity(document, place, "limits_{}", units)
+    if limits and not (limits[0] <= 0 <= limits[1] and limits[0] < limits[1]):
+        key = next(key for unit in units if document.has((*place, key := f"limits_{unit}")))
+        document.problem((*place, key), "must be lower, then upper, with 0 inside, where homing ends")
+        return ()
+    return limits
 
 
 def _quantity(document: Document, place: Place, key: str, units: tuple[str, ...]) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile, Placement
 
 from .document import Document, Place, choice, closest, nearest, shown
+from .own_models import is_own, own_model
 from .poses import PoseReader, in_file_unit, span
 from .robot_models import TO_SI, ArmModel, arm_models, millimetres, mobile_models
 from .shapes import LIMITS, MAPPING, SPEED, ArmShape, BaseShape, GridShape, MobileShape, RobotShape
@@ -18,7 +19,11 @@ T = TypeVar("T")
 
 def arm_model(document: Document, place: Place) -> ArmModel | None:
     """The model that `arm:` names, its joints narrowed by `limits:` and `speeds:`."""
-    model = _model(document, (*place, "model"), arm_models())
+    named = (*place, "model")
+    if is_own(document.value(named)):
+        model = own_model(document, named)
+    else:
+        model = _model(document, named, arm_models(), also=("a file beside this one (models/my_arm.urdf)",))
     if model is None:
         return None
     narrowed = tuple(
@@ -51,6 +56,7 @@ def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
         tolerance=tolerance,
         piece_on_change=shape.piece_on_change,
         queue_triggers=shape.trigger_when_busy == "queue",
+        description=model.description,
     )
 
 
@@ -105,15 +111,23 @@ def _section(document: Document, place: Place, shape: type[BaseShape]) -> Any:
     return document.read(shape, place) if document.has(place) else shape()
 
 
-def _model(document: Document, place: Place, models: dict[str, T], default: str | None = None) -> T | None:
+def _model(
+    document: Document,
+    place: Place,
+    models: dict[str, T],
+    default: str | None = None,
+    also: tuple[str, ...] = (),
+) -> T | None:
     """The model of that name; of a misspelt one, with the problem kept, the model that was meant: what
     follows is held against that.
     """
     name = document.value(place) if document.has(place) else default
     if not isinstance(name, str):
+        if document.has(place):
+            document.problem(place, f"must be {choice([*sorted(models), *also])}, is {shown(name)}")
         return None
     if name not in models:
-        known, unchecked = choice(sorted(models)), ""
+        known, unchecked = choice([*sorted(models), *also]), ""
         if closest(name, models) is None:
             unchecked = "; what depends on the model is checked once it is right"
         document.problem(place, f"must be {known}, is {shown(name)}{nearest(name, models)}{unchecked}")

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from arboleda.core.model import Cell, Evidence, Link, Retry, Timing
 
-from .robot_models import Number, Pair, Positive, Shape
+from .robot_models import Number, Pair, Positive, Shape, Triple
 
 DAY_S = 86400
 NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*_?", re.ASCII)
@@ -114,9 +114,9 @@ class RobotShape(Shape):
 
 
 class ArmShape(RobotShape):
-    """`arm:`; an empty `twin` is the arm's own name."""
+    """`arm:`; an empty `twin` is the arm's own name, a `model` the name of one, a file or a ModelShape."""
 
-    model: str
+    model: Any
     twin: Name = ""
     base: Any = None
     timeout_s: Duration = 10.0
@@ -125,6 +125,25 @@ class ArmShape(RobotShape):
     tolerance: Any = None
     piece_on_change: bool = False
     trigger_when_busy: Literal["queue", "refuse"] = "queue"
+
+
+class OffsetShape(Shape):
+    """Where one frame lies in another: shifted, and turned about x, then y, then z."""
+
+    xyz_mm: Triple = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    rpy_deg: Triple = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+
+
+class ModelShape(Shape):
+    """`model:` of an arm, where it says more of its own file than which one that is."""
+
+    file: str
+    base_link: str | None = None
+    tip_link: str | None = None
+    mount: Any = None
+    tool: Any = None
+    accelerations: Any = None
+    steps: Any = None
 
 
 class MobileShape(RobotShape):
@@ -150,10 +169,10 @@ class GridShape(BaseShape):
 
 
 class PositionShape(Shape):
-    """Joint values: `deg` one per turning joint from the base outwards, `mm` the sliding joint."""
+    """Joint values from the base outwards: `deg` of the turning joints, `mm` of the sliding one or ones."""
 
-    deg: list[Number]
-    mm: Number = 0.0
+    deg: list[Number] = Field(default_factory=list)
+    mm: Any = None
 
 
 class PoseShape(PositionShape):
@@ -167,7 +186,7 @@ class RackShape(Shape):
 
     columns_q1_deg: Angles
     rows_q2_deg: Angles
-    mm: Number = 0.0
+    mm: Any = None
     approach_mm: Positive = 0.0
 
 
@@ -190,6 +209,9 @@ NODES: TypeAdapter[list[int]] = TypeAdapter(
     Annotated[list[int], Field(min_length=1, max_length=64)], config=STRICT
 )
 LIMITS: TypeAdapter[list[float]] = TypeAdapter(Pair, config=STRICT)
+NUMBER: TypeAdapter[float] = TypeAdapter(Number, config=STRICT)
+NUMBERS: TypeAdapter[list[float]] = TypeAdapter(list[Number], config=STRICT)
+POSITIVE: TypeAdapter[float] = TypeAdapter(Positive, config=STRICT)
 SPEED: TypeAdapter[float] = TypeAdapter(Speed, config=STRICT)
 MAPPING: TypeAdapter[dict[str, Any]] = TypeAdapter(
     Annotated[dict[str, Any], Field(min_length=1)], config=STRICT

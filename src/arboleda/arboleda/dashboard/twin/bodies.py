@@ -1,5 +1,7 @@
 """A URDF reduced to what is drawn: nested links, their joints and primitive shapes, as plain data.
 
+A link with a mesh has stand-ins: the primitive shapes that it hits with, else tubes between its joints.
+
 A link is {link, xyz, rpy, moves, shapes, children}: `xyz` (m) and `rpy` (rad) lead from the parent to its
 joint, `moves` is None or {type, axis, index}: which of the robot's joints, counted from the root outwards,
 moves it. A shape is {kind, size, xyz, rpy, color}: `size` is [x, y, z] of a box, [radius, length] of a
@@ -8,12 +10,16 @@ cylinder about z, [radius] of a sphere; `color` is [r, g, b] from 0 to 1.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
+from . import stand_in
+
 Body = dict[str, Any]
+TOOL = "tool0"
 GREY = [0.6, 0.6, 0.6]
 ORIGIN = {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}
 MOVING = ("revolute", "continuous", "prismatic")
@@ -40,8 +46,21 @@ def links(body: Body) -> Iterator[Body]:
 
 
 def tip(body: Body) -> str:
-    """The name of the last link of its longest chain: where the tool is."""
-    return max(_chains(body, 0))[1]
+    """Where the tool is: the link `tool0` after its prefix, else the last of the longest chain."""
+    tools = [link["link"] for link in links(body) if link["link"].endswith(TOOL)]
+    return min(tools, key=len) if tools else max(_chains(body, 0))[1]
+
+
+def way(body: Body) -> list[Body]:
+    """The links from the root to the tool."""
+    return _way(body, tip(body))
+
+
+def _way(body: Body, end: str) -> list[Body]:
+    if body["link"] == end:
+        return [body]
+    ways = (_way(child, end) for child in body["children"])
+    return next(([body, *way] for way in ways if way), [])
 
 
 def _chains(body: Body, depth: int) -> Iterator[tuple[int, str]]:
@@ -69,8 +88,8 @@ class _Reader:
     def _link(self, name: str, origin: dict[str, Any], moves: dict[str, Any] | None) -> Body:
         if name not in self._links:
             raise ValueError(f"a joint leads to the link {name}, which is not there")
-        shapes = [self._shape(visual) for visual in self._links[name].findall("visual")]
         joints = [joint for joint in self._joints if _end(joint, "parent") == name]
+        shapes = self._shapes(self._links[name], joints)
         children = [self._link(_end(joint, "child"), _origin(joint), self._moves(joint)) for joint in joints]
         return {"link": name, **origin, "moves": moves, "shapes": shapes, "children": children}
 
@@ -80,12 +99,21 @@ class _Reader:
             return None
         axis = joint.find("axis")
         index, self._moving = self._moving, self._moving + 1
-        along = _numbers(axis.get("xyz", "")) if axis is not None else [1.0, 0.0, 0.0]
+        along = _unit(_numbers(axis.get("xyz", ""))) if axis is not None else [1.0, 0.0, 0.0]
         return {"type": "slide" if kind == "prismatic" else "turn", "axis": along, "index": index}
 
+    def _shapes(self, link: Element, joints: list[Element]) -> list[dict[str, Any]]:
+        visuals = link.findall("visual")
+        plain = [visual for visual in visuals if not _is_mesh(visual)]
+        shapes = [self._shape(visual) for visual in plain]
+        if len(plain) == len(visuals):
+            return shapes
+        hits = [self._shape(each) for each in link.findall("collision") if not _is_mesh(each)]
+        tubes = stand_in.shapes(_origin(joint)["xyz"] for joint in joints)
+        return shapes + (hits or [{**tube, "color": GREY} for tube in tubes])
+
     def _shape(self, visual: Element) -> dict[str, Any]:
-        geometry = visual.find("geometry")
-        found = geometry[0] if geometry is not None and len(geometry) else None
+        found = _geometry(visual)
         if found is None or found.tag not in SIZES:
             what = found.tag if found is not None else "nothing"
             raise ValueError(f"a shape is one of {', '.join(SIZES)}, not {what}")
@@ -102,6 +130,23 @@ class _Reader:
             return GREY
         own = _color(material)
         return own or self._colors.get(material.get("name", "")) or GREY
+
+
+def _geometry(visual: Element) -> Element | None:
+    geometry = visual.find("geometry")
+    return geometry[0] if geometry is not None and len(geometry) else None
+
+
+def _is_mesh(visual: Element) -> bool:
+    found = _geometry(visual)
+    return found is not None and found.tag == "mesh"
+
+
+def _unit(axis: list[float]) -> list[float]:
+    length = math.hypot(*axis)
+    if not length:
+        raise ValueError("an axis must point somewhere, not 0 0 0")
+    return [value / length for value in axis]
 
 
 def _end(joint: Element, which: str) -> str:

@@ -65,6 +65,11 @@ def at(matrix: Matrix, point: Point = (0, 0, 0)) -> Point:
     return (x, y, z)
 
 
+def upright(frame: Matrix, axis: Sequence[float]) -> float:
+    """How upright an axis of a frame is, from -1 to 1."""
+    return sum(a * b for a, b in zip(frame[2][:3], axis, strict=True))
+
+
 def flat(matrix: Matrix) -> list[float]:
     """Its 16 numbers, row by row."""
     return [value for row in matrix for value in row]

@@ -121,7 +121,10 @@ def _overrun(look: Look) -> Iterator[str]:
 
 
 def _too_long(look: Look, sent: SentCommand) -> str | None:
-    allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, look.world.model.timing)
+    timing = look.world.model.timing
+    allowed_s = _longest_s(look.world.model.robots[sent.robot], sent, timing)
+    if sent.cancelled_at is not None:  # in the step that gave it: what it has is the time of its halt
+        allowed_s = max(allowed_s, timing.stop_timeout_s)
     if sent.deadline <= sent.at + allowed_s + ROUNDING_S:
         return None
     return f"{sent} has {sent.deadline - sent.at:.1f} s; {allowed_s:.1f} s are enough for its longest way"

@@ -8,7 +8,7 @@ from arboleda.core.model import Joint
 
 from ..chance import Dice
 from .cells import DrawnCell, draw_cell
-from .poses import Section, draw_rack
+from .poses import Section, draw_rack, may_have_rack
 from .timing import draw_timing, hasten
 from .ways import draw_paths
 from .zones import draw_zones
@@ -58,9 +58,10 @@ def _share(dice: Dice, cells: Sequence[DrawnCell]) -> Section:
     if dice.chance(SHARED):
         kind = dice.pick(cells).arm
         alike = [cell for cell in cells if cell.arm.model == kind.model]
-        shared["stations"], count = draw_rack(dice, kind.around_zero())
-        for cell in _some(dice, alike):
-            cell.take_stations(count)
+        if may_have_rack(kind.axes):
+            shared["stations"], count = draw_rack(dice, kind.around_zero())
+            for cell in _some(dice, alike):
+                cell.take_stations(count)
     if dice.chance(SHARED):
         shared["palletizing"] = dice.pick(
             ({"pick": "pickup", "place": "station 0"}, {"pick": "station 0", "place": "pickup"})

@@ -15,12 +15,20 @@ MOST_STATIONS = 5  # of those that are drawn one by one
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """A joint in deg, or in mm where it `slides`: its limits, and how far from its goal it may stop."""
+    """A joint in deg, or in mm where it `slides`: its limits, and how far from its goal it may stop.
+
+    Where it slides, `up` is the way that lifts: -1 towards `lower`, 1 towards `upper`, 0 neither.
+    """
 
     slides: bool
     lower: float
     upper: float
     tolerance: float
+    up: int
+
+    def room(self, value: float) -> float:
+        """How far it may lift from there."""
+        return (value - self.lower if self.up < 0 else self.upper - value) if self.up else 0.0
 
 
 class Poses:
@@ -39,7 +47,7 @@ class Poses:
 
     def stations(self) -> tuple[Section, int]:
         """The stations of a cell one by one, or by rule; and how many."""
-        if self._dice.chance(0.3):
+        if self._dice.chance(0.3) and may_have_rack(self._axes):
             return draw_rack(self._dice, self._axes)
         count = 1 + self._dice.below(MOST_STATIONS)
         return {str(number): self.draw(approach=True) for number in range(count)}, count
@@ -63,14 +71,26 @@ class Poses:
 
     def _section(self, values: Values, *, approach: bool) -> Section:
         rows = list(zip(self._axes, values, strict=True))
-        section: Section = {"deg": [value for axis, value in rows if not axis.slides]}
-        for axis, value in rows:
-            if axis.slides:
-                section["mm"] = value
-                room = value - axis.lower
-                if approach and room >= 1 and self._dice.chance(0.5):
-                    section["approach_mm"] = _down(room * self._dice.pick((0.1, 0.5, 1.0)))
+        section: Section = {}
+        if any(not axis.slides for axis in self._axes):
+            section["deg"] = [value for axis, value in rows if not axis.slides]
+        heights = [(axis, value) for axis, value in rows if axis.slides]
+        if heights:
+            section["mm"] = told_mm([value for _, value in heights])
+        for room in [axis.room(value) for axis, value in heights if axis.up][-1:]:
+            if approach and room >= 1 and self._dice.chance(0.5):
+                section["approach_mm"] = _down(room * self._dice.pick((0.1, 0.5, 1.0)))
         return section
+
+
+def told_mm(values: Sequence[float]) -> float | list[float]:
+    """The values of the sliding joints as a file has them: a single one needs no list."""
+    return values[0] if len(values) == 1 else list(values)
+
+
+def may_have_rack(axes: Sequence[Axis]) -> bool:
+    """Whether stations by rule name joints that turn."""
+    return len(axes) > 1 and not any(axis.slides for axis in axes[:2])
 
 
 def draw_rack(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, int]:
@@ -81,11 +101,14 @@ def draw_rack(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, int]:
         "columns_q1_deg": [_inside(first, dice.between(first.lower, first.upper)) for _ in range(columns)],
         "rows_q2_deg": [_inside(second, dice.between(second.lower, second.upper)) for _ in range(rows)],
     }
-    slide = next((axis for axis in rest if axis.slides), None)
-    if slide is not None and dice.chance(0.7):
-        section["mm"] = _inside(slide, dice.between(slide.lower, slide.upper))
-        if section["mm"] - slide.lower >= 1 and dice.chance(0.5):
-            section["approach_mm"] = _down((section["mm"] - slide.lower) / 2)
+    slides = [axis for axis in rest if axis.slides]
+    if slides and dice.chance(0.7):
+        heights = [_inside(axis, dice.between(axis.lower, axis.upper)) for axis in slides]
+        section["mm"] = told_mm(heights)
+        lifting = [(axis, value) for axis, value in zip(slides, heights, strict=True) if axis.up]
+        for room in [axis.room(value) for axis, value in lifting][-1:]:
+            if room >= 1 and dice.chance(0.5):
+                section["approach_mm"] = _down(room / 2)
     return section, columns * rows
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from arboleda.core.model import Evidence, Joint, Link
 
 from ..chance import Dice
-from .poses import Axis, Section
+from .poses import Axis, Section, told_mm
 
 LINKS = (*(Link.MQTT.value,) * 3, Link.ROS.value, Link.NONE.value)
 LEVELS = tuple(level.value for level in Evidence)
@@ -28,7 +28,9 @@ class DrawnArm:
 
     def around_zero(self) -> tuple[Axis, ...]:
         """Joints with limits that every arm of this model has room for."""
-        return tuple(replace(axis, lower=0.0 if axis.slides else -AROUND, upper=AROUND) for axis in self.axes)
+        least = [max(axis.lower, 0.0 if axis.slides else -AROUND) for axis in self.axes]
+        rows = zip(self.axes, least, strict=True)
+        return tuple(replace(axis, lower=lower, upper=min(axis.upper, AROUND)) for axis, lower in rows)
 
 
 def draw_arm(dice: Dice, name: str, models: Mapping[str, Sequence[Joint]]) -> DrawnArm:
@@ -103,6 +105,7 @@ def _axis(joint: Joint) -> Axis:
         lower=math.ceil(told(joint.lower) * 10) / 10,
         upper=math.floor(told(joint.upper) * 10) / 10,
         tolerance=told(joint.step / 2 + 1e-5) * TOLERANCE_SLACK,
+        up=joint.up,
     )
 
 
@@ -120,7 +123,13 @@ def _speeds(dice: Dice, joints: Sequence[Joint]) -> Section:
             fastest = joint.speed * 1000 if joint.unit == "m" else math.degrees(joint.speed)
             unit = "mm_s" if joint.unit == "m" else "deg_s"
             speeds[f"q{number}_{unit}"] = round(dice.between(0.4, 0.99) * fastest, 1)
-    return speeds or {"q1_deg_s": round(math.degrees(joints[0].speed) / 2, 1)}
+    return speeds or _half_speed(joints[0])
+
+
+def _half_speed(joint: Joint) -> Section:
+    if joint.unit == "m":
+        return {"q1_mm_s": round(joint.speed * 500, 1)}
+    return {"q1_deg_s": round(math.degrees(joint.speed) / 2, 1)}
 
 
 def _tolerance(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, tuple[Axis, ...]]:
@@ -129,10 +138,11 @@ def _tolerance(dice: Dice, axes: Sequence[Axis]) -> tuple[Section, tuple[Axis, .
     wide = tuple(
         replace(axis, tolerance=round(axis.tolerance * dice.pick(widths) + 0.0005, 3)) for axis in axes
     )
-    section: Section = {"deg": [axis.tolerance for axis in wide if not axis.slides]}
-    for axis in wide:
-        if axis.slides:
-            section["mm"] = axis.tolerance
+    section: Section = {}
+    if turning := [axis.tolerance for axis in wide if not axis.slides]:
+        section["deg"] = turning
+    if sliding := [axis.tolerance for axis in wide if axis.slides]:
+        section["mm"] = told_mm(sliding)
     return section, wide
 
 

@@ -1,0 +1,107 @@
+"""The URDF of a model of the plant's own: from the link `base_link` on the floor to the link `tool0`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from xml.etree.ElementTree import Element, SubElement, tostring
+
+from arboleda.core.model import Joint
+from arboleda.dashboard.twin import bodies, kinematics, stand_in
+
+from .robot_models import millimetres
+from .shapes import OffsetShape
+from .urdf_file import Chain
+
+ROOT, TOOL = "base_link", "tool0"
+UPRIGHT = 0.999  # how vertical a sliding joint is that lifts
+
+
+def drawing(chain: Chain, mount: OffsetShape | None = None, tool: OffsetShape | None = None) -> str:
+    """The chain from where it is mounted to its tool point, with stand-ins where it has no shape at all.
+
+    A link of the file that has one of the two names but stands elsewhere is called `tool0_of_model`.
+    """
+    robot = chain.robot
+    names: dict[str, str] = {}
+    if mount is not None or chain.base != ROOT:
+        names[ROOT] = _free(robot, "link", f"{ROOT}_of_model")
+    if tool is not None or chain.tip != TOOL:
+        names[TOOL] = _free(robot, "link", f"{TOOL}_of_model")
+    _rename(robot, names)
+    if robot.find("link/visual") is None:
+        _add_stand_ins(robot)
+    if ROOT in names:
+        _fix(robot, ROOT, (ROOT, names.get(chain.base, chain.base)), mount)
+    if TOOL in names:
+        _fix(robot, TOOL, (names.get(chain.tip, chain.tip), TOOL), tool)
+    return tostring(robot, encoding="unicode")
+
+
+def lifts(urdf: str, joints: Sequence[Joint]) -> list[int]:
+    """For each joint: -1 where smaller values lift the tool, 1 where greater ones do, else 0."""
+    body = bodies.read(urdf)
+    frames = kinematics.place(body, (0.0,) * len(joints))
+    found = [0] * len(joints)
+    level = True  # every joint that turned so far turns about a vertical axis
+    for link in bodies.way(body):
+        moves = link["moves"]
+        if moves is None:
+            continue
+        up = kinematics.upright(frames[link["link"]], moves["axis"])
+        if moves["type"] == "turn":
+            level = level and abs(up) > UPRIGHT
+        elif level and abs(up) > UPRIGHT:
+            found[moves["index"]] = 1 if up > 0 else -1
+    return found
+
+
+def _free(robot: Element, kind: str, name: str) -> str:
+    """The name, or one like it that no other link or joint has."""
+    taken = {each.get("name") for each in robot.findall(kind)}
+    while name in taken:
+        name += "_"
+    return name
+
+
+def _rename(robot: Element, names: dict[str, str]) -> None:
+    for link in robot.findall("link"):
+        link.set("name", names.get(link.get("name", ""), link.get("name", "")))
+    for end in (*robot.findall("joint/parent"), *robot.findall("joint/child")):
+        end.set("link", names.get(end.get("link", ""), end.get("link", "")))
+
+
+def _fix(robot: Element, new: str, ends: tuple[str, str], offset: OffsetShape | None) -> None:
+    """A fixed joint from one link to another, of which one is new."""
+    offset = offset or OffsetShape()
+    xyz, rpy = map(millimetres, offset.xyz_mm), map(math.radians, offset.rpy_deg)
+    SubElement(robot, "link", {"name": new})
+    joint = SubElement(robot, "joint", {"name": _free(robot, "joint", f"{new}_joint"), "type": "fixed"})
+    SubElement(joint, "parent", {"link": ends[0]})
+    SubElement(joint, "child", {"link": ends[1]})
+    SubElement(joint, "origin", {"xyz": in_words(xyz), "rpy": in_words(rpy)})
+
+
+def _add_stand_ins(robot: Element) -> None:
+    for link in robot.findall("link"):
+        ends = [_xyz(joint) for joint in robot.findall("joint") if _parent(joint) == link.get("name")]
+        for shape in stand_in.shapes(ends):
+            visual = SubElement(link, "visual")
+            SubElement(visual, "origin", {"xyz": in_words(shape["xyz"]), "rpy": in_words(shape["rpy"])})
+            sizes = dict(zip(("radius", "length"), map(repr, shape["size"]), strict=False))
+            SubElement(SubElement(visual, "geometry"), shape["kind"], sizes)
+
+
+def _parent(joint: Element) -> str | None:
+    parent = joint.find("parent")
+    return parent.get("link") if parent is not None else None
+
+
+def _xyz(joint: Element) -> list[float]:
+    origin = joint.find("origin")
+    return [float(value) for value in (origin.get("xyz", "0 0 0") if origin is not None else "0 0 0").split()]
+
+
+def in_words(values: Iterable[float]) -> str:
+    """Numbers as an attribute of XML has them."""
+    return " ".join(f"{value:.10g}" for value in values)

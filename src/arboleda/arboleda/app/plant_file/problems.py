@@ -1,0 +1,32 @@
+"""Mistakes of one file a person wrote, each with its place in it."""
+
+from __future__ import annotations
+
+from arboleda.core.errors import ConfigError
+
+from .yaml_marks import Mark
+
+
+class Problems:
+    """Kept until `finish`; `name` is what people know the file by."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._problems: dict[tuple[int, int, str], None] = {}
+        self._elsewhere: dict[str, None] = {}
+
+    def keep(self, mark: Mark, sentence: str) -> None:
+        self._problems[(mark.line, mark.column, sentence)] = None
+
+    def keep_those_of(self, error: ConfigError) -> None:
+        """The problems of another file that this one names; each is kept once."""
+        self._elsewhere |= dict.fromkeys(error.problems)
+
+    def finish(self) -> None:
+        """ConfigError with every problem in the order of the file, those of other files last."""
+        here = (self._line(*problem) for problem in sorted(self._problems))
+        if problems := (*here, *self._elsewhere):
+            raise ConfigError(problems)
+
+    def _line(self, line: int, column: int, sentence: str) -> str:
+        return f"{self.name}:{line}:{column}: {sentence}"

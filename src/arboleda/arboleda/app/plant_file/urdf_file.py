@@ -1,0 +1,324 @@
+"""A URDF that a person wrote -> one chain of joints from the arm's foot to its tool, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element, SubElement
+
+from arboleda.core.errors import ConfigError
+
+from .document import choice, nearest, shown
+from .problems import Problems
+from .robot_models import FULL_TURN_RAD
+from .urdf_values import check_color, check_origin, check_shapes, name_of, number, numbers
+from .xml_marks import Tag, XmlFault, parse
+
+MOVING = ("revolute", "continuous", "prismatic")
+KNOWN = (*MOVING, "fixed")
+NO_ENDS = "the joint {} has no ends; it is taken as -360 deg to 360 deg"
+MOST_LINKS = 300
+REFUSED = {
+    "planar": "it moves in a plane, and here every joint has one motor; write two prismatic joints",
+    "floating": "nothing holds it, and here every joint has one motor; make it fixed",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """A joint that moves, as a file describes it; what it leaves open is None."""
+
+    name: str
+    type: str
+    lower: float
+    upper: float
+    speed: float
+    acceleration: float | None = None
+    step: float | None = None
+    pinion_radius_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chain:
+    """The joints from foot to tool, what is drawn, and what was assumed."""
+
+    robot: Element
+    base: str
+    tip: str
+    axes: tuple[Axis, ...]
+    notes: tuple[str, ...] = ()
+
+
+class WrongLink(Exception):
+    """The plant file names a link that cannot be the one: under which key, and a sentence."""
+
+    def __init__(self, key: str, sentence: str) -> None:
+        super().__init__(sentence)
+        self.key = key
+        self.sentence = sentence
+
+
+def read(name: str, raw: bytes, *, base: str | None = None, tip: str | None = None) -> Chain:
+    """The chain from the link `base` to the link `tip`, found where None; ConfigError with every problem.
+
+    WrongLink where one that is given cannot be.
+    """
+    try:
+        top = parse(raw)
+    except XmlFault as fault:
+        raise ConfigError((f"{name}:{fault.mark.line}:{fault.mark.column}: {fault.sentence}",)) from None
+    return _Reader(name, top).chain(base, tip)
+
+
+class _Reader:
+    def __init__(self, name: str, top: Tag) -> None:
+        self._problems = Problems(name)
+        self._top = top
+        self._links: dict[str, Tag] = {}
+        self._joints: dict[str, Tag] = {}
+        self._above: dict[str, Tag] = {}  # by link: the joint that carries it
+
+    def _say(self, tag: Tag, sentence: str) -> None:
+        self._problems.keep(tag.mark, sentence)
+
+    def chain(self, base: str | None, tip: str | None) -> Chain:
+        self._check_form()
+        self._problems.finish()
+        foot = self._foot(base)
+        self._problems.finish()
+        end = self._tool(foot, tip)
+        self._problems.finish()
+        way = self._way(foot, end)
+        axes = [self._axis(joint) for joint in way if joint.attributes["type"] in MOVING]
+        if not axes:
+            self._say(self._top, f"no joint moves between {foot} and {end}; an arm has one at least")
+        self._problems.finish()
+        kept = tuple(axis for axis in axes if axis)
+        return Chain(
+            robot=self._pruned(foot, {axis.name for axis in kept}),
+            base=foot,
+            tip=end,
+            axes=kept,
+            notes=tuple(self._notes(foot, way)),
+        )
+
+    def _check_form(self) -> None:
+        """Every tag for itself, and that joints lead from links to links."""
+        if any(tag.name.startswith("xacro:") for tag in _all(self._top)):
+            made = "this is xacro; type `xacro FILE.urdf.xacro > FILE.urdf` and name what that makes"
+            self._say(self._top, made)
+            self._problems.finish()
+        if self._top.name != "robot":
+            self._say(self._top, f"a URDF begins with <robot>, not <{self._top.name[:40]}>")
+            self._problems.finish()
+        for name, kept in (("link", self._links), ("joint", self._joints)):
+            for tag in self._top.all(name):
+                self._note(tag, kept)
+        if len(self._links) > MOST_LINKS:
+            self._say(self._top, f"it has {len(self._links)} links; at most {MOST_LINKS} are taken")
+            self._problems.finish()
+        for link in self._links.values():
+            check_shapes(self._problems, link)
+        for material in self._top.all("material"):
+            check_color(self._problems, material)
+        for name, joint in self._joints.items():
+            self._check_joint(name, joint)
+        self._problems.finish()
+        self._check_circles()
+
+    def _note(self, tag: Tag, kept: dict[str, Tag]) -> None:
+        name = name_of(self._problems, tag)
+        if name is None:
+            return
+        if name in kept:
+            first = f"the first is on line {kept[name].mark.line}"
+            self._say(tag, f"the {tag.name} {name} is there twice; {first}")
+        kept.setdefault(name, tag)
+
+    def _check_joint(self, name: str, joint: Tag) -> None:
+        kind = joint.attributes.get("type", "")
+        if kind in REFUSED:
+            self._say(joint, f"the joint {name} is {kind}: {REFUSED[kind]}")
+        elif kind not in KNOWN:
+            rule = f"type of the joint {name} must be {choice(KNOWN)}"
+            self._say(joint, f"{rule}, is {shown(kind)}{nearest(kind, KNOWN)}")
+        if mimic := joint.first("mimic"):
+            why = "it follows another joint, and here every joint has a motor of its own; make it fixed"
+            self._say(mimic, f"the joint {name} has <mimic>: {why}")
+        check_origin(self._problems, joint)
+        for end in ("parent", "child"):
+            tag = joint.first(end)
+            link = (tag.attributes.get("link", "") if tag else "") or ""
+            if tag is None or link not in self._links:
+                what = f"the {end} of the joint {name} must be a link of this file"
+                self._say(tag or joint, f"{what}, is {shown(link)}{nearest(link, self._links)}")
+            elif end == "child" and link in self._above:
+                other = self._above[link].attributes["name"]
+                self._say(tag, f"the link {link} hangs on two joints, {other} and {name}")
+            elif end == "child":
+                self._above[link] = joint
+
+    def _check_circles(self) -> None:
+        """Every way upwards ends; one that does not is named once."""
+        for link in self._links:
+            above, seen = link, {link}
+            while above in self._above:
+                above = _end_of(self._above[above], "parent")
+                if above in seen:
+                    self._say(self._above[above], f"the joints go round in a circle, from {above} back to it")
+                    return
+                seen.add(above)
+
+    def _foot(self, wanted: str | None) -> str:
+        """The link that stands on the floor."""
+        if wanted is not None:
+            self._check_link("base_link", wanted)
+            return wanted
+        first = [name for name in self._links if name not in self._above]
+        if not first:
+            self._say(self._top, "it has no links")
+            return ""
+        if len(first) > 1:
+            links = " and ".join(first[:4])
+            self._say(
+                self._links[first[1]], f"it begins with several links, {links}; say which with base_link"
+            )
+        return first[0]
+
+    def _tool(self, foot: str, wanted: str | None) -> str:
+        """The link at the arm's end: after its last joint that moves, `tool0` or the only end there is."""
+        below = set(self._below(foot))
+        if wanted is not None:
+            self._check_link("tip_link", wanted)
+            if wanted not in below:
+                raise WrongLink("tip_link", f"the link {wanted} does not hang on {foot}")
+            return wanted
+        moving = [link for link in self._below(foot) if link != foot and self._moves(link)]
+        last = [link for link in moving if not set(self._below(link)) & set(moving) - {link}]
+        if not moving:
+            self._say(self._top, "no joint moves; an arm has a revolute, continuous or prismatic one")
+        elif len(last) > 1:
+            ends = f"it has two ends that move, {last[0]} and {last[1]}"
+            self._say(self._above[last[1]], f"{ends}; say with tip_link which one is the arm's tool")
+        else:
+            return self._end(last[0])
+        return ""
+
+    def _end(self, link: str) -> str:
+        beyond = list(self._below(link))
+        if "tool0" in beyond:
+            return "tool0"
+        ends = [each for each in beyond if not any(self._children(each))]
+        if len(ends) > 1:
+            said = f"the link {link} has the ends {', '.join(ends[:4])}; say with tip_link which is the tool"
+            self._say(self._links[link], said)
+        return ends[0]
+
+    def _check_link(self, key: str, name: str) -> None:
+        if name not in self._links:
+            raise WrongLink(key, f"must be a link of the file, is {shown(name)}{nearest(name, self._links)}")
+
+    def _way(self, foot: str, end: str) -> list[Tag]:
+        """The joints from foot to end."""
+        way: list[Tag] = []
+        while end != foot:
+            way.insert(0, self._above[end])
+            end = _end_of(way[0], "parent")
+        return way
+
+    def _axis(self, joint: Tag) -> Axis | None:
+        """A joint that moves, held against what any motor here can do."""
+        name, kind = joint.attributes["name"], joint.attributes["type"]
+        axis = joint.first("axis")
+        if axis is not None and numbers(self._problems, axis, "xyz", 3) == (0.0, 0.0, 0.0):
+            self._say(axis, f"the axis of the joint {name} is 0 0 0; it must point somewhere")
+        limit = joint.first("limit")
+        if limit is None:
+            needs = "velocity" if kind == "continuous" else "lower, upper and velocity"
+            self._say(joint, f"the joint {name} needs <limit> with {needs}")
+            return None
+        lower, upper = self._ends(limit) if kind != "continuous" else (-FULL_TURN_RAD, FULL_TURN_RAD)
+        speed = number(self._problems, limit, "velocity")
+        if lower is None or upper is None or speed is None:
+            return None
+        unit = "m" if kind == "prismatic" else "rad"
+        if speed <= 0:
+            rule = f"velocity of the joint {name} must be more than 0 {unit}/s"
+            self._say(limit, f"{rule}, is {speed:g}")
+        if lower >= upper:
+            self._problems.keep(
+                limit.mark, f"lower of the joint {name} must be less than upper; is {lower:g}, {upper:g}"
+            )
+        elif not lower <= 0 <= upper:
+            rule = f"the limits of the joint {name} must have 0 inside, where homing ends"
+            self._say(limit, f"{rule}; they are {lower:g} to {upper:g} {unit}")
+        return Axis(name=name, type=kind, lower=lower, upper=upper, speed=speed)
+
+    def _ends(self, limit: Tag) -> tuple[float | None, float | None]:
+        lower, upper = (number(self._problems, limit, key, 0.0) for key in ("lower", "upper"))
+        return lower, upper
+
+    def _notes(self, foot: str, way: list[Tag]) -> Iterator[str]:
+        for link in self._below(foot):
+            joint = self._above[link] if link != foot else None
+            if joint is None or joint.attributes["type"] not in MOVING:
+                continue
+            if joint not in way:
+                yield f"the joint {joint.attributes['name']} is not on the way to the tool and stays at 0"
+            elif joint.attributes["type"] == "continuous":
+                yield NO_ENDS.format(joint.attributes["name"])
+        meshes = [link for link in self._below(foot) if _has_mesh(self._links[link])]
+        if meshes:
+            yield f"the twin draws a stand-in for the meshes of {', '.join(meshes)}"
+
+    def _moves(self, link: str) -> bool:
+        return link in self._above and self._above[link].attributes["type"] in MOVING
+
+    def _children(self, link: str) -> Iterator[str]:
+        return (child for child, joint in self._above.items() if _end_of(joint, "parent") == link)
+
+    def _below(self, link: str) -> Iterator[str]:
+        """The link and all that hang on it."""
+        waiting = [link] if link in self._links else []
+        seen: set[str] = set()
+        while waiting:
+            each = waiting.pop(0)
+            if each in seen:
+                continue
+            seen.add(each)
+            yield each
+            waiting += self._children(each)
+
+    def _pruned(self, foot: str, moving: set[str]) -> Element:
+        """What hangs on the foot; a joint that is not one of `moving` is fixed."""
+        robot = Element("robot", {"name": self._top.attributes.get("name", "robot")})
+        robot.extend(_element(material) for material in self._top.all("material"))
+        for link in self._below(foot):
+            if link != foot:
+                joint = SubElement(robot, "joint", self._above[link].attributes)
+                joint.extend(_element(child) for child in self._above[link].children)
+                if joint.get("name") not in moving:
+                    joint.set("type", "fixed")
+            robot.append(_element(self._links[link]))
+        return robot
+
+
+def _all(tag: Tag) -> Iterator[Tag]:
+    yield tag
+    for child in tag.children:
+        yield from _all(child)
+
+
+def _end_of(joint: Tag, which: str) -> str:
+    tag = joint.first(which)
+    return tag.attributes["link"] if tag else ""
+
+
+def _has_mesh(link: Tag) -> bool:
+    return any(tag.name == "mesh" for visual in link.all("visual") for tag in _all(visual))
+
+
+def _element(tag: Tag) -> Element:
+    element = Element(tag.name, tag.attributes)
+    element.extend(_element(child) for child in tag.children)
+    return element
