@@ -19,6 +19,7 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.app.session import ros_link
 from arboleda.core.model import MotionState
+from arboleda.core.sentence import Sentence
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 PATIENCE_S = 60.0
@@ -78,7 +79,7 @@ class Plant:
             self._steps[name] = step
             for said in {row["feedback"] for row in cell["tree"]} - self._told:
                 self._told.add(said)
-                if said.endswith("follows"):
+                if isinstance(said, Sentence) and said.key == "command.again":
                     print(f"  {said}", flush=True)
 
 

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from itertools import count
 
 from arboleda.adapters.mqtt import Address, MqttClient
-from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector
-from arboleda.core.model import Arm, Cell, Mobile, MotionState, PlantModel, Robot
+from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot, StorageCell
 from arboleda.wire.payloads import (
     EffectorGoal,
     Goal,
@@ -84,7 +84,7 @@ class Board:
     def __init__(
         self,
         robot: Robot,
-        cell: Cell,
+        cell: StorageCell,
         clockwork: Clockwork,
         move_s: Callable[[], float],
         say: Callable[[Publication], None],

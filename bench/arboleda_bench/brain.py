@@ -12,14 +12,14 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import String
 
 from arboleda.app.config import load
-from arboleda.core.messages import Command
-from arboleda.core.model import Cell, PlantModel
+from arboleda.core.commands import Command
+from arboleda.core.model import PlantModel, StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.link import connect
 
 
-def stand(name: str, make: Callable[[Node, PlantModel, Cell], object]) -> None:
+def stand(name: str, make: Callable[[Node, PlantModel, StorageCell], object]) -> None:
     """Run a node for the cell that the command line names, in Arboleda's executor, until the input ends."""
     file, cell = sys.argv[1:3]
     model = load(Path(file))
@@ -35,7 +35,7 @@ def stand(name: str, make: Callable[[Node, PlantModel, Cell], object]) -> None:
     del made
 
 
-def voices(node: Node, cell: Cell) -> dict[tuple[str, type[Command]], Publisher]:
+def voices(node: Node, cell: StorageCell) -> dict[tuple[str, type[Command]], Publisher]:
     """A publisher for every command of the cell's robots."""
     return {
         (robot.name, kind): node.create_publisher(
@@ -46,7 +46,7 @@ def voices(node: Node, cell: Cell) -> dict[tuple[str, type[Command]], Publisher]
     }
 
 
-def on_task(node: Node, cell: Cell, begin: Callable[[], None]) -> None:
+def on_task(node: Node, cell: StorageCell, begin: Callable[[], None]) -> None:
     """Call `begin` at each task for the cell."""
     node.create_subscription(String, f"{cell.name}/task_request", _ignoring(begin), qos.COMMAND)
 

@@ -18,7 +18,7 @@ from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import Float32MultiArray, UInt32
 
-from arboleda.core.messages import MoveJoints
+from arboleda.core.commands import MoveJoints
 from arboleda.core.model import Arm, MotionState
 from arboleda.wire.payloads import Telemetry, encode
 from arboleda_ros import convert, qos

@@ -13,8 +13,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
-from arboleda.core.messages import SetEffector
-from arboleda.core.model import Arm, Cell, PlantModel
+from arboleda.core.commands import SetEffector
+from arboleda.core.model import Arm, PlantModel, StorageCell
 from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos
 
@@ -29,7 +29,7 @@ Ready = tuple[Publisher, object, str | None]  # a message, and what the effector
 class Echo(Walker[Ready]):
     """One cell's robots, step by step; it takes tasks once the bridge hears it and its robots are there."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
         self._voices = {
             robot.name: node.create_publisher(Float32MultiArray, f"{robot.name}/{COMMAND}", qos.COMMAND)
             for robot in cell.robots
@@ -75,7 +75,7 @@ class Echo(Walker[Ready]):
     def _on_beat(self, message: UInt32) -> None:
         self._epoch = message.data
 
-    def _open(self, node: Node, cell: Cell) -> None:
+    def _open(self, node: Node, cell: StorageCell) -> None:
         heard = all(voice.get_subscription_count() for voice in self._voices.values())
         if heard and self._epoch and not self._silent:
             self._opening.cancel()

@@ -13,8 +13,8 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints
-from arboleda.core.model import Arm, Cell, PlantModel, Robot
+from arboleda.core.commands import Command, FollowPath, MoveJoints
+from arboleda.core.model import Arm, PlantModel, Robot, StorageCell
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -27,7 +27,7 @@ Ready = tuple[Publisher, object, str, float | None]  # a message, its robot, and
 class BareNode(Walker[Ready]):
     """One cell's robots, step by step."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
         voices = brain.voices(node, cell)
         ready = [
             (voices[step.robot, type(step)], convert.command_message(step), step.robot, _goal(cell, step))
@@ -72,7 +72,7 @@ class BareNode(Walker[Ready]):
             self.go_on()
 
 
-def _goal(cell: Cell, step: Command) -> float | None:
+def _goal(cell: StorageCell, step: Command) -> float | None:
     """The first coordinate of where a move ends; None for what is no move."""
     return steps.end(cell, step)[0] if isinstance(step, FollowPath | MoveJoints) else None
 

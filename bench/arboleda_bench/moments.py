@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from arboleda.core.messages import Command, SetEffector
+from arboleda.core.commands import Command, SetEffector
 
 
 @dataclass(frozen=True, kw_only=True)

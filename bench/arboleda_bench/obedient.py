@@ -6,17 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from arboleda.core.messages import (
-    Command,
-    Event,
-    FollowPath,
-    MoveJoints,
-    Report,
-    SetEffector,
-    TaskChanged,
-    TaskRequest,
-    TaskState,
-)
+from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.messages import Event, Report, TaskChanged, TaskRequest, TaskState
 from arboleda.core.model import Arm, MotionState, PlantModel, Robot
 from arboleda.core.plant import Plant
 

@@ -6,16 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from arboleda.core.messages import (
-    Command,
-    FollowPath,
-    Heartbeat,
-    Home,
-    MoveJoints,
-    Report,
-    SetEffector,
-    Stop,
-)
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop
+from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Arm, MotionState, PlantModel, Robot
 
 from .clockwork import Clockwork, now

@@ -9,8 +9,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints, Report, Stop
-from arboleda.core.model import Arm, Cell, Mobile, MotionState, PlantModel, Robot
+from arboleda.core.commands import Command, FollowPath, MoveJoints, Stop
+from arboleda.core.messages import Report
+from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot, StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.voice import JointsMessage
@@ -59,7 +60,7 @@ class Body:
     def __init__(
         self,
         node: Node,
-        cell: Cell,
+        cell: StorageCell,
         robot: Robot,
         clockwork: Clockwork,
         move_s: Callable[[], float],
@@ -134,7 +135,7 @@ class Body:
         return message
 
 
-def _resting_place(cell: Cell, robot: Robot) -> Sequence[float] | int:
+def _resting_place(cell: StorageCell, robot: Robot) -> Sequence[float] | int:
     return cell.path(steps.PATH).nodes[-1] if isinstance(robot, Mobile) else cell.home.q
 
 

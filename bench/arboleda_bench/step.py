@@ -27,7 +27,8 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.app.config import load
 from arboleda.core import view
-from arboleda.core.messages import Command, FollowPath, MoveJoints, Report
+from arboleda.core.commands import Command, FollowPath, MoveJoints
+from arboleda.core.messages import Report
 from arboleda.core.model import PlantModel
 
 from . import plants

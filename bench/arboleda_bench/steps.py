@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector
-from arboleda.core.model import Cell
+from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.model import StorageCell
 
 PATH, STATION = "0B", 1
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into any interval
 
 
-def task(cell: Cell) -> str:
+def task(cell: StorageCell) -> str:
     """The task that all benchmarks give."""
     return f"{cell.name} {PATH} {STATION}"
 
 
-def storage(cell: Cell, epoch: int = 1) -> list[Command]:
+def storage(cell: StorageCell, epoch: int = 1) -> list[Command]:
     """What the cell's robots are told in one storage task; the mobile robot stands where the last one ended.
 
     The pauses of the recipe are left out: one after the task's start and one after each effector command.
@@ -36,7 +36,7 @@ def storage(cell: Cell, epoch: int = 1) -> list[Command]:
     ]
 
 
-def end(cell: Cell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
+def end(cell: StorageCell, step: FollowPath | MoveJoints) -> tuple[float, ...]:
     """Where a move ends, as the robot's joint states say it: rad and m."""
     if isinstance(step, FollowPath):
         return cell.mobile.grid.position(step.nodes[-1])

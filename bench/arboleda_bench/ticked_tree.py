@@ -17,8 +17,8 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.messages import SetEffector
-from arboleda.core.model import Cell, PlantModel, Robot
+from arboleda.core.commands import SetEffector
+from arboleda.core.model import PlantModel, Robot, StorageCell
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -93,7 +93,7 @@ class Pause(Behaviour):
 class Ticked:
     """A cell's tree and its timer; the third word of the command line is how often per second it ticks."""
 
-    def __init__(self, node: Node, model: PlantModel, cell: Cell) -> None:
+    def __init__(self, node: Node, model: PlantModel, cell: StorageCell) -> None:
         self._waiting = 0
         self._tree = _storage(node, model, cell)
         brain.on_task(node, cell, self._task)
@@ -110,7 +110,7 @@ class Ticked:
             self._waiting -= 1
 
 
-def _storage(node: Node, model: PlantModel, cell: Cell) -> Sequence:
+def _storage(node: Node, model: PlantModel, cell: StorageCell) -> Sequence:
     timing, voices = model.timing, brain.voices(node, cell)
     heard = {robot.name: Heard(node, robot) for robot in cell.robots}
     leaves: list[Behaviour] = [Pause("system start", timing.dwell_s)]

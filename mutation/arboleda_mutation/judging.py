@@ -20,7 +20,9 @@ from .sources import PACKAGE, Sources, fingerprint
 TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
 FOLDERS = {
     TESTS: (str(PACKAGE), "wire_vectors"),
-    SIMULATOR: tuple(str(PACKAGE / each) for each in ("core", "wire", "sim", "simulator", "app", "plants")),
+    SIMULATOR: tuple(
+        str(PACKAGE / each) for each in ("core", "recipes", "wire", "sim", "simulator", "app", "plants")
+    ),
 }
 LIBRARIES = ("fastapi", "httpx", "PIL", "py_trees", "pydantic", "rich.progress", "typer", "yaml")
 Told = Callable[[str], None]

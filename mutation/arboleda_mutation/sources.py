@@ -12,7 +12,7 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
-MUTATED = ("core", "wire")
+MUTATED = ("core", "recipes", "wire")
 
 
 class Sources:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence, recipes
+from arboleda.core import evidence, steps
 from arboleda.core.cell import CellRun
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.model import Arm
 from arboleda.core.zones import Zones
+from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 
@@ -34,7 +35,7 @@ ZONES = (
     mutant(
         "zone_entered_only_when_held",
         "A leg's zones are taken one pose too late.",
-        edit(recipes._visit, "if leg.start == index and", "if leg.start + 1 == index and"),
+        edit(steps.visit, "if leg.start == index and", "if leg.start + 1 == index and"),
         seeds=SHARED,
     ),
 )
@@ -90,16 +91,16 @@ GRIP = (
     mutant(
         "effector_on_only_between_pick_and_place",
         "The work at a pose is done before the arm goes there.",
-        edit(recipes._at, "[go, *work]", "[*work, go]"),
+        edit(steps._at, "[go, *work]", "[*work, go]"),
         weather="none",
     ),
     mutant(
         "effector_off_only_where_legal",
         "A recovery opens the effector where the arm is, instead of carrying the part back.",
         edit(
-            recipes.recovery,
-            "*_at(context, context.back, _effector(context, False))",
-            "_effector(context, False)",
+            steps._way_home,
+            "*_at(context, robot, back, _effector(context, robot, on=False))",
+            "_effector(context, robot, on=False)",
         ),
     ),
     mutant(
@@ -128,9 +129,9 @@ GRIP = (
         "one_pick_one_place",
         "A storage task fetches its part twice.",
         edit(
-            recipes.storage,
-            "(station, _let_go(context, station)),",
-            "(station, _let_go(context, station)), (pickup, _grip(context, pickup)),",
+            storage.storage,
+            "(cell.home, []),",
+            "(pickup, steps.grip(context, arm, pickup, check=check)), (cell.home, []),",
         ),
         weather="none",
     ),

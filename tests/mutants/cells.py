@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence, recipes
+from arboleda.core import evidence
 from arboleda.core.cell import CellRun
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.leaves import Dwell, TakeZones
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.recipes import storage
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.wire import strict
 
@@ -111,7 +112,7 @@ TASKS = (
         "no_internal_failure",
         "A path is cut where its robot stands, even where nobody knows that.",
         edit(
-            recipes._follow,
+            storage._follow,
             "nodes[nodes.index(node) :] if node in nodes else nodes",
             "nodes[nodes.index(node) :]",
         ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core import recipes
+from arboleda.core import steps
 from arboleda.core.belief import Belief
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.leaves import Act
@@ -42,7 +42,7 @@ COMMANDS = (
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
         edit(Dispatcher._busy_with, "return self.work_of(command.robot)", "return None"),
-        edit(recipes._settle, "not context.open_commands() and ", ""),
+        edit(steps._settle, "not context.open_commands() and ", ""),
         likely=6,
     ),
     mutant(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core import advisor, evidence, recipes, text, view
+from arboleda.core import advisor, evidence, steps, view
 from arboleda.core.advisor import Advisor
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
@@ -10,6 +10,7 @@ from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.recipes import storage
 from arboleda.wire import status
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge
@@ -75,14 +76,14 @@ PEOPLE = (
     mutant(
         "texts_mean_what_they_say",
         "The last station of a rack is not known.",
-        edit(text._storage, "range(len(cell.stations))]", "range(len(cell.stations) - 1)]"),
+        edit(storage._numbers, "range(len(cell.stations))]", "range(len(cell.stations) - 1)]"),
         weather="none",
     ),
     mutant(
         "commands_follow_the_recipe",
         "After an effector nobody dwells.",
         edit(
-            recipes._effector,
+            steps._effector,
             'Dwell("dwell", context, context.timing.dwell_s)',
             'Dwell("dwell", context, 0.0)',
         ),
@@ -93,8 +94,8 @@ PEOPLE = (
         "A recovery from an unknown place is planned as from home.",
         edit(
             Context.recovery_zones,
-            "self._dispatcher.place(self.cell)",
-            "self.standing()",
+            "self._dispatcher.place(space)",
+            "self.standing(robot)",
         ),
         seeds=SHARED,
         weather={"brown_out": 10.0, "operator_override": 20.0, "operator_retry": 20.0, "lost_steps": 10.0},

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Absence, FollowPath, Home, MoveJoints, Reason, Verb
+from arboleda.core.commands import FollowPath, Home, MoveJoints
+from arboleda.core.messages import Absence, Reason, Verb
 from arboleda.core.model import Evidence
 from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped

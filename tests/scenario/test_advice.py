@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.advice import Advice, Hand, sentence
-from arboleda.core.messages import OperatorRequest, Reason, Stop, StopMode, TaskState, Verb
+from arboleda.core.commands import Stop, StopMode
+from arboleda.core.messages import OperatorRequest, Reason, TaskState, Verb
 from arboleda.core.model import Evidence
 from arboleda.simulator.world import BRIDGE
 from arboleda.testing import Rig, Witness, faults, shipped, slowed

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import Command, Report, TaskState, Verb
+from arboleda.core.commands import Command
+from arboleda.core.messages import Report, TaskState, Verb
 from arboleda.core.model import Evidence, Link, MotionState
 from arboleda.testing import Rig, shipped
 

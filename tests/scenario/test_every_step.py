@@ -155,7 +155,7 @@ def test_stop_then_clear_reset_and_resume(scene: Any, evidence: Evidence, step: 
     here.rig.wait(2.0)
     assert here.witness.motions_since(mark, here.rig.model.robots) == []
     assert here.body.effector is on, "effectors keep their state"
-    assert here.cell.state is (CellState.HELD if here.cell.context.holding() else CellState.IDLE)
+    assert here.cell.state is (CellState.HELD if here.cell.context.holding else CellState.IDLE)
     assert not on or here.cell.state is CellState.HELD
     if here.cell.state is CellState.HELD:
         assert here.operate(Verb.RESUME) is not None

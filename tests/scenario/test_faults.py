@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import recipes
+from arboleda.core import steps
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Reason, TaskState
 from arboleda.core.model import Evidence
@@ -120,7 +120,7 @@ def longest_s(rig: Rig) -> float:
 def rest_s(rig: Rig, outcome: Outcome) -> float:
     """What the declared deadlines allow from the notice of a fault to the end of the task."""
     timing = rig.model.timing
-    settle_s = timing.stop_timeout_s + recipes.SETTLE_S
+    settle_s = timing.stop_timeout_s + steps.SETTLE_S
     step_s = timing.effector_timeout_s + timing.dwell_s
     if outcome.task is TaskState.DONE:
         return deadline(rig, DRIVING) + 3 * deadline(rig, CARRYING) + 2 * step_s

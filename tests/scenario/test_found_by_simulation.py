@@ -9,8 +9,9 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import FollowPath, Home, SetEffector
 from arboleda.core.ledger import State
-from arboleda.core.messages import FollowPath, Home, Journal, SetEffector, TaskState, Verb
+from arboleda.core.messages import Journal, TaskState, Verb
 from arboleda.core.model import Evidence, PlantModel, Retry
 from arboleda.sim.arm import ArmBody
 from arboleda.simulator.faults import Fault

@@ -6,15 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import (
-    Event,
-    MoveJoints,
-    Reason,
-    Report,
-    TaskChanged,
-    TaskRequest,
-    TaskState,
-)
+from arboleda.core.commands import MoveJoints
+from arboleda.core.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
 from arboleda.core.model import Evidence, Link, MotionState, PlantModel
 from arboleda.core.plant import Plant
 from arboleda.testing import Rig, shipped

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Command, Fact, Home, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.core.commands import Command, Home
+from arboleda.core.messages import Fact, Journal, OperatorRequest, Reason, TaskState, Verb
 from arboleda.core.model import Evidence, Link, PlantModel
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication

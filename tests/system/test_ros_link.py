@@ -22,20 +22,15 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
 from std_srvs.srv import Trigger
 
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.errors import StartError
 from arboleda.core.messages import (
-    FollowPath,
     Heartbeat,
-    Home,
     Interference,
     Journal,
-    MoveJoints,
     OperatorAnswer,
     OperatorRequest,
     Report,
-    SetEffector,
-    Stop,
-    StopMode,
     SystemStart,
     TaskChanged,
     TaskRequest,

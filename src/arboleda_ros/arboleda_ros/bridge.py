@@ -15,8 +15,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import Float32MultiArray, String, UInt32
 
+from arboleda.core.commands import Command
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, Heartbeat, Report
+from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Link, PlantModel, Robot
 from arboleda.wire import epochs
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN, FromPlant

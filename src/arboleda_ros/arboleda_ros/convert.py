@@ -9,9 +9,10 @@ from dataclasses import replace
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
 
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.counting import counted
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, Report, SetEffector, Stop, StopMode
+from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Mobile, MotionState, Robot
 from arboleda.wire.hop import PLAIN, loses_its_id
 from arboleda.wire.status import from_label, to_label

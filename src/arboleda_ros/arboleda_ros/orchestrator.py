@@ -18,9 +18,9 @@ from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
 from arboleda.app import view_text
 from arboleda.app.seldom import Seldom
 from arboleda.core import view
+from arboleda.core.commands import Command
 from arboleda.core.errors import ArboledaError, PayloadError
 from arboleda.core.messages import (
-    Command,
     Event,
     Heartbeat,
     Interference,

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell
+from arboleda.core.model import StorageCell
 
 TEXT = """\
 name: p
@@ -25,13 +25,13 @@ TWO = "    pickups:\n      A: {deg: [40, 5], mm: 0}\n      c: {deg: [50, 5], mm:
 B = "      B: {deg: [1, 1], mm: 0}\n"
 
 
-def cell(tmp_path: Path, text: str) -> Cell:
+def cell(tmp_path: Path, text: str) -> StorageCell:
     file = tmp_path / "p.yaml"
     file.write_text(TEXT + text, "utf-8")
     return config.load(file).cells[0]
 
 
-def taken_at(of: Cell) -> dict[str, str]:
+def taken_at(of: StorageCell) -> dict[str, str]:
     return {path.code: of.pickup_of(path).name for path in of.paths}
 
 

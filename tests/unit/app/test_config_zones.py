@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.core.model import Crossing, PlantModel, Pose, Retry, StorageCell, Timing
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
 PLANT = files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
@@ -82,7 +82,7 @@ def problems(tmp_path: Path, text: str) -> list[str]:
     return [problem.removeprefix(f"{tmp_path / 'plant.yaml'}:") for problem in refusal.value.problems]
 
 
-def poses(cell: Cell) -> list[Pose]:
+def poses(cell: StorageCell) -> list[Pose]:
     return [cell.home, cell.pickup, *cell.stations, cell.palletizing.pick, cell.palletizing.place]
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.app.conformance.bench import Jostle, Send
 from arboleda.app.conformance.judge import CHECKS, Judge
-from arboleda.core.messages import StopMode
+from arboleda.core.commands import StopMode
 from arboleda.core.model import Arm, Evidence, Joint
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board

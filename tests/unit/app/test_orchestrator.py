@@ -11,21 +11,17 @@ from arboleda.app.parts.bridge import BridgePart
 from arboleda.app.parts.broker import OtherBroker, address
 from arboleda.app.parts.orchestrator import Orchestrator
 from arboleda.app.parts.slices import PAUSE_S, SLICE_S
+from arboleda.core.commands import Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import (
     Absence,
     Fact,
     Heartbeat,
-    Home,
     InternalError,
     Journal,
-    MoveJoints,
     OperatorAnswer,
     OperatorRequest,
     Remember,
-    SetEffector,
-    Stop,
-    StopMode,
     Undelivered,
     Verb,
 )

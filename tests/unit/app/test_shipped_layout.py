@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.app.urdf import robot_urdf
 from arboleda.core import text
-from arboleda.core.model import Arm, Cell, Joint, Mobile, Pose
+from arboleda.core.model import Arm, Joint, Mobile, Pose, StorageCell
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
@@ -58,7 +58,7 @@ def carried(mobile: Mobile, node: int) -> kinematics.Point:
     return kinematics.at(floor, (x, y, deck(drawn(mobile.name)) + PART_HEIGHT_M))
 
 
-def stored(cell: Cell) -> dict[str, kinematics.Point]:
+def stored(cell: StorageCell) -> dict[str, kinematics.Point]:
     """The middle of the part in each station."""
     return {station.name: held(cell.arm, station)[1] for station in cell.stations}
 
@@ -100,20 +100,19 @@ def test_these_are_all_tasks() -> None:
 def test_a_task_takes_the_part_from_the_mobile_and_puts_it_into_its_station(task: str) -> None:
     order = text.parse(task, shipped())
     cell = CELLS[order.cell]
-    assert order.path is not None and order.station is not None
-    pickup, tool = cell.pickup_of(order.path), held(cell.arm, cell.pickup_of(order.path))
-    top = carried(cell.mobile, order.path.nodes[-1])
+    pickup, tool = cell.pickup_of(order.values["path"]), held(cell.arm, cell.pickup_of(order.values["path"]))
+    top = carried(cell.mobile, order.values["path"].nodes[-1])
     assert math.dist(tool[0], top) < FEW_MM
     assert tool[1][2] < tool[0][2], "the part hangs below the tool"
-    station = held(cell.arm, order.station)
+    station = held(cell.arm, order.values["station"])
     assert station[0][2] - station[2][2] == pytest.approx(PART_HEIGHT_M, abs=1e-4), "it stands upright"
     assert station[2][2] > 0
-    others = [middle for name, middle in stored(cell).items() if name != order.station.name]
-    for q in on_the_way(cell.arm, pickup, order.station):
+    others = [middle for name, middle in stored(cell).items() if name != order.values["station"].name]
+    for q in on_the_way(cell.arm, pickup, order.values["station"]):
         _, middle, low = part_at(cell.arm, q)
         assert low[2] > 0
         assert not any(strikes(middle, other) for other in others)
-    for q in on_the_way(cell.arm, order.station, cell.home):
+    for q in on_the_way(cell.arm, order.values["station"], cell.home):
         tip, _, _ = part_at(cell.arm, q)
         assert all(tip[2] > z + PART_HEIGHT_M / 2 - FEW_MM or away(tip, (x, y)) for x, y, z in others)
 

@@ -1,6 +1,6 @@
 """What the robots of a cell saw, and the figures of it."""
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
 from arboleda_bench.moments import Cycle, Moment, cycles, kind, reactions
 
 DRIVE = FollowPath(id="1-1", robot="m1", nodes=(0, 3))

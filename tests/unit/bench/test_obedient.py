@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import FollowPath, MoveJoints, SetEffector, TaskChanged, TaskState
+from arboleda.core.commands import FollowPath, MoveJoints, SetEffector
+from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.testing import plants
 from arboleda_bench.obedient import Yard, command_in, is_over
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import FollowPath, Heartbeat, MoveJoints, SetEffector, TaskChanged, TaskRequest
+from arboleda.core.commands import FollowPath, MoveJoints, SetEffector
+from arboleda.core.messages import Heartbeat, TaskChanged, TaskRequest
 from arboleda.core.plant import Plant
 from arboleda.testing.plants import shipped
 from arboleda_bench import clockwork, played

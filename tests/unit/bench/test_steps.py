@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 
 from arboleda.app.config import load
-from arboleda.core.messages import Command, FollowPath, MoveJoints, TaskState
-from arboleda.core.model import Cell
+from arboleda.core.commands import Command, FollowPath, MoveJoints
+from arboleda.core.messages import TaskState
+from arboleda.core.model import StorageCell
 from arboleda.testing.rig import Rig
 from arboleda_bench import plants, steps
 
@@ -55,5 +56,5 @@ def test_a_plant_for_short_moves_has_cells_that_are_alike(tmp_path):
     assert _poses(cells[0]) == _poses(cells[1])
 
 
-def _poses(cell: Cell) -> list[tuple[float, ...]]:
+def _poses(cell: StorageCell) -> list[tuple[float, ...]]:
     return [pose.q for pose in cell.poses]

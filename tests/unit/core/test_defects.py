@@ -13,18 +13,15 @@ from py_trees.composites import Sequence
 from arboleda.core import evidence
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import FollowPath, MoveJoints, Stop, StopMode
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import Feed, Ledger
 from arboleda.core.messages import (
-    FollowPath,
     InternalError,
-    MoveJoints,
     OperatorAnswer,
     OperatorRequest,
     Reason,
     Shutdown,
-    Stop,
-    StopMode,
     TaskChanged,
     Undelivered,
     Verb,
@@ -32,7 +29,6 @@ from arboleda.core.messages import (
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
-from arboleda.core.task import Recipe
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 Make = Callable[[Evidence], Any]
@@ -74,7 +70,7 @@ def exploding(hand: Make, *leaves: Callable[[Any], Behaviour]) -> Any:
     def build(order: Any, context: Any) -> Behaviour:
         return Sequence("boom", memory=True, children=[leaf(context) for leaf in leaves])
 
-    plant.plant = Plant(plant.plant.model, epoch=7, now=plant.now, recipes={Recipe.PALLETIZING: build})
+    plant.plant = Plant(plant.plant.model, epoch=7, now=plant.now, recipes={"palletizing": build})
     assert cell is not plant.plant.cells["sis_a"]
     plant.awake()
     return plant

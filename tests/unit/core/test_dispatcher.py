@@ -6,9 +6,10 @@ from functools import partial
 
 import pytest
 
+from arboleda.core.commands import Home, MoveJoints, SetEffector
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.ledger import State
-from arboleda.core.messages import Home, MoveJoints, Reason, Report, SetEffector
+from arboleda.core.messages import Reason, Report
 from arboleda.core.model import MotionState
 from arboleda.testing import shipped
 

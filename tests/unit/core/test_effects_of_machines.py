@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from arboleda.core.belief import Belief
+from arboleda.core.commands import Command, Motion, Process, Query, Switch
 from arboleda.core.evidence import QUIET_S, Before, Verdict, judge
 from arboleda.core.facts import Facts, Value
 from arboleda.core.ledger import Entry, Feed
-from arboleda.core.messages import Command, Motion, Process, Query, Reason, Report, Switch
+from arboleda.core.messages import Reason, Report
 from arboleda.core.model import Evidence, Link, MotionState, Robot
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED

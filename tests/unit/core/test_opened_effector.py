@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import MoveJoints, Reason, SetEffector
+from arboleda.core.commands import MoveJoints, SetEffector
+from arboleda.core.messages import Reason
 from arboleda.core.model import Evidence, MotionState
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED

@@ -6,19 +6,15 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import recipes, view
+from arboleda.core import leaves, view
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import FollowPath, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.messages import (
-    FollowPath,
     Heartbeat,
     Interference,
-    MoveJoints,
     OperatorRequest,
     Reason,
-    SetEffector,
     Shutdown,
-    Stop,
-    StopMode,
     SystemStart,
     TaskChanged,
     TaskRequest,
@@ -279,7 +275,7 @@ def test_a_leaf_that_raises_fails_its_task_and_halts_its_robot(
         raise ZeroDivisionError("in a leaf")
 
     plant = hand(Evidence.IDS)
-    monkeypatch.setattr(recipes.Act, "update", raises)
+    monkeypatch.setattr(leaves.Act, "update", raises)
     plant.awake()
     plant.submit("sis_a 0B 7")
     plant.wait(0.2)

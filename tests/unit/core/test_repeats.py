@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.core.belief import Belief
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector
 from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.messages import FollowPath, Home, MoveJoints, Report, SetEffector
+from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import shipped
 

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.core import view
-from arboleda.core.messages import MoveJoints, OperatorRequest, Verb
+from arboleda.core.commands import MoveJoints
+from arboleda.core.messages import OperatorRequest, Verb
 from arboleda.core.model import Evidence
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from arboleda.app.simulate.request import shared
-from arboleda.core.messages import MoveJoints, Report
+from arboleda.core.commands import MoveJoints
+from arboleda.core.messages import Report
 from arboleda.core.underway import PATIENCE_S, UnderWay
 from arboleda.testing import shipped
 

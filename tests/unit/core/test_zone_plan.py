@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, Crossing, Palletizing, Pose
+from arboleda.core.model import Crossing, Palletizing, Pose, StorageCell
 from arboleda.core.zone_plan import Leg, palletizing_way, plan, plan_problems, storage_way
 from arboleda.testing import shipped
 
@@ -16,7 +16,7 @@ NONE = frozenset[str]()
 STATION, OTHER, PLACE = 7, 4, 8  # PLACE is where the shipped cell palletizes to
 
 
-def cell(*crossings: tuple[str, str, str], **zones: str) -> Cell:
+def cell(*crossings: tuple[str, str, str], **zones: str) -> StorageCell:
     """The shipped cell with poses in zones (`pickup="x y"`) and moves through one (from, to, zone)."""
     plain = shipped("sis_a").cells[0]
 
@@ -34,9 +34,9 @@ def cell(*crossings: tuple[str, str, str], **zones: str) -> Cell:
     )
 
 
-def storage(made: Cell) -> list[Any]:
+def storage(made: StorageCell) -> list[Any]:
     way = storage_way(made, made.pickup, made.stations[STATION], made.home)
-    return [(leg.start, leg.end, leg.zones) for leg in plan(made, way, made.pickup)]
+    return [(leg.start, leg.end, leg.zones) for leg in plan(made.workspaces["ra1"], way, made.pickup)]
 
 
 LEGS = {  # poses of the way: home 0, pick-up 1, station 7 2, home 3
@@ -66,7 +66,7 @@ LEGS = {  # poses of the way: home 0, pick-up 1, station 7 2, home 3
 
 
 @pytest.mark.parametrize("case", LEGS.values(), ids=LEGS)
-def test_a_storage_way_has_these_legs(case: tuple[Cell, list[Any]]) -> None:
+def test_a_storage_way_has_these_legs(case: tuple[StorageCell, list[Any]]) -> None:
     made, legs = case
     assert storage(made) == legs
 
@@ -84,7 +84,7 @@ def test_an_arm_that_stands_at_a_station_starts_there() -> None:
     start = made.palletizing.place
     legs = plan(made, storage_way(made, made.pickup, made.stations[STATION], start), made.pickup)
     assert legs[0] == Leg(start=0, end=1, zones=frozenset({"x", "y"}))
-    legs = plan(made, palletizing_way(made, start), made.pickup)
+    legs = plan(made.workspaces["ra1"], palletizing_way(made, start), made.pickup)
     assert [(leg.start, leg.end) for leg in legs] == [(0, 1), (1, 2), (2, 3)]
     assert "y" in legs[0].zones
 
@@ -93,7 +93,7 @@ def test_an_arm_that_stands_at_a_station_starts_there() -> None:
 def test_a_way_starts_and_ends_outside(name: str) -> None:
     made = cell(**{name.replace(" ", ""): "x"})
     with pytest.raises(ConfigError, match=f"{name} lies in zone x, so no way may start or end there"):
-        plan(made, palletizing_way(made, made.home), made.pickup)
+        plan(made.workspaces["ra1"], palletizing_way(made, made.home), made.pickup)
 
 
 def test_no_problem_with_poses_outside_or_passed_through() -> None:

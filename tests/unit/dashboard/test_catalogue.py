@@ -18,7 +18,7 @@ import arboleda
 from arboleda.core.sentence import Phrase, Sentence
 from arboleda.dashboard.wording import LANGUAGES, tree_of, words
 
-TOLD_BY = ("core", "wire", "app.parts", "dashboard")
+TOLD_BY = ("core", "recipes", "wire", "app.parts", "dashboard")
 OTHERS = LANGUAGES[1:]
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import StopMode
+from arboleda.core.commands import StopMode
 from arboleda.core.model import MotionState
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import shipped

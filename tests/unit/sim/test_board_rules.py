@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import StopMode
+from arboleda.core.commands import StopMode
 from arboleda.core.model import Evidence, MotionState
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, StopGoal
 from arboleda.wire.topics import Channel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import StopMode
+from arboleda.core.commands import StopMode
 from arboleda.core.model import MotionState
 from arboleda.wire.payloads import EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel

@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import evidence, recipes
+from arboleda.core import evidence, steps
+from arboleda.core.commands import Home, MoveJoints, SetEffector
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.evidence import Verdict
 from arboleda.core.ledger import Feed
-from arboleda.core.messages import Home, MoveJoints, SetEffector, Verb
+from arboleda.core.messages import Verb
 from arboleda.core.model import Evidence, PlantModel
-from arboleda.core.task import Recipe
 from arboleda.core.zones import Zones
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
@@ -141,7 +141,7 @@ def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) ->
 
 
 def everybody_gets_it(patch: Patch) -> Watch:
-    patch.setattr(Context, "take_zones", lambda self, zones, *, inside=False: True)
+    patch.setattr(Context, "take_zones", lambda self, robot, zones, *, inside=False: True)
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
         watch.world.request_task(f"{cell.name} palletizing")
@@ -246,7 +246,7 @@ def gripped_at_home(patch: Patch) -> Watch:
 
 
 def began_with_the_effector_on(patch: Patch) -> Watch:
-    patch.setattr(Context, "holding", lambda self: False)
+    patch.setattr(Context, "holding", [])
     watch = Watch()
     watch.body.switch_effector(True)
     watch.wait(1.0)
@@ -270,24 +270,24 @@ def a_part_from_nowhere(patch: Patch) -> Watch:
 
 def twice(order: Any, context: Context) -> Any:
     """A storage recipe that stores two parts."""
-    cell, station = context.cell, order.station
-    visits = [
-        (cell.pickup, recipes._grip(context, cell.pickup)),
-        (station, recipes._let_go(context, station)),
-    ]
-    again = [(cell.pickup, recipes._grip(context, cell.pickup)), (station, recipes._let_go(context, station))]
+    cell, arm, station = context.cell, context.cell.arm.name, order.values["station"]
+
+    def once() -> list[Any]:
+        gripped = steps.grip(context, arm, cell.pickup, check=False)
+        return [(cell.pickup, gripped), (station, steps.let_go(context, arm, station, check=False))]
+
     way = (cell.home, cell.pickup, station, cell.pickup, station)
-    return recipes._recovering(Recipe.STORAGE, recipes._visit(context, way, [*visits, *again]), context)
+    return steps.task("storage", steps.visit(context, arm, way, [*once(), *once()]), context)
 
 
 def two_parts(patch: Patch) -> Watch:
-    watch = Watch(recipes={Recipe.STORAGE: twice})
+    watch = Watch(recipes={"storage": twice})
     watch.task("sis_a 0B 7", wait_s=30.0)
     return watch
 
 
 def nothing_was_done(patch: Patch) -> Watch:
-    watch = Watch(recipes={Recipe.STORAGE: lambda order, context: recipes._start(context)})
+    watch = Watch(recipes={"storage": lambda order, context: steps.start(context)})
     watch.task("sis_a 0B 7")
     return watch
 

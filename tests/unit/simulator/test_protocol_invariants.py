@@ -20,27 +20,13 @@ from arboleda.core import (
     ledger,
     operator,
     plant,
-    recipes,
 )
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.ledger import TABLE, Feed, State
-from arboleda.core.messages import (
-    Command,
-    Fact,
-    FollowPath,
-    Heartbeat,
-    Home,
-    MoveJoints,
-    OperatorRequest,
-    SetEffector,
-    Stop,
-    StopMode,
-    TaskState,
-    Verb,
-)
+from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
 from arboleda.core.model import Arm, Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.core.sentence import Phrase
-from arboleda.core.task import Recipe
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.books import BOOKS
@@ -65,8 +51,8 @@ TASK = "sis_a 0B 7"
 class Watch:
     """A world that has been on for half a second, and the sentences that each invariant has yielded since."""
 
-    def __init__(self, model: PlantModel | None = None) -> None:
-        self.world = World(model or shipped("sis_a"))
+    def __init__(self, model: PlantModel | None = None, **world: Any) -> None:
+        self.world = World(model or shipped("sis_a"), **world)
         self.found: dict[str, list[str]] = {}
         self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
         self.world.watchers.append(self._check)
@@ -547,17 +533,15 @@ def test_nothing_moves_after_an_absence__unless_an_operator_says_so(verb):
     assert watch.found == {}
 
 
-def test_no_internal_failure(bites, monkeypatch):
-    monkeypatch.setattr(recipes, "storage", broken)
-    monkeypatch.setattr(recipes, "RECIPES", {**recipes.RECIPES, Recipe.STORAGE: broken})
-    monkeypatch.setattr(plant, "RECIPES", recipes.RECIPES, raising=False)
-    watch = Watch()
+def test_no_internal_failure(bites):
+    watch = Watch(recipes={"storage": broken})
     watch.task()
     bites(watch)
 
 
 def test_sentences_are_for_people(monkeypatch, bites):
-    monkeypatch.setattr("arboleda.core.text.FORM", Phrase("text.form", "KeyError('storage')"))
+    wrong = Phrase("text.form", "KeyError('storage')")
+    monkeypatch.setattr("arboleda.core.text._form", lambda plant: wrong())
     watch = Watch()
     watch.task("")
     bites(watch)

@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.ledger import State
-from arboleda.core.messages import FollowPath, MoveJoints, Report, TaskChanged, TaskState, Verb
+from arboleda.core.messages import Report, TaskChanged, TaskState, Verb
 from arboleda.core.model import Evidence, MotionState
 from arboleda.simulator.record import Record
 from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, Stopped

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import StopMode, Verb
+from arboleda.core.commands import StopMode
+from arboleda.core.messages import Verb
 from arboleda.core.model import Crossing, PlantModel
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth

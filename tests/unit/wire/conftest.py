@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Command, Heartbeat, Report
+from arboleda.core.commands import Command
+from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge, Message

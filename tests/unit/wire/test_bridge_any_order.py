@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.messages import FollowPath, Home, MoveJoints, Report, SetEffector, Stop, StopMode
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, MotionState, Robot
 from arboleda.wire.payloads import REFUSALS, Beat
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from arboleda.core.messages import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import Evidence, MotionState
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import ForeignCommands, MotionState
 from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
 from arboleda.wire.hop import FromPlant, without_id

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import MoveJoints
+from arboleda.core.commands import MoveJoints
 from arboleda.core.model import Evidence, MotionState
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK

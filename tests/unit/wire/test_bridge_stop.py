@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import Command, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import MotionState
 from arboleda.wire.bridge import Leaving
 from arboleda.wire.payloads import EffectorGoal, StopGoal

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import Home
+from arboleda.core.commands import Home
 from arboleda.core.model import MotionState
 from arboleda.wire.labels import Labels
 from arboleda.wire.strict import UINT32

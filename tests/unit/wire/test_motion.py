@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import MoveJoints
+from arboleda.core.commands import MoveJoints
 from arboleda.core.model import Evidence, MotionState
 from arboleda.testing import shipped
 from arboleda.wire.motion import LINGER_S, OpenMotion

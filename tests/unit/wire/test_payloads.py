@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from arboleda.core.commands import StopMode
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import StopMode
 from arboleda.core.model import MotionState
 from arboleda.wire.payloads import (
     REFUSALS,

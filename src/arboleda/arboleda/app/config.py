@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
+from arboleda.core.model import ForeignCommands, MqttVersion, PlantModel, Retry, StorageCell, Timing
 from arboleda.core.model import Path as Route
+from arboleda.recipes.storage import RECIPES
 
 from . import user_file
 from .plant_file import rack
@@ -122,7 +123,7 @@ def _timing(document: Document) -> TimingShape | None:
     return shape
 
 
-def _cell(document: Document, name: str) -> Cell | None:
+def _cell(document: Document, name: str) -> StorageCell | None:
     place: Place = ("cells", name)
     shape = document.read(CellShape, place)
     kind = arm_model(document, (*place, "arm"))
@@ -135,8 +136,9 @@ def _cell(document: Document, name: str) -> Cell | None:
         check_nodes_show(document, (*place, "mobile"), routes, the_mobile)
     if not (shape and retry and the_arm and the_mobile and routes and poses):
         return None
-    return Cell(
+    return StorageCell(
         name=name,
+        recipes=RECIPES,
         arm=the_arm,
         mobile=the_mobile,
         paths=routes,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from arboleda.core.errors import ArboledaError
-from arboleda.core.model import Arm, Cell, Mobile, Placement, PlantModel, Pose
+from arboleda.core.model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
@@ -38,14 +38,14 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 class Stand:
     """One cell as it stands in the world, in m: its arm's body, and the outlines of what is on the floor."""
 
-    cell: Cell
+    cell: StorageCell
     body: Body
     deck_m: float
     base: Outline
     grid: Outline
 
     @classmethod
-    def of(cls, plant: PlantModel, cell: Cell) -> Stand:
+    def of(cls, plant: PlantModel, cell: StorageCell) -> Stand:
         arm, mobile = (_body(plant, name) for name in (cell.arm.name, cell.mobile.name))
         x, y = cell.arm.base.x, cell.arm.base.y
         return cls(

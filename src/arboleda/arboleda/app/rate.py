@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from arboleda.core.errors import StartError
-from arboleda.core.model import Arm, Cell, Joint, PlantModel
+from arboleda.core.model import Arm, Joint, PlantModel, StorageCell
 
 
 def check_rate(rate: float) -> float:
@@ -21,7 +21,7 @@ def at_rate(model: PlantModel, rate: float) -> PlantModel:
     return replace(model, cells=tuple(_cell_at_rate(cell, rate) for cell in model.cells))
 
 
-def _cell_at_rate(cell: Cell, rate: float) -> Cell:
+def _cell_at_rate(cell: StorageCell, rate: float) -> StorageCell:
     arm: Arm = replace(cell.arm, joints=tuple(_joint_at_rate(joint, rate) for joint in cell.arm.joints))
     return replace(cell, arm=arm, mobile=replace(cell.mobile, speed=cell.mobile.speed * rate))
 

@@ -60,12 +60,13 @@ class Advisor:
         yield from readying
         if readying and readying[0].do is Verb.STOP:
             return
-        arm = run.cell.arm.name
-        uproots = any(each.do is Verb.HOME and each.scope == arm for each in readying)
+        homed = [
+            each.scope for each in readying if each.do is Verb.HOME and each.scope in run.cell.workspaces
+        ]
         if run.task is None:
             yield from self._recovering(run, asked)
-        elif uproots:
-            yield _abandon(run, WILL_BE_HOMED(arm=arm))
+        elif homed:
+            yield _abandon(run, WILL_BE_HOMED(arm=homed[0]))
         elif run.stranded:
             yield _abandon(run, run.stranded)
         else:
@@ -74,11 +75,11 @@ class Advisor:
             yield replace(_abandon(run, run.why_held), instead=True)
 
     def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
-        name, arm, holding = run.cell.name, run.cell.arm.name, run.context.holding()
+        name, holding = run.cell.name, run.context.holding
         yield from self._freeing(run, run.context.awaited_by_recovery(), asked)
-        yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=(arm,))
-        if holding:
-            yield Advice(do=Verb.RELEASE, scope=arm, why=run.why_held, drops=(arm,), instead=True)
+        yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
+        for robot in holding:
+            yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_held, drops=(robot,), instead=True)
         yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding)
 
     def _aborted(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -91,8 +92,8 @@ class Advisor:
     def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
         yield from self._readying(run, asked)
-        if run.context.holding():
-            yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=(run.cell.arm.name,))
+        if run.context.holding:
+            yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=_recovered(run))
         yield from _running_again(run)
 
     def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -111,16 +112,16 @@ class Advisor:
             elif obstacle.reason is Reason.NOT_HOMED:
                 by_reason += self._homing(run, robot.name, obstacle.sentence, asked)
         astray = run.context.astray() if run.state is CellState.IDLE else None
-        arm = run.cell.arm.name
-        if astray is not None and not any(each.scope == arm for each in by_reason):
-            by_reason += self._homing(run, arm, astray.sentence, asked)
+        if astray is not None and not any(each.scope == astray[0] for each in by_reason):
+            by_reason += self._homing(run, astray[0], astray[1].sentence, asked)
         yield from by_reason
 
     def _homing(self, run: CellRun, robot: str, why: Sentence, asked: frozenset[str]) -> Iterator[Advice]:
         by_routine = run.context.homes_by_routine(robot)
         if by_routine:
-            if robot == run.cell.arm.name:
-                yield from self._freeing(run, run.context.awaited_zones(run.cell.zones), asked)
+            if robot in run.cell.zone_users:
+                zones = run.cell.workspaces[robot].zones
+                yield from self._freeing(run, run.context.awaited_zones(robot, zones), asked)
             yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,))
             return
         if run.context.says_unhomed(robot):
@@ -131,7 +132,7 @@ class Advisor:
 
     def _freeing(self, run: CellRun, zones: Mapping[str, str], asked: frozenset[str]) -> Iterator[Advice]:
         """What has others give zones back: what their cells need first; between two that wait for each other,
-        and for an arm that is not heard, somebody may answer for a zone being empty.
+        and for a robot that is not heard, somebody may answer for a zone being empty.
         """
         for holder in sorted(set(zones.values())):
             other = self._cell_of[holder]
@@ -142,10 +143,10 @@ class Advisor:
             if waits_too or by_hand:
                 its = [zone for zone in sorted(zones) if zones[zone] == holder]
                 silent = [zone for zone in its if run.context.is_quarantined(zone)]
-                yield from self._overriding(silent, other, instead=by_hand)
+                yield from self._overriding(silent, holder, instead=by_hand)
 
-    def _overriding(self, zones: Sequence[str], other: CellRun, *, instead: bool) -> Iterator[Advice]:
-        holder = other.cell.arm.name
+    def _overriding(self, zones: Sequence[str], holder: str, *, instead: bool) -> Iterator[Advice]:
+        other = self._cell_of[holder]
         for zone in zones:
             why = MAY_BE_IN(arm=holder, zone=zone)
             yield Advice(do=Hand.CHECK, scope=zone, why=why, instead=instead)
@@ -174,13 +175,18 @@ def _stopping(run: CellRun, why: Sentence) -> Iterator[Advice]:
 
 
 def _abandon(run: CellRun, why: Sentence) -> Advice:
-    return Advice(do=Verb.ABANDON, scope=run.cell.name, why=why, moves=(run.cell.arm.name,))
+    return Advice(do=Verb.ABANDON, scope=run.cell.name, why=why, moves=_recovered(run))
 
 
 def _running_again(run: CellRun) -> Iterator[Advice]:
     if run.queue_paused:
         moves = _movers(run) if run.queue else ()
         yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.why_paused, moves=moves)
+
+
+def _recovered(run: CellRun) -> tuple[str, ...]:
+    """The robots that a recovery moves."""
+    return tuple(run.cell.workspaces)
 
 
 def _movers(run: CellRun) -> tuple[str, ...]:

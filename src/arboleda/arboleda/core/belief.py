@@ -8,9 +8,10 @@ from functools import cache
 from operator import attrgetter, methodcaller
 from typing import NamedTuple
 
+from .commands import Position
 from .facts import Facts, Value
 from .messages import BUILT_IN, Failure, Reason, Report
-from .model import Evidence, Link, MotionState, Position, Robot
+from .model import Evidence, Link, MotionState, Robot
 from .sentence import Phrase
 
 STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import advice, recipes, tree_view
+from . import advice, steps, tree_view
 from .advice import Advice
 from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
@@ -18,8 +18,9 @@ from .grips import Grip
 from .ledger import State
 from .messages import Failure, Reason, TaskState
 from .model import Cell
+from .recipe import Build
 from .sentence import Phrase, Sentence
-from .task import Order, Task
+from .task import Task
 from .tree_run import TreeRun
 
 
@@ -31,7 +32,7 @@ class CellRun:
         cell: Cell,
         context: Context,
         changed: Callable[[Task], None],
-        build: Callable[[Order, Context], Behaviour] = recipes.build,
+        build: Build,
         ways_out: Callable[[str], Sequence[Advice]] = lambda cell: (),
     ) -> None:
         self.cell = cell
@@ -280,7 +281,7 @@ class CellRun:
         gone = self.context.part_gone()
         if gone is not None and self.task is not None and not self.stranded:
             self.trouble = gone
-            self.stranded = NO_PART(arm=self.cell.arm.name)
+            self.stranded = NO_PART(arm=self.context.lost_by or "")
             self.dirty = True
 
     def _leave_as_it_is(self) -> None:
@@ -303,13 +304,14 @@ class CellRun:
 
     def _grip_settled(self) -> bool:
         only_grip = self.trouble is not None and self.trouble.reason is Reason.INTERRUPTED
-        return only_grip and not self.context.holding()
+        return only_grip and not self.context.holding
 
     def _unready(self) -> Sentence | None:
         if busy := self._busy():
             return busy
         found = [self.context.obstacle(robot.name) for robot in self.cell.reached]
-        found += [self.context.astray(), self._grip_unsettled()]
+        astray = self.context.astray()
+        found += [astray[1] if astray else None, self._grip_unsettled()]
         return next((failure.sentence for failure in found if failure), None)
 
     def _busy(self) -> Sentence | None:
@@ -318,9 +320,10 @@ class CellRun:
         return STILL_DOING(robot=first.command.robot, doing=first.doing) if first else None
 
     def _grip_unsettled(self) -> Failure | None:
-        if not self.context.holding():
+        robot = next(iter(self.context.holding), None)
+        if robot is None:
             return None
-        sentence = MAY_HOLD(arm=self.cell.arm.name, grip=GRIPS[self.context.grip]())
+        sentence = MAY_HOLD(arm=robot, grip=GRIPS[self.context.grip(robot)]())
         return Failure(reason=Reason.INTERRUPTED, sentence=sentence)
 
     def _fault(self) -> Failure | None:
@@ -347,17 +350,16 @@ class CellRun:
         self.context.start_afresh()
         self._look(self.run.begin(lambda: self._build(task.order, self.context)))
 
-    def uproot(self) -> None:
-        """The arm is homed: a task that is held can only be abandoned."""
-        if self.task is not None:
-            self.stranded = HOMED_MEANWHILE(arm=self.cell.arm.name)
+    def uproot(self, robot: str) -> None:
+        """A robot that goes from pose to pose is homed: a task that is held can only be abandoned."""
+        if self.task is not None and robot in self.cell.workspaces:
+            self.stranded = HOMED_MEANWHILE(arm=robot)
 
-    def let_go(self) -> None:
-        """The operator has the effector opened: a task that is held has lost the part in it."""
-        if self.task is not None and self.context.holding():
-            arm = self.cell.arm.name
-            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=arm))
-            self.stranded = NO_PART(arm=arm)
+    def let_go(self, robot: str) -> None:
+        """The operator has an effector opened: a task that is held has lost the part in it."""
+        if self.task is not None and robot in self.context.holding:
+            self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
+            self.stranded = NO_PART(arm=robot)
 
     def _recover(self) -> None:
         """Drop what runs, halting it, and run the recovery alone."""
@@ -365,8 +367,8 @@ class CellRun:
         self.run.drop()
         self.context.go_on()
         self.trouble = None
-        self.context.carried = self.context.delivers = False
-        self._look(self.run.begin(lambda: recipes.recovery(self.context)))
+        self.context.carrier, self.context.delivers = None, False
+        self._look(self.run.begin(lambda: steps.recovery(self.context)))
 
     def _look(self, status: Status) -> None:
         if status is not Status.RUNNING:

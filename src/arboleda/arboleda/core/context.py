@@ -9,6 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from . import zone_plan
 from .belief import Moment
+from .commands import Position
 from .dispatcher import Dispatcher, Make
 from .grips import Grip
 from .ledger import Entry
@@ -18,6 +19,7 @@ from .sentence import Phrase
 from .zones import Zones
 
 __all__ = ["Context", "Make"]
+PART_LOST = Phrase("part.lost", "{arm}: the part was lost on the way")
 ASTRAY = Phrase("zone.astray", "{arm} is not seen at a pose outside the shared zones; home {arm} mends that")
 ASTRAY_BY_HAND = Phrase(
     "zone.astray_by_hand",
@@ -40,9 +42,9 @@ class Context:
         self.next_deadline: float | None = None
         self.sent = 0
         self.awaits_piece = False  # for a report newer than the last one that had it
-        self.carried = False  # a part that was seen in the effector is on its way
+        self.carrier: str | None = None  # who is on its way with a part that was seen in its effector
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
-        self.back: Pose | None = None  # where the part of the last order came from; None: not known here
+        self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
@@ -87,9 +89,10 @@ class Context:
 
     def start_afresh(self) -> None:
         """Forget what the last tree waited for and why it failed."""
-        self.wakes, self.awaits_piece, self.carried = [], False, False
+        self.wakes, self.awaits_piece, self.carrier = [], False, None
         self.delivers = True
-        self._dispatcher.opened.pop(self.cell.arm.name, None)
+        for robot in self.cell.holders:
+            self._dispatcher.opened.pop(robot, None)
         self.failure = self.failed_leaf = self.last_failure = None
         self._plan()
 
@@ -116,9 +119,9 @@ class Context:
         """The cell's commands that have not ended."""
         return self._dispatcher.ledger.of_cell(self.cell.name)
 
-    def node(self) -> int | None:
-        """Where the cell's mobile robot is known to stand."""
-        return self._dispatcher.beliefs[self.cell.mobile.name].known_node
+    def position(self, robot: str) -> Position | None:
+        """Where a robot is known to be."""
+        return self._dispatcher.beliefs[robot].known_position
 
     def obstacle(self, robot: str, *, was: bool = False) -> Failure | None:
         """Why a robot takes no command now; `was`: in words that stay true."""
@@ -145,14 +148,14 @@ class Context:
         """Whether a robot says that it is still moving."""
         return self._dispatcher.beliefs[robot].moves
 
-    @property
-    def grip(self) -> Grip:
-        """What the arm's effector is known to be."""
-        return self._dispatcher.grips[self.cell.arm.name]
+    def grip(self, robot: str) -> Grip:
+        """What the effector of a robot that has one is known to be."""
+        return self._dispatcher.grips[robot]
 
-    def holding(self) -> bool:
-        """Whether a part may hang in the arm's effector."""
-        return self._dispatcher.grips.holding(self.cell.arm.name)
+    @property
+    def holding(self) -> list[str]:
+        """The robots of the cell in whose effector a part may hang."""
+        return [robot for robot in self.cell.holders if self._dispatcher.grips.holding(robot)]
 
     @property
     def stored(self) -> frozenset[int]:
@@ -161,7 +164,7 @@ class Context:
         return frozenset(number for number in range(len(self.cell.stations)) if str(number) in kept)
 
     def store(self, pose: Pose) -> None:
-        """The arm has put its part down at a pose; where that is a station, it stays there."""
+        """A part was put down at a pose; where that is a station, it stays there."""
         numbers = {number for number, station in enumerate(self.cell.stations) if station.name == pose.name}
         self._keep_stored(self.stored | numbers)
 
@@ -173,24 +176,38 @@ class Context:
         value = " ".join(map(str, sorted(numbers))) or None
         self._dispatcher.remember(Fact.STORED, self.cell.name, value)
 
-    def part_gone(self) -> Failure | None:
-        """Why the part that was gripped is lost: its effector opened, and this plant did not say so."""
-        sentence = self._dispatcher.opened.get(self.cell.arm.name)
-        if sentence is None or not self.delivers or self.failure is not None:
+    def part_lost(self) -> Failure | None:
+        """Why the part that is being carried is no longer there, by the word of the piece sensor."""
+        robot = self.carrier
+        if robot is None or self.piece(robot, 0.0) is not False:
             return None
-        return Failure(reason=Reason.PART_LOST, sentence=sentence)
+        return Failure(reason=Reason.PART_LOST, sentence=PART_LOST(arm=robot))
 
-    def recovery_zones(self) -> frozenset[str]:
-        """What the way of a recovery needs, from where the arm stands now."""
-        return zone_plan.recovery_zones(self.cell, self._dispatcher.place(self.cell), self.way_back())
+    @property
+    def lost_by(self) -> str | None:
+        """The robot whose effector opened with a part in it, and this plant did not say so."""
+        return next((robot for robot in self.cell.holders if robot in self._dispatcher.opened), None)
 
-    def way_back(self) -> Pose:
-        """Where a recovery brings a part: back where it came from, or to where the mobile robot stands."""
-        return self.back or self.cell.pickup_over(self.node())
+    def part_gone(self) -> Failure | None:
+        """Why a part that was gripped is lost."""
+        robot = self.lost_by
+        if robot is None or not self.delivers or self.failure is not None:
+            return None
+        return Failure(reason=Reason.PART_LOST, sentence=self._dispatcher.opened[robot])
 
-    def standing(self) -> Pose:
-        """The zone-free pose at which the arm's next way begins: where it is seen, else home."""
-        return self._dispatcher.place(self.cell) or self.cell.home
+    def recovery_zones(self, robot: str) -> frozenset[str]:
+        """What the way of a recovery needs, from where the robot stands now."""
+        space = self.cell.workspaces[robot]
+        return zone_plan.recovery_zones(space, self._dispatcher.place(space), self.way_back(robot))
+
+    def way_back(self, robot: str) -> Pose | None:
+        """Where a recovery brings what a robot holds: back where it came from, else as the cell says."""
+        return self.back.get(robot) or self.cell.back(robot, self.position)
+
+    def standing(self, robot: str) -> Pose:
+        """The zone-free pose at which a robot's next way begins: where it is seen, else home."""
+        space = self.cell.workspaces[robot]
+        return self._dispatcher.place(space) or space.home
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""
@@ -207,19 +224,16 @@ class Context:
         beliefs = [self._dispatcher.beliefs[robot.name] for robot in self.cell.robots]
         return any(belief.online and belief.state is MotionState.STOP_LATCHED for belief in beliefs)
 
-    def risen(self) -> tuple[float, ...]:
-        """Where the arm stands, its prismatic joints as high as the highest approach; home where unknown."""
-        here = self._dispatcher.beliefs[self.cell.arm.name].known_q
-        heights = [pose.above for pose in self.cell.poses if pose.above]
-        if here is None or not heights:
-            return self.cell.home.q
-        rows = zip(self.cell.arm.joints, here, *heights, strict=True)
-        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
+    def risen(self, robot: str) -> Position:
+        """Where a robot stands, lifted as high as its highest approach; home where unknown."""
+        space, here = self.cell.workspaces[robot], self.position(robot)
+        heights = [pose.above for pose in space.poses if pose.above]
+        return space.robot.lifted(here, heights) if here is not None and heights else space.home.q
 
-    def piece(self, since: float) -> bool | None:
-        """The debounced word of the arm's piece sensor, fresh since then; None while there is none."""
-        belief, arm = self._dispatcher.beliefs[self.cell.arm.name], self.cell.arm
-        fresh = arm.piece_on_change or belief.piece_at - self._paused_s >= since
+    def piece(self, robot: str, since: float) -> bool | None:
+        """The debounced word of a robot's piece sensor, fresh since then; None while there is none."""
+        belief = self._dispatcher.beliefs[robot]
+        fresh = belief.robot.piece_on_change or belief.piece_at - self._paused_s >= since
         self.awaits_piece = self.awaits_piece or not fresh  # a change of a fresh word wakes the tree anyway
         if belief.piece is None or not belief.online or not fresh:
             return None
@@ -229,70 +243,70 @@ class Context:
             return None
         return belief.piece
 
-    def astray(self) -> Failure | None:
-        """Why no way may begin where the arm stands: in a cell with zones it must be seen outside them."""
-        cell, arm = self.cell, self.cell.arm.name
-        unknown = not self._dispatcher.beliefs[arm].supervised and arm not in self._dispatcher.reached
-        if not self.cell.zones or unknown or self._dispatcher.place(cell) is not None:
-            return None
-        astray = ASTRAY if cell.arm.says_homed else ASTRAY_BY_HAND
-        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=arm))
+    def astray(self) -> tuple[str, Failure] | None:
+        """A robot that shares zones and is not seen outside them, so that no way of it may begin, and why."""
+        for robot in self.cell.zone_users:
+            space, belief = self.cell.workspaces[robot], self._dispatcher.beliefs[robot]
+            unknown = not belief.supervised and robot not in self._dispatcher.reached
+            if unknown or self._dispatcher.place(space) is not None:
+                continue
+            astray = ASTRAY if belief.robot.says_homed else ASTRAY_BY_HAND
+            return robot, Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=astray(arm=robot))
+        return None
 
-    def take_zones(self, zones: frozenset[str], *, inside: bool = False) -> bool:
-        """Ask for zones, all at once; whether the arm has them.
+    def take_zones(self, robot: str, zones: frozenset[str], *, inside: bool = False) -> bool:
+        """Ask for zones, all at once; whether the robot has them.
 
-        `inside`: an arm that stands in a zone may go on with what it holds, to get out, unless an operator
+        `inside`: a robot that stands in a zone may go on with what it holds, to get out, unless an operator
         has freed a part of that meanwhile.
         """
-        arm = self.cell.arm.name
-        held = self._zones.held_by(arm)
+        held = self._zones.held_by(robot)
         if not held:
-            taken = self._zones.request(arm, zones)
+            taken = self._zones.request(robot, zones)
         else:
-            taken = self._zones.regain(arm, zones) if inside else zones <= held
+            taken = self._zones.regain(robot, zones) if inside else zones <= held
         if not taken:
             return False
-        self._keep_zones()
+        self._keep_zones(robot)
         return True
 
-    def awaited_zones(self, zones: Iterable[str]) -> dict[str, str]:
+    def awaited_zones(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
         """Those of the zones that somebody else holds, and who."""
         holders = {zone: self._zones.holder(zone) for zone in zones}
-        return {zone: arm for zone, arm in holders.items() if arm is not None and arm != self.cell.arm.name}
+        return {zone: other for zone, other in holders.items() if other is not None and other != robot}
 
     def awaited_by_recovery(self) -> dict[str, str]:
         """The zones that a recovery would wait for, and who holds them; inside its zones it needs no more."""
-        arm = self.cell.arm.name
-        if self._zones.held_by(arm) and arm not in self._zones.robbed:
-            return {}
-        return self.awaited_zones(self.recovery_zones())
+        awaited: dict[str, str] = {}
+        for robot in self.cell.zone_users:
+            if not self._zones.held_by(robot) or robot in self._zones.robbed:
+                awaited |= self.awaited_zones(robot, self.recovery_zones(robot))
+        return awaited
 
     def is_quarantined(self, zone: str) -> bool:
         """Whether a silent robot may be in a zone."""
         return self._zones.is_quarantined(zone)
 
-    def claim_zones(self) -> None:
-        """Take every zone the arm may get into, for a way that begins where nobody knows; it must be free."""
-        self._zones.claim(self.cell.arm.name, self.cell.zones)
-        self._keep_zones()
+    def claim_zones(self, robot: str) -> None:
+        """Take every zone a robot may get into, for a way that begins where nobody knows; it must be free."""
+        self._zones.claim(robot, self.cell.workspaces[robot].zones)
+        self._keep_zones(robot)
 
-    def _keep_zones(self) -> None:
-        arm = self.cell.arm.name
-        for zone in sorted(self._zones.held_by(arm)):
-            self._dispatcher.remember(Fact.QUARANTINE, zone, arm)
+    def _keep_zones(self, robot: str) -> None:
+        for zone in sorted(self._zones.held_by(robot)):
+            self._dispatcher.remember(Fact.QUARANTINE, zone, robot)
 
-    def leave_zones(self) -> bool:
-        """Stop waiting for zones, and give them back if the arm is seen outside; whether it holds none."""
-        arm = self.cell.arm.name
-        granted = self._zones.withdraw(arm)
-        held = self._zones.held_by(arm)
-        if held and self._dispatcher.place(self.cell) is not None:
-            granted += self._zones.restore(arm) + self._zones.release(arm)
+    def leave_zones(self, robot: str) -> bool:
+        """Stop waiting for zones, and give them back if the robot is seen outside; whether it holds none."""
+        granted = self._zones.withdraw(robot)
+        held = self._zones.held_by(robot)
+        if held and self._dispatcher.place(self.cell.workspaces[robot]) is not None:
+            granted += self._zones.restore(robot) + self._zones.release(robot)
             for zone in sorted(held):
                 self._dispatcher.remember(Fact.QUARANTINE, zone, None)
             self._dispatcher.wake(self._zones.robbed)
         self._dispatcher.wake(granted)
-        return not self._zones.held_by(arm)
+        return not self._zones.held_by(robot)
 
     def wake_at(self, at: float) -> None:
         """Have the tree ticked again at `at`, s of `now`."""
@@ -318,4 +332,4 @@ class Context:
         if self.failure is None:
             self.failure, self.failed_leaf = failure, leaf
         self.last_failure = failure
-        self.carried = False
+        self.carrier = None

@@ -7,31 +7,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
-from . import evidence, report_check
+from . import evidence
 from .belief import Belief
+from .commands import Command, Home, Motion, Position, Query, Stop, StopMode, Switch, Work
 from .evidence import Before, Verdict
 from .facts import shown
 from .grips import Grip, Grips
 from .interference import Interferences
 from .ledger import Entry, Feed, Ledger, State
-from .messages import (
-    Command,
-    Fact,
-    Failure,
-    Home,
-    Motion,
-    Notice,
-    Query,
-    Reason,
-    Remember,
-    Report,
-    SetEffector,
-    Stop,
-    StopMode,
-    Switch,
-    Work,
-)
-from .model import Cell, Evidence, Link, MotionState, PlantModel, Pose, Position
+from .messages import Fact, Failure, Notice, Reason, Remember, Report
+from .model import Evidence, Link, MotionState, PlantModel, Pose, Workspace
 from .sentence import BOTH, Phrase, Sentence, as_sentence
 from .underway import UnderWay
 
@@ -161,9 +146,9 @@ class Dispatcher:
         """The work of a robot that has not ended."""
         return next((entry for entry in self.ledger.of_robot(robot) if entry.is_work), None)
 
-    def obstacle_to_opening(self, arm: str) -> Failure | None:
-        """Why an arm's effector cannot be opened by hand now."""
-        return self._obstacle_to(SetEffector(id="", robot=arm, on=False), by_hand=True)
+    def obstacle_to_opening(self, robot: str) -> Failure | None:
+        """Why an effector cannot be opened by hand now."""
+        return self._obstacle_to(self.model.robots[robot].let_go(id=""), by_hand=True)
 
     def latch(self, robot: str) -> None:
         """Stop a robot and let nothing move it until `unlatch`, whatever restarts meanwhile."""
@@ -218,20 +203,21 @@ class Dispatcher:
         """Have the trees of these robots' cells look again."""
         self.ledger.changed |= {self.model.cell_of[robot].name for robot in robots}
 
-    def place(self, cell: Cell) -> Pose | None:
-        """The zone-free pose at, or above, which the cell's arm stands, as far as its evidence goes.
+    def place(self, workspace: Workspace) -> Pose | None:
+        """The zone-free pose at, or above, which its robot stands, as far as its evidence goes.
 
         What it said last may be older than a move that it was just given.
         """
-        belief = self.beliefs[cell.arm.name]
-        given = cell.arm.name in self.under_way.ids or self.work_of(cell.arm.name) is not None
+        robot = workspace.robot
+        belief = self.beliefs[robot.name]
+        given = robot.name in self.under_way.ids or self.work_of(robot.name) is not None
         restless = belief.state is MotionState.MOVING or given
         if not belief.online or belief.unhomed or restless:
             return None
-        here = belief.position if belief.supervised else self.reached.get(cell.arm.name)
+        here = belief.position if belief.supervised else self.reached.get(robot.name)
         if here is None:
             return None
-        return next((pose for q, pose in cell.free_spots if cell.arm.stands_at(here, q)), None)
+        return next((pose for spot, pose in workspace.free_spots if robot.stands_at(here, spot)), None)
 
     def report(self, report: Report, now: float) -> None:
         """Merge a report and book what it proves.
@@ -244,7 +230,7 @@ class Dispatcher:
         if belief.hear_again(report):
             self._prove(belief, report, now)
             return
-        if report_check.objection(belief.robot, report) is not None:
+        if belief.robot.objection(report) is not None:
             self.ledger.ignored["report"] += 1
             return
         before, told = Before.of(belief), self._told(belief)

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from .belief import APART_S, Belief
+from .commands import Command, Home, Motion, Position, Process, Query, Switch
 from .facts import Facts, Value, shown
 from .ledger import Entry, Feed, State
-from .messages import Command, Failure, Home, Motion, Process, Query, Reason, Report, Switch
-from .model import Evidence, MotionState, Position
+from .messages import Failure, Reason, Report
+from .model import Evidence, MotionState
 from .sentence import Phrase
 
 REFUSALS: dict[str, Reason] = {

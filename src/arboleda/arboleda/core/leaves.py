@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -277,12 +278,13 @@ class Await(Leaf):
 
 
 class Piece(Await):
-    """Wait at most `seconds` for the piece sensor's fresh, debounced word that a piece is there."""
+    """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there."""
 
     def __init__(
-        self, name: str, context: Context, seconds: float, failure: Failure, *, final: bool = True
+        self, name: str, context: Context, robot: str, seconds: float, failure: Failure, *, final: bool = True
     ) -> None:
         super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
+        self.robot = robot
         self.since = 0.0
 
     def initialise(self) -> None:
@@ -290,32 +292,39 @@ class Piece(Await):
         self.since = self.context.now
 
     def _seen(self) -> bool:
-        return self.context.piece(self.since) is True
+        return self.context.piece(self.robot, self.since) is True
 
 
 class Carry(Leaf):
-    """Note that the checked part is being carried, or no longer is."""
+    """Note which robot carries the checked part now; None: it has arrived."""
 
-    def __init__(self, name: str, context: Context, carried: bool) -> None:
+    def __init__(self, name: str, context: Context, robot: str | None) -> None:
         super().__init__(name)
         self.context = context
-        self.carried = carried
+        self.robot = robot
 
     def update(self) -> Status:
-        self.context.carried = self.carried
+        self.context.carrier = self.robot
         return Status.SUCCESS
 
 
 class TakeZones(Await):
-    """Wait until the arm has all the zones that `needed()` names then; left early, it waits no longer.
+    """Wait until a robot has all the zones that `needed()` names then; left early, it waits no longer.
 
-    `inside`: an arm that stands in a zone may go on with what it holds, to get out.
+    `inside`: a robot that stands in a zone may go on with what it holds, to get out.
     """
 
     def __init__(
-        self, name: str, context: Context, needed: Callable[[], frozenset[str]], *, inside: bool = False
+        self,
+        name: str,
+        context: Context,
+        robot: str,
+        needed: Callable[[], frozenset[str]],
+        *,
+        inside: bool = False,
     ) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.robot = robot
         self.needed = needed
         self.inside = inside
         self.zones: frozenset[str] = frozenset()
@@ -325,23 +334,23 @@ class TakeZones(Await):
         self.zones = self.needed()
 
     def _taken(self) -> bool:
-        return self.context.take_zones(self.zones, inside=self.inside)
+        return self.context.take_zones(self.robot, self.zones, inside=self.inside)
 
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))
-        sentence = NOT_FREE(arm=self.context.cell.arm.name, zones=zones, seconds=self.seconds)
+        sentence = NOT_FREE(arm=self.robot, zones=zones, seconds=self.seconds)
         return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
 
     def terminate(self, new_status: Status) -> None:
         # py_trees also ends what has long succeeded: the zones are in use then
         if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
-            self.context.leave_zones()
+            self.context.leave_zones(self.robot)
 
 
 class LeaveZones(Await):
-    """Give the arm's zones back once it is seen outside."""
+    """Give a robot's zones back once it is seen outside."""
 
-    def __init__(self, name: str, context: Context) -> None:
-        arm = context.cell.arm.name
-        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=arm))
-        super().__init__(name, context, context.leave_zones, context.timing.stop_timeout_s, lambda: failure)
+    def __init__(self, name: str, context: Context, robot: str) -> None:
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
+        left = partial(context.leave_zones, robot)
+        super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)

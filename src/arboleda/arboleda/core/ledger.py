@@ -9,10 +9,10 @@ from enum import Enum
 from typing import Any
 
 from .belief import Moment
+from .commands import Command, Motion, OnStop, Position, Work
 from .errors import IllegalTransition
 from .facts import Value
-from .messages import Command, Failure, Motion, OnStop, Work
-from .model import Position
+from .messages import Failure
 from .sentence import Sentence
 
 

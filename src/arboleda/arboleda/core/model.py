@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-Position = tuple[float, ...] | int
-"""Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
+from .commands import Command, FollowPath, MoveJoints, Position, SetEffector
+from .counting import counted
+from .recipe import Recipe
+
+if TYPE_CHECKING:
+    from .messages import Report
+
+Positions = Callable[[str], "Position | None"]
+"""Where a robot of this name is known to be."""
 
 
 class Evidence(str, Enum):
@@ -156,11 +163,21 @@ class Robot:
     assume_homed: bool = False
     home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
     has_stop: bool = True
+    piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
     position_key: ClassVar[str | None] = None  # the key of a report that has its position, if any
 
     @property
     def held_fact(self) -> str | None:
         """The fact, a yes or no, that says whether it holds something; None where it cannot hold anything."""
+        return None
+
+    @property
+    def units(self) -> list[str] | None:
+        """The unit of each number of its position; None where that is no list of numbers."""
+        return None
+
+    def objection(self, report: Report) -> str | None:
+        """Why it cannot have said this; None where it can."""
         return None
 
     @property
@@ -173,9 +190,25 @@ class Robot:
         """Where its position is counted from; None where it counts nothing that a boot could lose."""
         return None
 
+    def go(self, *, id: str, way: Sequence[Position]) -> Command:
+        """The command that brings it along `way` to its last position."""
+        raise NotImplementedError
+
+    def let_go(self, *, id: str) -> Command:
+        """The command that opens its effector."""
+        raise NotImplementedError
+
     def stands_at(self, position: Position, goal: Position) -> bool:
         """Whether a reported position is that goal."""
         return position == goal
+
+    def held_at(self, position: Position) -> Position:
+        """The position as its motors can hold it."""
+        return position
+
+    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
+        """The position, raised to all of these heights where that is possible."""
+        return position
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a motion along `way`; from an unknown start the longest possible one."""
@@ -208,7 +241,6 @@ class Arm(Robot):
     base: Placement
     joints: tuple[Joint, ...]
     tolerance: tuple[float, ...] | None = None
-    piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
     queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
     description: Description | None = None  # None: the model comes with arboleda_description
     position_key: ClassVar[str | None] = "q"
@@ -216,6 +248,26 @@ class Arm(Robot):
     @property
     def held_fact(self) -> str:
         return "effector"
+
+    @property
+    def units(self) -> list[str]:
+        return [joint.unit for joint in self.joints]
+
+    def objection(self, report: Report) -> str | None:
+        if report.node is not None:
+            return f"node is {report.node}; {self.name} is an arm and stands on no node"
+        if report.q is not None and len(report.q) != len(self.joints):
+            has = f"{self.name} has {counted(len(self.joints), 'joint')}"
+            return f"q has {counted(len(report.q), 'value')}; {has}"
+        return None
+
+    def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
+        goal = way[-1]
+        assert isinstance(goal, tuple)
+        return MoveJoints(id=id, robot=self.name, q=goal)
+
+    def let_go(self, *, id: str) -> SetEffector:
+        return SetEffector(id=id, robot=self.name, on=False)
 
     @cached_property
     def reference(self) -> tuple[float, ...]:
@@ -228,6 +280,16 @@ class Arm(Robot):
 
     def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(joint.quantised(value) for joint, value in zip(self.joints, q, strict=True))
+
+    def held_at(self, position: Position) -> Position:
+        assert isinstance(position, tuple)
+        return self.quantised(position)
+
+    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
+        """Only prismatic joints lift; how, each of them says."""
+        assert isinstance(position, tuple)
+        rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
+        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
 
     def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
         """Whether reported joints `q` lie within tolerance of a quantised target."""
@@ -261,6 +323,17 @@ class Mobile(Robot):
     grid: Grid
     speed: float
     position_key: ClassVar[str | None] = "node"
+
+    def objection(self, report: Report) -> str | None:
+        for key in ("q", "effector", "piece"):
+            if getattr(report, key) is not None:
+                return f"{key} was said; {self.name} is a mobile robot and has none"
+        if report.node is not None and not 0 <= report.node < self.grid.size:
+            return f"node is {report.node}; {self.name} knows {self.grid.size} nodes"
+        return None
+
+    def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
+        return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a path; one edge is added for a robot that starts elsewhere."""
@@ -316,39 +389,70 @@ class Retry:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Workspace:
+    """Where one robot goes in its cell, and which shared zones lie on its ways."""
+
+    robot: Robot
+    home: Pose  # where it waits, and where a recovery ends
+    poses: tuple[Pose, ...]  # home is one of them
+    crossings: tuple[Crossing, ...] = ()
+
+    @cached_property
+    def zones(self) -> frozenset[str]:
+        """Every shared zone that it may get into."""
+        places = (pose.zones for pose in self.poses)
+        return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
+
+    @cached_property
+    def free_spots(self) -> tuple[tuple[Position, Pose], ...]:
+        """Each position at, or above, a zone-free pose, with that pose.
+
+        The robot's reference counts as home: homing leads there, and both lie outside all zones.
+        """
+        free = [pose for pose in self.poses if not pose.zones]
+        spots: list[tuple[Position, Pose]] = []
+        spots += [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
+        reference = self.robot.reference
+        if reference is not None and all(pose.q != reference for pose in self.poses):
+            spots.append((reference, self.home))
+        return tuple((self.robot.held_at(q), pose) for q, pose in spots)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Cell:
-    """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
+    """Robots that carry out one task at a time; how they are arranged is for its shape to say."""
 
     name: str
-    arm: Arm
-    mobile: Mobile
-    home: Pose
-    pickup: Pose
-    stations: tuple[Pose, ...]
-    paths: tuple[Path, ...]
-    palletizing: Palletizing
     queue_limit: int
-    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
     retry: Retry = Retry()
-    piece_check: bool = False
-    crossings: tuple[Crossing, ...] = ()
     zone_wait_s: float = 30.0
-    pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
+    recipes: tuple[Recipe, ...] = ()
+    stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
 
-    def pickup_of(self, path: Path) -> Pose:
-        """Where the arm takes the part at the end of a path."""
-        return dict(self.pickups).get(path.exit, self.pickup)
+    @cached_property
+    def roles(self) -> dict[str, Robot]:
+        """Its robots by what they are in it, in the order of the file."""
+        raise NotImplementedError
 
-    def pickup_over(self, node: int | None) -> Pose:
-        """Where the arm meets a mobile that stands on this node; None, or no exit: the one for all exits."""
-        return next((self.pickup_of(path) for path in self.paths if path.nodes[-1] == node), self.pickup)
+    @cached_property
+    def workspaces(self) -> dict[str, Workspace]:
+        """By the name of each robot that goes from pose to pose."""
+        return {}
 
-    def path(self, code: str) -> Path:
-        return next(path for path in self.paths if path.code == code)
+    def recipe(self, name: str) -> Recipe:
+        return next(recipe for recipe in self.recipes if recipe.name == name)
+
+    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
+        """Whose own cycle keeps start signals of machines away, while tasks of these recipes run or wait."""
+        return None
+
+    def back(self, robot: str, positions: Positions) -> Pose | None:
+        """Where a recovery brings a part whose origin nobody knows; None: the robot keeps it."""
+        return None
 
     @cached_property
     def robots(self) -> tuple[Robot, ...]:
-        return (self.arm, self.mobile)
+        return tuple(self.roles.values())
 
     @cached_property
     def reached(self) -> tuple[Robot, ...]:
@@ -356,10 +460,62 @@ class Cell:
         return tuple(robot for robot in self.robots if robot.link is not Link.NONE)
 
     @cached_property
+    def holders(self) -> tuple[str, ...]:
+        """The robots that can hold a part."""
+        return tuple(robot.name for robot in self.robots if robot.held_fact is not None)
+
+    @cached_property
+    def zone_users(self) -> tuple[str, ...]:
+        """The robots that may get into shared zones."""
+        return tuple(name for name, workspace in self.workspaces.items() if workspace.zones)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StorageCell(Cell):
+    """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
+
+    arm: Arm
+    mobile: Mobile
+    home: Pose
+    pickup: Pose
+    paths: tuple[Path, ...]
+    palletizing: Palletizing
+    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
+    piece_check: bool = False
+    crossings: tuple[Crossing, ...] = ()
+    pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
+
+    def pickup_of(self, path: Path) -> Pose:
+        """Where the arm takes the part at the end of a path."""
+        return dict(self.pickups).get(path.exit, self.pickup)
+
+    def pickup_over(self, node: Position | None) -> Pose:
+        """Where the arm meets a mobile that stands on this node; None, or no exit: the one for all exits."""
+        return next((self.pickup_of(path) for path in self.paths if path.nodes[-1] == node), self.pickup)
+
+    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
+        own_cycle = "palletizing" in at_work
+        return self.arm.name if own_cycle and not self.arm.queue_triggers else None
+
+    def back(self, robot: str, positions: Positions) -> Pose:
+        return self.pickup_over(positions(self.mobile.name))
+
+    def path(self, code: str) -> Path:
+        return next(path for path in self.paths if path.code == code)
+
+    @cached_property
+    def roles(self) -> dict[str, Robot]:
+        return {"arm": self.arm, "mobile": self.mobile}
+
+    @cached_property
+    def workspaces(self) -> dict[str, Workspace]:
+        arm = Workspace(robot=self.arm, home=self.home, poses=self.poses, crossings=self.crossings)
+        return {self.arm.name: arm}
+
+    @cached_property
     def zones(self) -> frozenset[str]:
         """Every shared zone that the arm may get into."""
-        places = (pose.zones for pose in self.poses)
-        return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
+        return self.workspaces[self.arm.name].zones
 
     @cached_property
     def poses(self) -> tuple[Pose, ...]:
@@ -370,18 +526,6 @@ class Cell:
     def every_pickup(self) -> tuple[Pose, ...]:
         """The pick-ups of all exits, each once."""
         return tuple({pose.name: pose for pose in (self.pickup, *dict(self.pickups).values())}.values())
-
-    @cached_property
-    def free_spots(self) -> tuple[tuple[tuple[float, ...], Pose], ...]:
-        """Each quantised position at, or above, a zone-free pose, with that pose.
-
-        The arm's reference counts as home: homing leads there, and both lie outside all zones.
-        """
-        free = [pose for pose in self.poses if not pose.zones]
-        spots = [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
-        if all(pose.q != self.arm.reference for pose in self.poses):
-            spots.append((self.arm.reference, self.home))
-        return tuple((self.arm.quantised(q), pose) for q, pose in spots)
 
 
 @dataclass(frozen=True, kw_only=True)

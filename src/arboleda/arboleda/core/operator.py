@@ -14,8 +14,8 @@ from .cell_states import Cause, CellState
 from .dispatcher import Dispatcher
 from .errors import ArboledaError, IllegalTransition
 from .intake import Intake
-from .messages import Failure, Journal, OperatorRequest, Reason, SetEffector, TaskState, Verb
-from .model import Arm, Evidence
+from .messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
+from .model import Evidence
 from .outside import quoted
 from .sentence import Phrase, Sentence, Value
 from .zones import NONE, Zones
@@ -235,7 +235,7 @@ class Operator:
         """`sis_a 7` is one station, `sis_a` the whole rack of a cell."""
         name, _, station = scope.partition(" ")
         robots = self._robots(name)
-        cells = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
+        cells = [cell for cell in self._cells.values() if robots & set(cell.cell.holders)]
         if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
             raise Refused(NO_STATION(station=quoted(station), cell=_whole(name)))
         number = int(station) if station else None
@@ -282,28 +282,26 @@ class Operator:
                 self.home(name)
 
     def home(self, name: str) -> None:
-        """Have a robot run its homing routine; an arm keeps everybody out of its zones meanwhile."""
+        """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
-        if name == cell.cell.arm.name:
-            cell.context.claim_zones()
+        if name in cell.cell.zone_users:
+            cell.context.claim_zones(name)
         self._uproot(name)
         self._dispatcher.home(name, self._clock())
 
     def _uproot(self, name: str) -> None:
-        cell = self._cells[self._dispatcher.model.cell_of[name].name]
-        if name == cell.cell.arm.name:
-            cell.uproot()
+        self._cells[self._dispatcher.model.cell_of[name].name].uproot(name)
 
     def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
-        """Why arms may not set out for their reference: from where they stand they may cross any zone."""
+        """Why robots may not set out for their reference: from where they stand they may cross any zone."""
         taken: dict[str, str] = {}
-        arms = [cell for cell in self._cells.values() if cell.cell.arm.name in robots]
-        for cell in arms:
-            arm = cell.cell.arm.name
-            for zone in sorted(cell.cell.zones):
-                holder = self._zones.holder(zone) or taken.setdefault(zone, arm)
-                if holder != arm:
-                    return MAY_CROSS(arm=arm, zone=zone, holder=holder)
+        spaces = (space for cell in self._cells.values() for space in cell.cell.workspaces.values())
+        for space in spaces:
+            name = space.robot.name
+            for zone in sorted(space.zones) if name in robots else ():
+                holder = self._zones.holder(zone) or taken.setdefault(zone, name)
+                if holder != name:
+                    return MAY_CROSS(arm=name, zone=zone, holder=holder)
         return None
 
     def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
@@ -366,15 +364,19 @@ class Operator:
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
-        if cell.cell.arm.name not in robots or not isinstance(cell.cell.arm, Arm):
-            return NO_EFFECTOR(robot=cell.cell.mobile.name)
-        obstacle = self._dispatcher.obstacle_to_opening(cell.cell.arm.name)
+        able = [name for name in cell.cell.holders if name in robots]
+        if not able:
+            return NO_EFFECTOR(robot=next(each.name for each in cell.cell.robots if each.name in robots))
+        found = (self._dispatcher.obstacle_to_opening(name) for name in able)
+        obstacle = next((each for each in found if each), None)
         return NOT_OPENED(why=obstacle.sentence) if obstacle else None
 
     def _release(self, cell: CellRun, robots: set[str]) -> None:
-        cell.let_go()
-        make = partial(SetEffector, robot=cell.cell.arm.name, on=False)
-        self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock(), by_hand=True)
+        for name in cell.cell.holders:
+            if name in robots:
+                cell.let_go(name)
+                make = self._dispatcher.model.robots[name].let_go
+                self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock(), by_hand=True)
 
 
 def _scope(request: OperatorRequest) -> str:
@@ -421,8 +423,8 @@ def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sente
 
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
-    if refusal is None and cell.task is None and cell.context.holding():
-        return RELEASE_FIRST(arm=cell.cell.arm.name)
+    if refusal is None and cell.task is None and (holding := cell.context.holding):
+        return RELEASE_FIRST(arm=holding[0])
     return refusal
 
 

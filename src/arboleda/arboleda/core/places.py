@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from typing import Any
 
-from .model import Arm, Cell, Mobile, Placement, PlantModel, Pose
+from .model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell, Workspace
 
 Row = dict[str, Any]
 
 
 def places(model: PlantModel) -> Row:
     """Robots with their floor places and speeds, cells with grid and poses, zones with what lies in them."""
+    cells = [cell for cell in model.cells if isinstance(cell, StorageCell)]
     return {
-        "robots": [row for cell in model.cells for row in (_arm(cell), _mobile(cell))],
-        "cells": [_cell(cell) for cell in model.cells],
+        "robots": [row for cell in cells for row in (_arm(cell), _mobile(cell))],
+        "cells": [_cell(cell) for cell in cells],
         "zones": [{"zone": zone, "spots": _spots(model, zone)} for zone in model.zones],
     }
 
 
-def _arm(cell: Cell) -> Row:
+def _arm(cell: StorageCell) -> Row:
     arm: Arm = cell.arm
     speeds = [joint.speed for joint in arm.joints]
     return {
@@ -31,7 +32,7 @@ def _arm(cell: Cell) -> Row:
     }
 
 
-def _mobile(cell: Cell) -> Row:
+def _mobile(cell: StorageCell) -> Row:
     mobile: Mobile = cell.mobile
     nodes = [list(mobile.grid.position(node)) for node in range(mobile.grid.size)]
     return {
@@ -45,7 +46,7 @@ def _mobile(cell: Cell) -> Row:
     }
 
 
-def _cell(cell: Cell) -> Row:
+def _cell(cell: StorageCell) -> Row:
     grid = cell.mobile.grid
     return {
         "name": cell.name,
@@ -60,14 +61,16 @@ def _cell(cell: Cell) -> Row:
 
 def _spots(model: PlantModel, zone: str) -> list[Row]:
     """What lies in a zone: poses, and moves from one pose to another; each as {robot, path of joints}."""
-    return [spot for cell in model.cells for spot in _of_cell(cell, zone)]
+    return [
+        spot for cell in model.cells for space in cell.workspaces.values() for spot in _in_space(space, zone)
+    ]
 
 
-def _of_cell(cell: Cell, zone: str) -> list[Row]:
-    poses = {pose.name: pose for pose in cell.poses}
-    inside = [_reach(pose) for pose in cell.poses if zone in pose.zones]
-    ways = [[poses[way.a].q, poses[way.b].q] for way in cell.crossings if zone in way.zones]
-    return [{"robot": cell.arm.name, "path": [list(q) for q in path]} for path in [*inside, *ways]]
+def _in_space(space: Workspace, zone: str) -> list[Row]:
+    poses = {pose.name: pose for pose in space.poses}
+    inside = [_reach(pose) for pose in space.poses if zone in pose.zones]
+    ways = [[poses[way.a].q, poses[way.b].q] for way in space.crossings if zone in way.zones]
+    return [{"robot": space.robot.name, "path": [list(q) for q in path]} for path in [*inside, *ways]]
 
 
 def _reach(pose: Pose) -> list[tuple[float, ...]]:

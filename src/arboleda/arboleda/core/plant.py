@@ -13,13 +13,13 @@ from .advice import Advice
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_states import CellState
+from .commands import Command
 from .context import Context
 from .dispatcher import Dispatcher, Memory
 from .errors import ArboledaError, IllegalTransition, QueueFull, TextError
 from .intake import Intake
 from .messages import (
     Absence,
-    Command,
     Event,
     Fact,
     Failure,
@@ -40,9 +40,9 @@ from .messages import (
 from .model import Cell, PlantModel
 from .operator import Operator, OperatorAct, Refused
 from .outside import plain
-from .recipes import RECIPES, Recipes
+from .recipe import Builders
 from .sentence import NOTHING, Phrase, Sentence
-from .task import Order, Recipe, Task
+from .task import Order, Task
 from .zones import Zones
 
 HEARTBEAT_S = 0.25
@@ -60,7 +60,7 @@ class Plant:
     """All cells of a plant; `epoch` names this start and must be higher than any before.
 
     `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `recipes`
-    stand in for the shipped ones. `next_deadline` is when `step` is due again without any event, s;
+    stand in for those of the cells. `next_deadline` is when `step` is due again without any event, s;
     a plant that is stepped more than `away_after_s` after its last step was away.
     """
 
@@ -71,10 +71,10 @@ class Plant:
         epoch: int,
         now: float,
         memory: Memory | None = None,
-        recipes: Recipes | None = None,
+        recipes: Builders | None = None,
     ) -> None:
         memory = memory or {}
-        self._recipes = {**RECIPES, **(recipes or {})}
+        self._builders = recipes or {}
         self.model = model
         self.epoch = epoch
         self.now = now
@@ -165,7 +165,8 @@ class Plant:
         return self._advisor.ways_out(cell)
 
     def _build(self, order: Order, context: Context) -> Behaviour:
-        return self._recipes[order.recipe](order, context)
+        build = self._builders.get(order.recipe) or context.cell.recipe(order.recipe).build
+        return build(order, context)
 
     def _task_changed(self, task: Task, request: str | None = None) -> None:
         self._changes += 1
@@ -264,19 +265,19 @@ class Plant:
             self._guard(name, partial(cell.hold_after_absence, failure))
 
     def _watch_zones(self) -> None:
-        arms = self.zones.robots
-        for name, cell in self.cells.items() if arms else ():
-            if cell.cell.arm.name in arms:
-                self._guard(name, partial(self._watch_zones_of, cell))
+        inside = self.zones.robots
+        for name, cell in self.cells.items() if inside else ():
+            for robot in cell.cell.zone_users:
+                if robot in inside:
+                    self._guard(name, partial(self._watch_zones_of, cell, robot))
 
-    def _watch_zones_of(self, cell: CellRun) -> None:
-        """An arm that is not heard may still be where it was; one that is seen outside is not."""
-        arm = cell.cell.arm.name
-        belief = self.dispatcher.beliefs[arm]
+    def _watch_zones_of(self, cell: CellRun, robot: str) -> None:
+        """A robot that is not heard may still be where it was; one that is seen outside is not."""
+        belief = self.dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
-            self.zones.quarantine(arm)
+            self.zones.quarantine(robot)
         elif cell.tree is None:
-            cell.context.leave_zones()
+            cell.context.leave_zones(robot)
 
     def _beat(self) -> None:
         if self.now >= self._next_beat:
@@ -296,7 +297,7 @@ class Plant:
         self.dispatcher.report(report, self.now)
         if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
             self._touched.add(run.cell.name)
-        if report.piece is not None and run.context.awaits_piece and report.robot == run.cell.arm.name:
+        if report.piece is not None and run.context.awaits_piece:
             run.context.awaits_piece = False  # who goes on waiting asks again
             self.dispatcher.ledger.changed.add(run.cell.name)
         if report.robot in self._to_home:
@@ -341,11 +342,12 @@ class Plant:
         self._task_changed(task, request.request)
 
     def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
-        """Raise QueueFull for a trigger during the arm's own cycle, where the plant file says so."""
+        """Raise QueueFull for a machine's start signal that the cell does not take now."""
         cell = self.cells[task.order.cell]
-        own = [each for each in (cell.task, *cell.queue) if each and each.order.recipe is Recipe.PALLETIZING]
-        if request.trigger and own and not cell.cell.arm.queue_triggers:
-            raise QueueFull(OWN_CYCLE(arm=cell.cell.arm.name))
+        at_work = [each.order.recipe for each in (cell.task, *cell.queue) if each]
+        busy = cell.cell.refuses_triggers(at_work) if request.trigger else None
+        if busy is not None:
+            raise QueueFull(OWN_CYCLE(arm=busy))
 
     def _on_operator_request(self, request: OperatorRequest) -> None:
         self._changes += 1

@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from .errors import IllegalTransition
 from .messages import Failure, TaskState
-from .model import Path, Pose
-
-
-class Recipe(str, Enum):
-    """The recipes a task text can ask for."""
-
-    STORAGE = "storage"
-    PALLETIZING = "palletizing"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """A parsed task text: canonical words, and the id the user gave after `#`, if any."""
+    """A parsed task text: canonical words, the id after `#`, if any, and the value of each parameter."""
 
     text: str
     cell: str
-    recipe: Recipe
+    recipe: str
     id: str | None = None
-    path: Path | None = None
-    station: Pose | None = None
+    values: Mapping[str, Any] = field(default_factory=dict)
 
 
 LEGAL: dict[TaskState, frozenset[TaskState]] = {

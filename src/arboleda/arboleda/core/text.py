@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 from .errors import TextError
-from .model import Cell, Link, PlantModel, Robot
+from .model import Cell, Link, PlantModel
 from .outside import LINE, quoted
+from .recipe import Parameter, Recipe
 from .sentence import Phrase, Sentence
-from .task import Order, Recipe
+from .task import Order
 
 LONGEST = LINE
-FORM = Phrase("text.form", "write <cell> <path> <station>, e.g. {example}, or <arm or cell> palletizing")
+FORM = Phrase("text.form", "write {form}, e.g. {example}")
+FORMS = Phrase("text.forms", "write {form}, e.g. {example}, or {others}")
 TOO_LONG = Phrase("text.too_long", "the task text has {number} characters; at most {most} are read")
 EMPTY = Phrase("text.empty", "the task text is empty; {form}")
-NEITHER = Phrase("text.neither", "{word} is neither a path of {cell} nor 'palletizing'; {form}")
+NEITHER = Phrase("text.neither", "{word} is neither a {first} of {cell} nor {others}; {form}")
+NO_RECIPE = Phrase("text.no_recipe", "the task names no recipe of {cell}; there are {there}; {form}")
 ONE_WORD = Phrase("text.one_word", "the task has {number} word; {form}")
 WORDS = Phrase("text.words", "the task has {number:,} words; {form}")
 ONLY_DRAWN = Phrase(
@@ -35,9 +38,9 @@ UNKNOWN_BUT_NEAR = Phrase(
     "{word} is not a {kind} of {where}; there are {there}; did you mean {near}?",
 )
 CELL = Phrase("text.cell", "cell")
-CELL_OR_ARM = Phrase("text.cell_or_arm", "cell or arm")
-PATH = Phrase("text.path", "path")
-STATION = Phrase("text.station", "station")
+CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
+RECIPE = Phrase("text.recipe", "recipe")
+ROLES = {"arm": Phrase("text.arm", "arm"), "mobile": Phrase("text.mobile", "mobile")}
 THIS_PLANT = Phrase("text.this_plant", "this plant")
 ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
@@ -47,51 +50,83 @@ def parse(text: str, plant: PlantModel) -> Order:
     if len(text) > LONGEST:
         raise TextError(TOO_LONG(number=len(text), most=LONGEST))
     words, task_id = _split_id(text.split())
-    form = FORM(example=_example(plant))
     if not words:
-        raise TextError(EMPTY(form=form))
-    if len(words) == 2 and words[1].lower() == Recipe.PALLETIZING.value:
-        cell = _cell(words[0], plant, arms=True)
-        _check_reached(cell, cell.arm)
-        return Order(text=f"{cell.name} palletizing", cell=cell.name, recipe=Recipe.PALLETIZING, id=task_id)
-    cell = _cell(words[0], plant, arms=len(words) == 2)
-    if len(words) == 2 and _known(words[1], _path_codes(cell)) is None:
-        raise TextError(NEITHER(word=quoted(words[1]), cell=cell.name, form=form))
-    if len(words) != 3:
-        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=form))
-    return _storage(cell, words[1], words[2], task_id)
+        raise TextError(EMPTY(form=_form(plant)))
+    cell, recipe = _cell_and_recipe(words, plant)
+    rest = words[1:] if recipe.is_default else words[2:]
+    if len(rest) != len(recipe.parameters):
+        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=_form(plant)))
+    read = {each.name: _read(cell, each, word) for each, word in zip(recipe.parameters, rest, strict=True)}
+    _check_reached(cell, recipe)
+    return _order(cell, recipe, read, task_id)
+
+
+def example(cell: Cell, recipe: Recipe) -> Order:
+    """One order of a recipe: the first word of each parameter, and the last one of the last."""
+    words = {each.name: each.words(cell)[0] for each in recipe.parameters}
+    for last in recipe.parameters[-1:]:
+        words[last.name] = last.words(cell)[-1]
+    return _order(cell, recipe, words, None)
 
 
 def compose(
     *, text: str = "", cell: str = "", recipe: str = "", path: str = "", station: str = "", id: str = ""
 ) -> str:
     """The text that filled-in fields spell, for `parse` to judge; without a recipe it is storage."""
-    stored = recipe.strip().lower() in ("", Recipe.STORAGE.value)
+    stored = recipe.strip().lower() in ("", "storage")
     number = id.strip() and f"#{id.strip().removeprefix('#')}"
     words = [text, cell, "" if stored else recipe, path, station, number]
     return " ".join(word.strip() for word in words if word.strip())
 
 
-def _storage(cell: Cell, path_word: str, station_word: str, task_id: str | None) -> Order:
-    code = _known(path_word, _path_codes(cell))
-    if code is None:
-        raise TextError(_unknown(PATH, path_word, _path_codes(cell), cell.name))
-    stations = [str(number) for number in range(len(cell.stations))]
-    if station_word not in stations:
-        raise TextError(_unknown(STATION, station_word, stations, cell.name))
-    _check_reached(cell, *cell.robots)
+def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None) -> Order:
+    head = [cell.name] if recipe.is_default else [cell.name, recipe.name]
     return Order(
-        text=f"{cell.name} {code} {station_word}",
+        text=" ".join([*head, *words.values()]),
         cell=cell.name,
-        recipe=Recipe.STORAGE,
-        id=task_id,
-        path=cell.path(code),
-        station=cell.stations[int(station_word)],
+        recipe=recipe.name,
+        id=id,
+        values={each.name: each.value(cell, words[each.name]) for each in recipe.parameters},
     )
 
 
-def _check_reached(cell: Cell, *robots: Robot) -> None:
+def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]:
+    """What the first two words name: the second a recipe, or it is a parameter of the cell's default."""
+    second = words[1] if len(words) > 1 else ""
+    asked = {each.name: each for cell in plant.cells for each in cell.recipes if not each.is_default}
+    named = asked.get(_known(second, asked) or "")
+    short = len(words) == 2 and any(each.alone and not each.parameters for each in asked.values())
+    cell = _cell(words[0], plant, named, robots=named.alone is not None if named else short)
+    default = next((each for each in cell.recipes if each.is_default), None)
+    if named is not None and named in cell.recipes:
+        return cell, named
+    if not second and default is None:
+        there = tuple(each.name for each in cell.recipes)
+        raise TextError(NO_RECIPE(cell=cell.name, there=there, form=_form(plant)))
+    if default is None or named is not None:
+        raise TextError(_unknown(RECIPE(), second, [each.name for each in cell.recipes], cell.name))
+    first = default.parameters[0] if default.parameters else None
+    if short and first is not None and _known(second, first.words(cell)) is None:
+        others = tuple(f"'{each.name}'" for each in cell.recipes if not each.is_default)
+        called = first.called() if first.called else first.name
+        neither = NEITHER(word=quoted(second), first=called, cell=cell.name, others=others, form=_form(plant))
+        raise TextError(neither)
+    return cell, default
+
+
+def _read(cell: Cell, parameter: Parameter, word: str) -> str:
+    """The word as the cell has it."""
+    words = parameter.words(cell)
+    known = _known(word, words)
+    if known is None:
+        called = parameter.called() if parameter.called else parameter.name
+        raise TextError(_unknown(called, word, words, cell.name))
+    return known
+
+
+def _check_reached(cell: Cell, recipe: Recipe) -> None:
     """TextError where the task needs a robot that is only drawn: it would never end."""
+    robots = cell.robots if recipe.alone is None else (cell.roles[recipe.alone],)
     for robot in robots:
         if robot.link is Link.NONE:
             raise TextError(ONLY_DRAWN(robot=robot.name, cell=cell.name))
@@ -108,23 +143,37 @@ def _split_id(words: list[str]) -> tuple[list[str], str | None]:
     return words[:-1], task_id
 
 
-def _cell(word: str, plant: PlantModel, *, arms: bool) -> Cell:
+def _cell(word: str, plant: PlantModel, recipe: Recipe | None, *, robots: bool) -> Cell:
     by_name = {cell.name: cell for cell in plant.cells}
-    if arms:
-        by_name |= {cell.arm.name: cell for cell in plant.cells}
+    roles = dict.fromkeys(each.alone for each in _offered(plant) if each.alone) if robots else {}
+    for role in roles:
+        by_name |= {cell.roles[role].name: cell for cell in plant.cells if role in cell.roles}
     name = _known(word, by_name)
     if name is None:
-        raise TextError(_unknown(CELL_OR_ARM if arms else CELL, word, by_name, THIS_PLANT()))
+        raise TextError(_unknown(_cell_or_robot(roles), word, by_name, THIS_PLANT()))
     return by_name[name]
 
 
-def _path_codes(cell: Cell) -> list[str]:
-    return [path.code for path in cell.paths]
+def _offered(plant: PlantModel) -> list[Recipe]:
+    """Every recipe of the plant, the default ones first."""
+    found = dict.fromkeys(each for cell in plant.cells for each in cell.recipes)
+    return sorted(found, key=lambda each: not each.is_default)
 
 
-def _example(plant: PlantModel) -> str:
+def _form(plant: PlantModel) -> Sentence:
+    """How tasks are written here, with an example of the first cell's."""
+    forms = list(dict.fromkeys(each.form() for each in _offered(plant)))
     cell = plant.cells[0]
-    return f"{cell.name} {cell.paths[0].code} {len(cell.stations) - 1}"
+    recipe = next(each for each in _offered(plant) if each in cell.recipes)
+    shown = example(cell, recipe).text
+    if len(forms) == 1:
+        return FORM(form=forms[0], example=shown)
+    return FORMS(form=forms[0], example=shown, others=tuple(forms[1:]))
+
+
+def _cell_or_robot(roles: Iterable[str]) -> Sentence:
+    robots = tuple(ROLES[each]() if each in ROLES else each for each in roles)
+    return CELL_OR_ROBOT(robot=robots) if robots else CELL()
 
 
 def _known(word: str, names: Iterable[str]) -> str | None:
@@ -132,10 +181,10 @@ def _known(word: str, names: Iterable[str]) -> str | None:
     return next((name for name in names if word.isascii() and name.lower() == word.lower()), None)
 
 
-def _unknown(kind: Phrase, word: str, names: Iterable[str], where: str | Sentence) -> Sentence:
+def _unknown(kind: Sentence | str, word: str, names: Iterable[str], where: str | Sentence) -> Sentence:
     there = tuple(names)
     near = get_close_matches(word.lower(), [name.lower() for name in there], n=1)
     hint = _known(near[0], there) if near else None
     if hint is None:
-        return UNKNOWN(word=quoted(word), kind=kind(), where=where, there=there)
-    return UNKNOWN_BUT_NEAR(word=quoted(word), kind=kind(), where=where, there=there, near=hint)
+        return UNKNOWN(word=quoted(word), kind=kind, where=where, there=there)
+    return UNKNOWN_BUT_NEAR(word=quoted(word), kind=kind, where=where, there=there, near=hint)

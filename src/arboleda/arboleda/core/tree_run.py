@@ -7,7 +7,7 @@ from collections.abc import Callable
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import recipes
+from . import steps
 from .context import Context
 from .errors import ArboledaError
 from .leaves import Act
@@ -29,7 +29,7 @@ class TreeRun:
     @property
     def recovering(self) -> bool:
         """Whether the recovery is what runs."""
-        return any(node.name == recipes.RECOVERY for node in self._running())
+        return any(node.name == steps.RECOVERY for node in self._running())
 
     def begin(self, make: Callable[[], Behaviour]) -> Status:
         """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""

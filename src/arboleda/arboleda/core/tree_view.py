@@ -111,7 +111,7 @@ TOLD: dict[str, Callable[[Any], dict[str, Any]]] = {
     "command": _of_command,
     "await": _of_await,
     "dwell": lambda node: {"seconds": node.seconds},
-    "note": lambda node: {"carried": node.carried},
+    "note": lambda node: {"carried": node.robot is not None},
 }
 
 

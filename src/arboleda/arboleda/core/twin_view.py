@@ -8,13 +8,12 @@ from py_trees.behaviour import Behaviour
 
 from .belief import Belief
 from .cell import CellRun
+from .commands import FollowPath, MoveJoints, SetEffector
 from .grips import Grip
 from .leaves import Act
 from .ledger import OPEN, Entry, State
-from .messages import FollowPath, MoveJoints, SetEffector
-from .model import Cell
+from .model import StorageCell
 from .plant import Plant
-from .task import Recipe
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})
@@ -46,7 +45,10 @@ def part(cell: CellRun) -> Row | None:
     Only what an effector holds is known by itself; where a part waits, and where it was put, follows from
     what the tree has done so far.
     """
-    grip = cell.context.grip
+    storage = cell.cell
+    if not isinstance(storage, StorageCell):
+        return None
+    grip = cell.context.grip(storage.arm.name)
     if grip is not Grip.OFF:
         return {"at": "arm", "sure": grip is Grip.ON}
     if cell.tree is None or cell.task is None:
@@ -54,17 +56,17 @@ def part(cell: CellRun) -> Row | None:
     sent = _sent(cell.tree)
     gripped = [entry for entry in sent if isinstance(entry.command, SetEffector)]
     if gripped:
-        return _put_down(sent, gripped[-1], cell.cell)
-    return _waiting(cell.task.order.recipe, cell.cell)
+        return _put_down(sent, gripped[-1], storage)
+    return _waiting(cell.task.order.recipe, storage)
 
 
-def _waiting(recipe: Recipe, cell: Cell) -> Row:
-    if recipe is Recipe.STORAGE:
+def _waiting(recipe: str, cell: StorageCell) -> Row:
+    if recipe == "storage":
         return {"at": "mobile"}
     return {"at": "pose", "q": list(cell.palletizing.pick.q)}
 
 
-def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:
+def _put_down(sent: list[Entry], let_go: Entry, cell: StorageCell) -> Row | None:
     """Where the arm was sent to last before it let go; what lies in a station is `stored`."""
     before = sent[: sent.index(let_go)]
     moves = [entry.command for entry in before if isinstance(entry.command, MoveJoints)]

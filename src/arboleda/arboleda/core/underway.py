@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from .messages import Command, Report
-from .model import Cell, Evidence, PlantModel
+from .commands import Command
+from .messages import Report
+from .model import Evidence, PlantModel, Robot
 
 PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last command
 KEPT = 64  # commands per arm; whatever settles a later one settles those before it
@@ -18,7 +19,8 @@ class UnderWay:
     """
 
     def __init__(self, model: PlantModel) -> None:
-        self._watched = frozenset(cell.arm.name for cell in model.cells if _names_commands(cell))
+        users = (model.robots[name] for cell in model.cells for name in cell.zone_users)
+        self._watched = frozenset(robot.name for robot in users if _names_commands(robot))
         self.ids: dict[str, list[str]] = {}
         self._heard_since: dict[str, float] = {}  # since the last one left
 
@@ -47,5 +49,5 @@ class UnderWay:
         return robot in self.ids and now >= self._heard_since.get(robot, now) + PATIENCE_S
 
 
-def _names_commands(cell: Cell) -> bool:
-    return bool(cell.zones) and cell.arm.evidence is Evidence.IDS and cell.arm.has_stop
+def _names_commands(robot: Robot) -> bool:
+    return robot.evidence is Evidence.IDS and robot.has_stop

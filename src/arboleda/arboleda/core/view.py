@@ -8,14 +8,14 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import places, recipes, tree_view, twin_view
+from . import places, steps, tree_view, twin_view
 from .advice import Advice, Hand, in_words, sentence
 from .belief import Belief
 from .cell import CellRun
 from .cell_states import CellState
 from .ledger import Entry
 from .messages import OperatorRequest, TaskChanged, Verb
-from .model import Arm, Cell, PlantModel
+from .model import PlantModel, StorageCell
 from .operator import OperatorAct
 from .plant import Plant
 from .sentence import BOTH, NOTHING, Sentence
@@ -83,12 +83,12 @@ def layout(model: PlantModel) -> dict[str, Any]:
         "plant": model.name,
         "zones": list(model.zones),
         "no_stop": [robot.name for robot in model.robots.values() if not robot.has_stop],
-        "cells": [_cell_layout(cell) for cell in model.cells],
+        "cells": [_cell_layout(cell) for cell in model.cells if isinstance(cell, StorageCell)],
         "places": places.places(model),
     }
 
 
-def _cell_layout(cell: Cell) -> dict[str, Any]:
+def _cell_layout(cell: StorageCell) -> dict[str, Any]:
     grid = cell.mobile.grid
     return {
         "name": cell.name,
@@ -124,16 +124,16 @@ def step_of(tree: Behaviour | None) -> str | None:
     if not running:
         return None
     step = running[0]
-    while step.parent is not None and step.parent.name not in recipes.PHASES:
+    while step.parent is not None and step.parent.name not in steps.PHASES:
         step = step.parent
     phase = step.parent.name if step.parent else ""
-    return f"{phase}: {step.name}" if phase == recipes.RECOVERY else step.name
+    return f"{phase}: {step.name}" if phase == steps.RECOVERY else step.name
 
 
 def progress_of(tree: Behaviour | None) -> float | None:
     """The share of the work's steps that are done, 0 to 1; None where no work runs, a recovery alone too."""
     phases = tree.children if tree is not None else ()
-    main = next((phase for phase in phases if phase.name == recipes.MAIN), None)
+    main = next((phase for phase in phases if phase.name == steps.MAIN), None)
     if main is None or not main.children:
         return None
     return sum(step.status is Status.SUCCESS for step in main.children) / len(main.children)
@@ -163,8 +163,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
     return {
         "name": cell.cell.name,
         "state": cell.state.value,
-        "arm": cell.cell.arm.name,
-        "mobile": cell.cell.mobile.name,
+        **{role: robot.name for role, robot in cell.cell.roles.items()},
         "task": _task(cell.task, now) if cell.task else None,
         "step": step_of(cell.tree),
         "progress": progress_of(cell.tree),
@@ -254,7 +253,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "state": belief.state.value if belief.state is not None else None,
         "age_s": None if belief.heard_at is None else now - belief.heard_at,
         "q": belief.q,
-        "units": [joint.unit for joint in robot.joints] if isinstance(robot, Arm) else None,
+        "units": robot.units,
         "node": belief.node,
         "homed": belief.homed,
         "latched": robot.name in plant.dispatcher.latched,
@@ -263,7 +262,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
         "still": belief.still,
-        "holding": plant.dispatcher.grips.holding(robot.name) if isinstance(robot, Arm) else None,
+        "holding": plant.dispatcher.grips.holding(robot.name) if robot.held_fact else None,
         "goal": twin_view.goal(plant.dispatcher.last_sent.get(robot.name)),
         "telemetry_hz": belief.rate_hz if belief.online else None,
         "command": _command(plant.dispatcher.last_sent.get(robot.name), now),

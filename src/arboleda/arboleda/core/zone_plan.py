@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from .errors import ConfigError
-from .model import Cell, Pose
+from .model import Pose, StorageCell, Workspace
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,41 +22,41 @@ class Leg:
     zones: frozenset[str]
 
 
-def storage_way(cell: Cell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
+def storage_way(cell: StorageCell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
     """The poses of the storage recipe for an arm that stands at `start`."""
     return (start, pickup, station, cell.home)
 
 
-def palletizing_way(cell: Cell, start: Pose) -> tuple[Pose, ...]:
+def palletizing_way(cell: StorageCell, start: Pose) -> tuple[Pose, ...]:
     """The poses of the palletizing recipe for an arm that stands at `start`; it stays at the last one."""
     return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
 
 
-def plan(cell: Cell, way: Sequence[Pose], back: Pose) -> list[Leg]:
+def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
     """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way.
 
-    A recovery would bring the part to `back`.
+    A recovery would bring the part to `back`, where there is one.
     """
     for pose in (way[0], way[-1]):
         if pose.zones:
-            raise ConfigError((f"cell {cell.name}: {_lying(pose)}, so no way may start or end there",))
+            raise ConfigError((f"{space.robot.name}: {_lying(pose)}, so no way may start or end there",))
     free = [index for index, pose in enumerate(way) if not pose.zones]
-    left = max((index for index, pose in enumerate(way) if pose.name != cell.home.name), default=0)
+    left = max((index for index, pose in enumerate(way) if pose.name != space.home.name), default=0)
     return [
-        Leg(start=start, end=end, zones=_zones(cell, way[start : end + 1], back if start < left else None))
+        Leg(start=start, end=end, zones=_zones(space, way[start : end + 1], back if start < left else None))
         for start, end in pairwise(free)
     ]
 
 
-def recovery_zones(cell: Cell, start: Pose | None, back: Pose) -> frozenset[str]:
-    """What the way from `start` to `back` and home needs; None: from wherever the arm may be."""
-    way = (back, cell.home)
-    starts = cell.poses if start is None else (start,)
+def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:
+    """What the way from `start` to `back` and home needs; None: from wherever the robot may be."""
+    way = (back, space.home) if back else (space.home,)
+    starts = space.poses if start is None else (start,)
     moves = [(pose, goal) for pose in starts for goal in way]
-    return _zones(cell, way, back) | _crossed(cell, moves)
+    return _zones(space, way, back) | _crossed(space, moves)
 
 
-def plan_problems(cell: Cell) -> dict[str, str]:
+def plan_problems(cell: StorageCell) -> dict[str, str]:
     """Why no recipe of the cell can be planned: a sentence by the name of the pose that is in the way."""
     problems = {}
     if (place := cell.palletizing.place).zones:
@@ -68,18 +68,18 @@ def plan_problems(cell: Cell) -> dict[str, str]:
     return problems
 
 
-def _zones(cell: Cell, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
+def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
     """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
-    recovery = (back, cell.home) if back else (cell.home,)
+    recovery = (back, space.home) if back else (space.home,)
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]
     inside = (pose.zones for pose in (*poses, *recovery))
-    return _crossed(cell, moves).union(*inside)
+    return _crossed(space, moves).union(*inside)
 
 
-def _crossed(cell: Cell, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[str]:
-    ends = [{a.name, b.name} for a, b in moves] if cell.crossings else []
-    return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} in ends))
+def _crossed(space: Workspace, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[str]:
+    ends = [{a.name, b.name} for a, b in moves] if space.crossings else []
+    return frozenset[str]().union(*(each.zones for each in space.crossings if {each.a, each.b} in ends))
 
 
 def _lying(pose: Pose) -> str:

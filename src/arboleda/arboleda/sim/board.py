@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from arboleda.core.commands import StopMode
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import StopMode
 from arboleda.core.model import Evidence, MotionState, Robot
 from arboleda.wire import strict
 from arboleda.wire.payloads import (

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
-from arboleda.core.model import Arm, Link, Mobile, PlantModel, Robot
+from arboleda.core.model import Arm, Link, Mobile, PlantModel, Robot, StorageCell
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .arm import ArmBody
@@ -102,10 +102,10 @@ class Devices:
 def _body(model: PlantModel, robot: Robot) -> Body:
     """The body of an arm standing at its home pose, or of a mobile at the start of its first path."""
     cell = model.cell_of[robot.name]
-    if isinstance(robot, Arm):
+    if isinstance(robot, Arm) and isinstance(cell, StorageCell):
         pickups = [pose.q for pose in (*cell.every_pickup, cell.palletizing.pick)]
         return ArmBody(robot, start=cell.home.q, pickups=pickups)
-    if isinstance(robot, Mobile):
+    if isinstance(robot, Mobile) and isinstance(cell, StorageCell):
         return MobileBody(robot, start_node=cell.paths[0].nodes[0])
     raise TypeError(f"{robot.name} is neither an arm nor a mobile robot")
 

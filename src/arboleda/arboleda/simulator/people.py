@@ -6,7 +6,7 @@ from itertools import count
 
 from arboleda.core.advice import Advice, Hand
 from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.core.model import Cell
+from arboleda.core.model import StorageCell
 
 from .chance import Dice
 from .hands import do
@@ -27,7 +27,7 @@ class Customers:
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
         self._dice = Dice(seed, "customers")
-        self._asked: dict[str, Cell] = {}  # by token
+        self._asked: dict[str, StorageCell] = {}  # by token
         self._waiting: set[str] = set()  # their own tasks that are in a queue
         self._started: set[str] = set()
         self._gone = False
@@ -51,7 +51,7 @@ class Customers:
                 elif message.request in self._asked:
                     self._answered(message, self._asked.pop(message.request))
 
-    def _answered(self, answer: TaskChanged, cell: Cell) -> None:
+    def _answered(self, answer: TaskChanged, cell: StorageCell) -> None:
         if answer.state is TaskState.QUEUED:
             self._waiting.add(answer.task)
         else:
@@ -72,16 +72,16 @@ class Customers:
         outcome = change.reason.value if change.reason else change.state.value
         self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1
 
-    def _come(self, cell: Cell) -> None:
+    def _come(self, cell: StorageCell) -> None:
         self._world.at(self._world.now + self._dice.between(0.0, 1.0), self._ask, cell)
 
-    def _ask(self, cell: Cell) -> None:
+    def _ask(self, cell: StorageCell) -> None:
         if not self._gone:
             token = f"customer {next(self._tokens)}"
             self._asked[token] = cell
             self._world.request_task(self._text(cell), token)
 
-    def _text(self, cell: Cell) -> str:
+    def _text(self, cell: StorageCell) -> str:
         if self._dice.chance(0.2):
             return f"{cell.name} palletizing"
         path, station = self._dice.pick(cell.paths), self._dice.below(len(cell.stations))

@@ -9,18 +9,10 @@ from collections.abc import Callable, Iterable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core import recipes
+from arboleda.core import steps
+from arboleda.core.commands import Stop, StopMode
 from arboleda.core.leaves import Act
-from arboleda.core.messages import (
-    Heartbeat,
-    OperatorAnswer,
-    Report,
-    Stop,
-    StopMode,
-    TaskChanged,
-    TaskState,
-    Verb,
-)
+from arboleda.core.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.sim.board import SILENCE_US, Board
 
 from .world import BRIDGE, World
@@ -123,7 +115,7 @@ def _step(node: Behaviour) -> Iterator[str]:
         yield "step: tried again"
     if node.name.startswith("try ") and node.name != "try 1":
         yield "step: gripped again"
-    if node.parent is not None and node.parent.name in (recipes.RECOVERY, "carry back", "part back"):
+    if node.parent is not None and node.parent.name in (steps.RECOVERY, "carry back", "part back"):
         yield f"recovery: {node.name}"
 
 

@@ -7,22 +7,15 @@ from copy import copy
 from typing import Any
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.ledger import State
 from arboleda.core.messages import (
-    Command,
     Fact,
-    FollowPath,
-    Home,
     InternalError,
-    Motion,
-    MoveJoints,
     OperatorAnswer,
     OperatorRequest,
     Remember,
     Report,
-    SetEffector,
-    Stop,
-    StopMode,
     TaskChanged,
     TaskRequest,
     TaskState,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from arboleda.core.model import PlantModel
-from arboleda.core.recipes import Recipes
+from arboleda.core.recipe import Builders
 
 from .apart import come_apart
 from .faults import Fault
@@ -54,7 +54,7 @@ class Simulation:
         invariants: Iterable[Invariant] = INVARIANTS,
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
-        recipes: Recipes | None = None,
+        recipes: Builders | None = None,
     ) -> None:
         self.watched = Watched(model, invariants=invariants, keep=keep, tell=tell, recipes=recipes)
         self.world, self.trace = self.watched.world, self.watched.trace

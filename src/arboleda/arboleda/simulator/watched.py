@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from arboleda.core.model import PlantModel
-from arboleda.core.recipes import Recipes
+from arboleda.core.recipe import Builders
 
 from .faults import KINDS, Fault
 from .invariants import INVARIANTS, Invariant
@@ -43,7 +43,7 @@ class Watched:
         invariants: Iterable[Invariant] = INVARIANTS,
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
-        recipes: Recipes | None = None,
+        recipes: Builders | None = None,
     ) -> None:
         self.world = World(model, recipes=recipes)
         self._start = self.world.now

@@ -10,8 +10,8 @@ from heapq import heappop, heappush
 from itertools import count
 from typing import Any
 
+from arboleda.core.commands import Command
 from arboleda.core.messages import (
-    Command,
     Event,
     Fact,
     Heartbeat,
@@ -23,7 +23,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
-from arboleda.core.recipes import Recipes
+from arboleda.core.recipe import Builders
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices
@@ -96,7 +96,7 @@ class World:
         epoch: int = 1000,
         watchers: Iterable[Callable[[], None]] = (),
         carriers: Iterable[Carry] = (),
-        recipes: Recipes | None = None,
+        recipes: Builders | None = None,
     ) -> None:
         self.model = model
         self.now = now

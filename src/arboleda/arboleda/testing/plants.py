@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from arboleda.app.config import load
-from arboleda.core.model import Arm, Cell, PlantModel
+from arboleda.core.model import Arm, PlantModel, StorageCell
 
 
 def shipped(*cells: str, **declared: Any) -> PlantModel:
@@ -31,5 +31,5 @@ def _loaded() -> PlantModel:
     return load()
 
 
-def _declaring(cell: Cell, declared: dict[str, Any]) -> Cell:
+def _declaring(cell: StorageCell, declared: dict[str, Any]) -> StorageCell:
     return replace(cell, arm=replace(cell.arm, **declared), mobile=replace(cell.mobile, **declared))

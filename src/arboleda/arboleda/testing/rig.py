@@ -10,11 +10,8 @@ from py_trees.common import Status
 from arboleda.core import view
 from arboleda.core.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import PlantModel
-from arboleda.core.task import Recipe
 from arboleda.simulator.world import PLANT, World
 from arboleda.wire.transport import Publication
-
-RECIPES = frozenset(recipe.value for recipe in Recipe)
 
 
 class Rig(World):
@@ -86,7 +83,8 @@ class Rig(World):
         """The leaf that runs in a cell, with what it is part of: `main/effector on/switch`."""
         tree = self.plant.cells[cell].tree
         running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
-        names = [node.name for node in reversed(running) if node.name not in RECIPES]
+        recipes = {recipe.name for recipe in self.model.cell(cell).recipes}
+        names = [node.name for node in reversed(running) if node.name not in recipes]
         return "/".join(names) or None
 
     def runs(self, cell: str, leaf: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from arboleda.core.model import PlantModel
-from arboleda.core.recipes import Recipes
+from arboleda.core.recipe import Builders
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.run import MINUTE_S, Plan, Result, Simulation
@@ -22,7 +22,7 @@ class Seeds:
     model: PlantModel
     cycles: int
     level: str
-    recipes: Recipes
+    recipes: Builders
     invariants: tuple[Invariant, ...]
 
     def run(self, seed: int, *, keep: bool = False) -> Result:

@@ -8,13 +8,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from py_trees.behaviour import Behaviour
-
 from arboleda.core import view
-from arboleda.core.context import Context
 from arboleda.core.messages import Verb
 from arboleda.core.model import PlantModel
-from arboleda.core.task import Order, Recipe
+from arboleda.core.recipe import Build
 from arboleda.simulator.climate import LEVELS
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import INVARIANTS
@@ -42,7 +39,7 @@ class Sim:
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
         self._model: PlantModel | None = None
-        self._recipes: dict[Recipe, Callable[[Order, Context], Behaviour]] = {}
+        self._recipes: dict[str, Build] = {}
         self._invariants = INVARIANTS
         self._attendant: Attendant | None = None
         self._asking = False  # a condition of the test is being asked: what it raises is the test's
@@ -54,10 +51,11 @@ class Sim:
         self._model = asked.plant(plant, self._folder)
         return self._model
 
-    def recipe(self, name: str, build: Callable[[Order, Context], Behaviour]) -> None:
+    def recipe(self, name: str, build: Build) -> None:
         """Have `build(order, context)` make the tree of every task of this recipe."""
         self._before_start("recipe")
-        self._recipes[Recipe(known("a recipe", name, [each.value for each in Recipe]))] = build
+        offered = dict.fromkeys(each.name for cell in self._chosen.cells for each in cell.recipes)
+        self._recipes[known("a recipe", name, list(offered))] = build
 
     def without(self, *invariants: str) -> None:
         """Do not judge by these invariants, where a recipe means something else than the shipped one."""

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from arboleda.core.model import Cell, PlantModel
-from arboleda.core.task import Recipe
+from arboleda.core.model import PlantModel, StorageCell
 from arboleda.simulator.faults import KINDS, Fault
 
 WITHIN_S = 60.0
@@ -35,15 +34,15 @@ def faults(draw: st.DrawFn, model: PlantModel, *, within_s: float = WITHIN_S) ->
     )
 
 
-def _storage(cell: Cell) -> st.SearchStrategy[str]:
+def _storage(cell: StorageCell) -> st.SearchStrategy[str]:
     paths = st.sampled_from([path.code for path in cell.paths])
     stations = st.integers(0, len(cell.stations) - 1)
     return st.builds(lambda path, station: f"{cell.name} {path} {station}", paths, stations)
 
 
-def _palletizing(cell: Cell) -> st.SearchStrategy[str]:
+def _palletizing(cell: StorageCell) -> st.SearchStrategy[str]:
     names = st.sampled_from([cell.name, cell.arm.name])
-    return names.map(lambda name: f"{name} {Recipe.PALLETIZING.value}")
+    return names.map(lambda name: f"{name} palletizing")
 
 
 def _one_of(names: Sequence[str]) -> st.SearchStrategy[str]:

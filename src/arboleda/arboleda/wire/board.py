@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from arboleda.core.commands import Command, Motion, Stop, StopMode
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, Motion, Report, Stop, StopMode
+from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
 
 from . import goals, rejections

@@ -11,8 +11,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from arboleda.core.commands import Command, Stop
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Command, Heartbeat, Report, Stop
+from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import ForeignCommands, Link, PlantModel
 from arboleda.core.outside import quoted
 

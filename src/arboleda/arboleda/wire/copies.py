@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import Command
+from arboleda.core.commands import Command
 
 from .hop import without_id
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core.messages import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.model import Arm, Mobile, Robot
 
 from .payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal

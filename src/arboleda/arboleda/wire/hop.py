@@ -8,16 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from arboleda.core.messages import (
-    Command,
-    FollowPath,
-    Heartbeat,
-    Home,
-    MoveJoints,
-    SetEffector,
-    Stop,
-    StopMode,
-)
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Heartbeat
 
 COMMAND = "command"
 HEARTBEAT = "plant/heartbeat"

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from typing import TypeVar
 
-from arboleda.core.messages import Command
+from arboleda.core.commands import Command
 
 from .payloads import Telemetry
 from .strict import UINT32

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints
+from arboleda.core.commands import Command, FollowPath, MoveJoints
 from arboleda.core.model import Arm, Evidence, MotionState, Robot
 
 from .payloads import Telemetry

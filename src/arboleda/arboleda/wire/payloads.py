@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable
 from functools import cache, lru_cache
 
+from arboleda.core.commands import StopMode
 from arboleda.core.errors import PayloadError
-from arboleda.core.messages import StopMode
 from arboleda.core.model import MotionState
 from arboleda.core.outside import quoted
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.messages import Command, FollowPath, MoveJoints
+from arboleda.core.commands import Command, FollowPath, MoveJoints
 from arboleda.core.model import Arm, Mobile, Robot
 
 from .goals import FLOAT32_SLACK

@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from arboleda.core import report_check
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState, Robot
@@ -88,7 +87,7 @@ def _said(report: Report, name: str) -> bool:
 
 
 def _fits(robot: Robot, report: Report) -> None:
-    if (objection := report_check.objection(robot, report)) is not None:
+    if (objection := robot.objection(report)) is not None:
         raise PayloadError(objection)
     if (report.rejected is None) != (report.refusal is None):
         raise PayloadError("rejected and reason go together")

@@ -10,7 +10,8 @@ from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.core.messages import Command, Heartbeat, Notice, Report
+from arboleda.core.commands import Command
+from arboleda.core.messages import Heartbeat, Notice, Report
 from arboleda.core.model import PlantModel
 from arboleda.wire.bridge import Bridge, Leaving, Message
 from arboleda.wire.hop import FromPlant

@@ -13,10 +13,10 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.adapters.store import Store
 from arboleda.core import twin_view, view
+from arboleda.core.commands import Command, Stop, StopMode
 from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import (
     Absence,
-    Command,
     Event,
     InternalError,
     Journal,
@@ -26,8 +26,6 @@ from arboleda.core.messages import (
     Remember,
     Report,
     Shutdown,
-    Stop,
-    StopMode,
     TaskChanged,
     TaskRequest,
     TaskState,

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations, product
 
-from arboleda.core.model import Cell, Crossing, Pose
+from arboleda.core.model import Crossing, Pose, StorageCell
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
 WHY = "in every joint they are within twice the arm's tolerance of each other, so it cannot tell them apart"
@@ -27,7 +27,7 @@ class Confusion:
     sentence: str
 
 
-def with_alike_crossings(cell: Cell) -> Cell:
+def with_alike_crossings(cell: StorageCell) -> StorageCell:
     """The cell, a move of a pose crossing whatever that move crosses from a pose that looks the same."""
     crossed = {frozenset({each.a, each.b}): each.zones for each in cell.crossings}
     while (grown := _grown(cell, crossed)) != crossed:
@@ -36,12 +36,12 @@ def with_alike_crossings(cell: Cell) -> Cell:
     return replace(cell, crossings=tuple(Crossing(a=a, b=b, zones=zones) for (a, b), zones in rows))
 
 
-def confusions(cell: Cell) -> list[Confusion]:
+def confusions(cell: StorageCell) -> list[Confusion]:
     """Everything in the zones of a cell of which nobody would know whether the arm is in it."""
     return list(_at_reference(cell)) or list(_between_poses(cell))
 
 
-def _between_poses(cell: Cell) -> Iterator[Confusion]:
+def _between_poses(cell: StorageCell) -> Iterator[Confusion]:
     for a, b in _alike(cell):
         for inside, outside in permutations((a, b)):
             for zone in sorted(inside.zones - outside.zones):
@@ -52,7 +52,7 @@ def _between_poses(cell: Cell) -> Iterator[Confusion]:
             yield Confusion(zone=zone, named=(a.name, b.name), sentence=f"{what}; {WHY}")
 
 
-def _at_reference(cell: Cell) -> Iterator[Confusion]:
+def _at_reference(cell: StorageCell) -> Iterator[Confusion]:
     """Homing ends at the reference, so it lies outside all zones."""
     reference = cell.arm.quantised(cell.arm.reference)
     for pose in cell.poses:
@@ -63,7 +63,7 @@ def _at_reference(cell: Cell) -> Iterator[Confusion]:
                 yield Confusion(zone=zone, named=(pose.name,), sentence=f"{what}; {rule}")
 
 
-def _grown(cell: Cell, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:
+def _grown(cell: StorageCell, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:
     """The zones by move, each move's also for those from a pose that looks like one of its ends."""
     grown = dict(crossed)
     pairs = [(a.name, b.name) for alike in _alike(cell) for a, b in permutations(alike)]
@@ -74,7 +74,7 @@ def _grown(cell: Cell, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozen
     return grown
 
 
-def _alike(cell: Cell) -> list[tuple[Pose, Pose]]:
+def _alike(cell: StorageCell) -> list[tuple[Pose, Pose]]:
     """The pairs of poses that look the same."""
     spots = {pose.name: _spots(cell, pose) for pose in cell.poses}
     return [
@@ -84,12 +84,12 @@ def _alike(cell: Cell) -> list[tuple[Pose, Pose]]:
     ]
 
 
-def _across(cell: Cell, a: Pose, b: Pose) -> frozenset[str]:
+def _across(cell: StorageCell, a: Pose, b: Pose) -> frozenset[str]:
     ends = {a.name, b.name}
     return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} == ends))
 
 
-def _spots(cell: Cell, pose: Pose) -> list[Position]:
+def _spots(cell: StorageCell, pose: Pose) -> list[Position]:
     """Where an arm counts as standing at a pose; the reference counts as home where no pose is there."""
     spots = _own_spots(cell, pose)
     if pose.name == cell.home.name and all(each.q != cell.arm.reference for each in cell.poses):
@@ -97,10 +97,10 @@ def _spots(cell: Cell, pose: Pose) -> list[Position]:
     return spots
 
 
-def _own_spots(cell: Cell, pose: Pose) -> list[Position]:
+def _own_spots(cell: StorageCell, pose: Pose) -> list[Position]:
     return [cell.arm.quantised(q) for q in (pose.q, pose.above) if q is not None]
 
 
-def _same(cell: Cell, p: Sequence[float], q: Sequence[float]) -> bool:
+def _same(cell: StorageCell, p: Sequence[float], q: Sequence[float]) -> bool:
     rows = zip(p, q, cell.arm.tolerances, strict=True)
     return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)

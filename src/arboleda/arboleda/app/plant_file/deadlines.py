@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from arboleda.core.belief import APART_S
 from arboleda.core.evidence import QUIET_S
-from arboleda.core.model import Arm, Cell, Evidence, Mobile, Robot, Timing
+from arboleda.core.model import Arm, Evidence, Mobile, Robot, StorageCell, Timing
 
 from .document import Document, Place
 
@@ -20,7 +20,7 @@ SHOWN_S = {
 ROUNDING_S = 1e-6
 
 
-def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timing) -> None:
+def check_arrivals_show(document: Document, cells: Iterable[StorageCell], timing: Timing) -> None:
     """Keeps a problem for each robot whose moves may be given up or taken for done before they show."""
     for cell in cells:
         for key, robot in (("arm", cell.arm), ("mobile", cell.mobile)):
@@ -47,7 +47,7 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
     return max(robot.timeout_s, even_s * factor + floor_s) - even_s
 
 
-def _longest_s(cell: Cell, robot: Robot) -> float:
+def _longest_s(cell: StorageCell, robot: Robot) -> float:
     if isinstance(robot, Arm):
         return robot.travel_s(None, [cell.home.q])
     assert isinstance(robot, Mobile)

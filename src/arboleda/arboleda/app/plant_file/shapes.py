@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic_core import PydanticCustomError
 
-from arboleda.core.model import Cell, Evidence, Link, Retry, Timing
+from arboleda.core.model import Evidence, Link, Retry, StorageCell, Timing
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
 
@@ -91,7 +91,7 @@ class CellShape(Shape):
     drive_to_start: bool = True
     retry: Any = None
     piece_check: bool = False
-    zone_wait_s: Duration = Cell.zone_wait_s
+    zone_wait_s: Duration = StorageCell.zone_wait_s
 
 
 class RetryShape(Shape):

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from arboleda.core.model import Cell, Crossing, Pose
+from arboleda.core.model import Crossing, Pose, StorageCell
 from arboleda.core.zone_plan import plan_problems
 
 from .alike import confusions, with_alike_crossings
@@ -43,7 +43,7 @@ class Zone:
         return (*SECTION, self.name, "poses", self.poses[spots[0]])
 
 
-def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
+def zones(document: Document, cells: Sequence[StorageCell]) -> tuple[Zone, ...]:
     """Every zone of the file; parts that are wrong are left out, with the problems kept.
 
     `cells` are those that could be read; poses of the others are not looked at.
@@ -54,7 +54,7 @@ def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
     return tuple(_zone(document, name, cells) for name in document.keys(SECTION))
 
 
-def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cell:
+def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone]) -> StorageCell:
     """The cell with the zones of its poses and moves; a problem is kept where no way can be planned."""
 
     def placed(pose: Pose) -> Pose:
@@ -86,7 +86,7 @@ def with_zones(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cel
     return zoned
 
 
-def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
+def _zone(document: Document, name: str, cells: Sequence[StorageCell]) -> Zone:
     place: Place = (*SECTION, name)
     if not is_name(name):
         document.problem(place, f"a zone's name must be {NAME_RULE}", at=place)
@@ -103,11 +103,13 @@ def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
     return Zone(name=name, poses=poses, moves=_once(document, (*place, "moves"), moves, twice))
 
 
-def _spots(document: Document, place: Place, texts: list[str], cells: Sequence[Cell]) -> list[Spot | None]:
+def _spots(
+    document: Document, place: Place, texts: list[str], cells: Sequence[StorageCell]
+) -> list[Spot | None]:
     return [_spot(document, (*place, index), text, cells) for index, text in enumerate(texts)]
 
 
-def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) -> Spot | None:
+def _spot(document: Document, place: Place, text: str, cells: Sequence[StorageCell]) -> Spot | None:
     """`sis_a pickup` -> its spot; None where it is none, or where its cell could not be read."""
     name, *words = text.lower().split() or [""]
     names = document.keys(("cells",))
@@ -129,7 +131,7 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
     return Spot(cell=name, pose=poses[pose].name)
 
 
-def _poses(cell: Cell) -> dict[str, Pose]:
+def _poses(cell: StorageCell) -> dict[str, Pose]:
     """The poses of a cell by the names they have in a plant file."""
     pickups = pickup_names(cell.pickup, cell.pickups)
     return {"home": cell.home} | pickups | {pose.name: pose for pose in cell.stations}
@@ -165,7 +167,7 @@ def _once(document: Document, place: Place, values: Iterable[T | None], sentence
     return found
 
 
-def _crossings(cell: Cell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:
+def _crossings(cell: StorageCell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:
     """One crossing for each pair of poses, with all the zones that lie between them."""
     crossed: dict[tuple[str, ...], set[str]] = {}
     for zone in all_zones:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
 
-from arboleda.core.model import Cell, Link, PlantModel
+from arboleda.core.model import Link, PlantModel, StorageCell
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,5 +53,5 @@ def notes(plants: Iterable[Plant]) -> list[str]:
     return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
 
 
-def _on_boards(cell: Cell) -> Cell:
+def _on_boards(cell: StorageCell) -> StorageCell:
     return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))

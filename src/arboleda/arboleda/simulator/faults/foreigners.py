@@ -12,7 +12,7 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from arboleda.core.messages import StopMode
+from arboleda.core.commands import StopMode
 from arboleda.core.model import Arm, PlantModel, Robot
 from arboleda.wire.goals import goal as goal_of
 from arboleda.wire.payloads import Goal, StopGoal, encode

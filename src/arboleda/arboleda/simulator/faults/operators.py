@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from arboleda.core.intake import HISTORY
 from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import Cell, PlantModel
+from arboleda.core.model import PlantModel, StorageCell
 from arboleda.core.task import Task
 
 from ..chance import Dice
@@ -115,7 +115,7 @@ AGAIN: dict[str, Callable[[World, Fault], list[str]]] = {
     "known id": _known_id,
 }
 
-BAD_TEXTS: dict[str, Callable[[Cell], str]] = {
+BAD_TEXTS: dict[str, Callable[[StorageCell], str]] = {
     "nothing": lambda cell: "",
     "blanks": lambda cell: " \t\n ",
     "a cell": lambda cell: cell.name,

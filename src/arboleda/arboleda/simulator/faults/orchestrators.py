@@ -4,16 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.core.messages import (
-    Command,
-    FollowPath,
-    Heartbeat,
-    Home,
-    MoveJoints,
-    SetEffector,
-    Stop,
-    StopMode,
-)
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Heartbeat
 from arboleda.core.model import Arm, PlantModel
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.epochs import AHEAD_S

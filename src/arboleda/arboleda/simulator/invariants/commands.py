@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.core.commands import Home, Motion, SetEffector, Stop, StopMode
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import TABLE, State
-from arboleda.core.messages import Home, Motion, Reason, SetEffector, Stop, StopMode, Verb
+from arboleda.core.messages import Reason, Verb
 from arboleda.core.model import MotionState, Robot, Timing
 
 from ..recorded.commands import Commands, SentCommand

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core.messages import Command, FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector
 from arboleda.core.model import Evidence
 
 from ..truth import Truth

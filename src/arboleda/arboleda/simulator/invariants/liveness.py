@@ -155,7 +155,7 @@ def nothing_waits_at_end(look: Look) -> Iterable[str]:
             yield f"{len(cell.queue)} tasks wait in {name}: {cell.waiting_for()}"
         if cell.queue_paused:
             yield f"the queue of {name} is paused"
-        if isinstance(cell.cell.arm, Arm) and cell.context.holding():
+        if isinstance(cell.cell.arm, Arm) and cell.context.holding:
             yield f"{cell.cell.arm.name} may hold a part"
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.messages import Fact, Remember, SetEffector, Stop, StopMode
+from arboleda.core.commands import SetEffector, Stop, StopMode
+from arboleda.core.messages import Fact, Remember
 
 from ..recorded.robots import Stopped
 from .invariant import Look, When, invariant
@@ -46,7 +47,7 @@ def _stops(look: Look) -> Iterator[str]:
 def _effectors(look: Look) -> Iterator[str]:
     kept = look.world.memory.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
-        grip = cell.context.grip.value
+        grip = cell.context.grip(cell.cell.arm.name).value
         if kept.get(cell.cell.arm.name, "off") != grip:
             yield f"the effector of {cell.cell.arm.name} is {grip}, kept is {kept.get(cell.cell.arm.name)}"
 

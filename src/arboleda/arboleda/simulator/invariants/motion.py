@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core.messages import FollowPath, MoveJoints
+from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.wire.payloads import EffectorGoal, JointsGoal, PathGoal
 
 from ..truth.arm import ArmTruth

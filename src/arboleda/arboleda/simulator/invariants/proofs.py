@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.core.commands import SetEffector
 from arboleda.core.ledger import State
-from arboleda.core.messages import Reason, SetEffector
+from arboleda.core.messages import Reason
 from arboleda.core.model import Evidence
 
 from ..recorded.commands import SentCommand

@@ -11,9 +11,10 @@ from py_trees.common import Status
 
 from arboleda.core.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.core.cell import HELD, HELD_STRANDED
+from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.ledger import OPEN, State
-from arboleda.core.messages import FollowPath, MoveJoints, TaskChanged, TaskState
-from arboleda.core.model import Arm, Cell, MotionState, Robot
+from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.core.model import Arm, MotionState, Robot, StorageCell
 from arboleda.core.sentence import Phrase, Sentence
 
 from ..recorded.cells import KnownCell
@@ -214,7 +215,7 @@ def _acts(cell: KnownCell) -> Iterator[Any]:
     return (each for each in nodes if type(each).__name__ == "Act")
 
 
-def place(cell: Cell) -> Row:
+def place(cell: StorageCell) -> Row:
     """What never changes of a cell."""
     return {
         "arm": cell.arm.name,

@@ -10,9 +10,9 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core import places, twin_view, view
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.errors import PayloadError
 from arboleda.core.ledger import OPEN, State
-from arboleda.core.messages import FollowPath, MoveJoints
 from arboleda.core.model import Arm, Mobile
 from arboleda.wire import status
 

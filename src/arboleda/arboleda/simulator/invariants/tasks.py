@@ -270,9 +270,9 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     if said.reason in PIECES and cell.arm.evidence is not Evidence.IDS:
         return True
     led_there = cell.drive_to_start and cell.mobile.evidence is not Evidence.STATE
-    if led_there or order.path is None or not isinstance(mobile, MobileTruth):
+    if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):
         return False
-    return mobile.node != order.path.nodes[0]
+    return mobile.node != order.values["path"].nodes[0]
 
 
 def _others_work_in_its_zones(look: Look, name: str) -> bool:

@@ -6,19 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import Command, Home, SetEffector, Stop, StopMode
 from arboleda.core.ledger import State
-from arboleda.core.messages import (
-    Command,
-    Home,
-    Journal,
-    OperatorAnswer,
-    OperatorRequest,
-    SetEffector,
-    Stop,
-    StopMode,
-    TaskState,
-    Verb,
-)
+from arboleda.core.messages import Journal, OperatorAnswer, OperatorRequest, TaskState, Verb
 from arboleda.core.model import Arm, Evidence, Link
 
 from ..recorded.cells import KnownCell

@@ -6,16 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from arboleda.core.messages import (
-    Command,
-    FollowPath,
-    Heartbeat,
-    Home,
-    MoveJoints,
-    SetEffector,
-    Stop,
-    StopMode,
-)
+from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Heartbeat
 from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile
 
 from ..recorded.boards import fields, is_number, on_wire

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import dropwhile
 
+from arboleda.core.commands import MoveJoints
 from arboleda.core.ledger import State
-from arboleda.core.messages import MoveJoints
-from arboleda.core.model import Arm, Cell, Evidence, Pose
+from arboleda.core.model import Arm, Evidence, Pose, StorageCell
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -42,11 +42,11 @@ def _lacking(look: Look, cell: KnownCell, sent: SentCommand) -> Iterator[str]:
         yield f"{sent} leaves from an unknown place without zone {', '.join(sorted(lacking))}"
 
 
-def _pickups(cell: Cell) -> list[Pose]:
+def _pickups(cell: StorageCell) -> list[Pose]:
     return [cell.pickup, *(pose for _, pose in cell.pickups)]
 
 
-def _of_any_way(cell: Cell, pickup: Pose) -> frozenset[str]:
+def _of_any_way(cell: StorageCell, pickup: Pose) -> frozenset[str]:
     """Zones of a pick-up and home, and of every move that leads there."""
     ends = {pickup.name, cell.home.name}
     crossed = (each.zones for each in cell.crossings if {each.a, each.b} & ends)
@@ -66,7 +66,7 @@ def _sets_out(cell: KnownCell, sent: SentCommand) -> bool:
     return [goal for goal in goals if goal in ends] == [sent.command.q]
 
 
-def _is_seen(look: Look, cell: Cell) -> bool:
+def _is_seen(look: Look, cell: StorageCell) -> bool:
     """Whether the arm was last seen at, or above, a pose outside of all zones; at `state` nobody sees it."""
     arm, q = cell.arm, look.record.robots[cell.arm.name].q
     if arm.evidence is Evidence.STATE:

@@ -13,18 +13,8 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.core.belief import Belief
-from arboleda.core.messages import (
-    Command,
-    FollowPath,
-    Heartbeat,
-    Home,
-    Motion,
-    MoveJoints,
-    Report,
-    SetEffector,
-    Stop,
-    StopMode,
-)
+from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Arm, Evidence, Link, Mobile, MotionState, PlantModel, Robot
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection

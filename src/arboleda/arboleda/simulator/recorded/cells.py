@@ -12,7 +12,7 @@ from py_trees.common import Status
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.leaves import Act, TakeZones
-from arboleda.core.model import Cell
+from arboleda.core.model import StorageCell
 
 from .commands import SentCommand
 
@@ -29,7 +29,7 @@ class KnownCell:
     that time did not pass since the last news although it was not held.
     """
 
-    def __init__(self, cell: Cell) -> None:
+    def __init__(self, cell: StorageCell) -> None:
         self.cell = cell
         self.name = cell.name
         self.stopped = False

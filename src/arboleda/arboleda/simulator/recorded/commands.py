@@ -5,16 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 
+from arboleda.core.commands import Command, Motion, SetEffector, Stop, StopMode
 from arboleda.core.ledger import OPEN, Entry, Ledger, State
-from arboleda.core.messages import (
-    Command,
-    Motion,
-    Report,
-    SetEffector,
-    Stop,
-    StopMode,
-    Verb,
-)
+from arboleda.core.messages import Report, Verb
 
 from .robots import KnownRobot, Obstacle
 

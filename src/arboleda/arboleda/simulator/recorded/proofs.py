@@ -9,7 +9,8 @@ import math
 from dataclasses import dataclass, field
 from itertools import starmap
 
-from arboleda.core.messages import Failure, FollowPath, Home, MoveJoints, Reason, Report, SetEffector
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.messages import Failure, Reason, Report
 from arboleda.core.model import Arm, Evidence, MotionState, Robot
 
 from .commands import SentCommand

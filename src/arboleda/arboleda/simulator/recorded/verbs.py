@@ -54,7 +54,7 @@ class Before:
                 run.task is not None,
                 run.trouble is not None,
                 run.stranded is not None,
-                cell.context.holding(),
+                bool(cell.context.holding),
             )
             for cell in cells
             for run in (cell.run,)

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
 from arboleda.core.ledger import State
-from arboleda.core.messages import Command, FollowPath, MoveJoints, SetEffector, TaskState, Verb
-from arboleda.core.model import Cell, Pose
+from arboleda.core.messages import TaskState, Verb
+from arboleda.core.model import Pose, StorageCell
 
 from .commands import SentCommand
 from .robots import KnownRobot
@@ -140,7 +141,7 @@ def _is_again(step: Step | None, expected: Step) -> bool:
     return _fits(step, expected) or (step is not None and step[0] == "path" and expected[0] == "path")
 
 
-def _steps(cell: Cell, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
+def _steps(cell: StorageCell, words: list[str], mobile: KnownRobot, now: float) -> Iterator[Step]:
     """What a task of this text that begins now commands, in order."""
     if words[1] == "palletizing":
         yield "move", cell.home.q
@@ -167,7 +168,7 @@ def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:
     yield from (*above, ("move", pose.q), *work, *above)
 
 
-def _grip(cell: Cell) -> Iterator[Step]:
+def _grip(cell: StorageCell) -> Iterator[Step]:
     yield "effector", True
     for _ in range(cell.retry.times if cell.piece_check else 0):
         yield OPTIONAL, ("effector", False)

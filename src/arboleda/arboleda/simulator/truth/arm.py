@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from operator import add, sub
 
-from arboleda.core.model import Arm, Cell, Pose
+from arboleda.core.model import Arm, Pose, StorageCell
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal
@@ -32,7 +32,7 @@ class ArmTruth(RobotTruth):
     SIGNS = ("next_change_us", "effector", "holding")
     body: ArmBody
 
-    def __init__(self, robot: Arm, cell: Cell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Arm, cell: StorageCell, board: Board, client: Client) -> None:
         assert isinstance(board.body, ArmBody)
         self.on, self.holding = board.body.effector, board.body.holding
         self.opened = False

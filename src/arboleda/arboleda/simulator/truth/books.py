@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.core.commands import Command
 from arboleda.core.ledger import Entry, State
-from arboleda.core.messages import Command
 
 from ..world import BRIDGE, World
 

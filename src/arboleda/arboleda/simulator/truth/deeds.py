@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.model import Cell, Evidence, Pose
+from arboleda.core.model import Evidence, Pose, StorageCell
 from arboleda.core.task import Order
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
@@ -63,7 +63,7 @@ class CellTruth:
     `puts_down` says that its effector was opened for one in this step.
     """
 
-    def __init__(self, cell: Cell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
+    def __init__(self, cell: StorageCell, arm: ArmTruth | None, mobile: MobileTruth | None) -> None:
         self.cell = cell
         self.arm = arm
         self.mobile = mobile
@@ -84,9 +84,9 @@ class CellTruth:
     @property
     def pick(self) -> Pose:
         """Where the part of the last task is gripped."""
-        if self.order is None or self.order.station is None:
+        if self.order is None or "station" not in self.order.values:
             return self.cell.pickup if self.order is None else self.cell.palletizing.pick
-        code = self.order.path.code if self.order.path else ""
+        code = path.code if (path := self.order.values.get("path")) else ""
         return next((pose for exit, pose in self.cell.pickups if code.endswith(exit)), self.cell.pickup)
 
     @property
@@ -99,7 +99,7 @@ class CellTruth:
         """Where the part of the last task belongs."""
         if self.order is None:
             return None
-        return self.order.station or self.cell.palletizing.place
+        return self.order.values.get("station", self.cell.palletizing.place)
 
     def begin(self, task: str, order: Order, now: float) -> None:
         """A task begins."""
@@ -157,7 +157,7 @@ class CellTruth:
         assert self.arm is not None and self.place is not None and self.order is not None
         due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
         done = [(each.on, bool(each.poses & poses)) for each, poses in zip(self._switches, due, strict=True)]
-        last = self.cell.home if self.order.station else self.place
+        last = self.cell.home if "station" in self.order.values else self.place
         if not done or done != [(True, True), (False, True)] * (len(done) // 2):
             told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
             return f"the effector was switched {told or 'not at all'}"
@@ -167,9 +167,9 @@ class CellTruth:
         return None
 
     def _missing_way(self) -> str | None:
-        if self.order is None or not self.order.path or self.mobile is None or self._arrived:
+        if self.order is None or "path" not in self.order.values or self.mobile is None or self._arrived:
             return None
-        return f"the mobile never stood at node {self.order.path.nodes[-1]}"
+        return f"the mobile never stood at node {self.order.values['path'].nodes[-1]}"
 
     def legal_to_open(self, arm: ArmTruth) -> bool:
         """Whether nothing falls down where the arm stands."""
@@ -201,11 +201,12 @@ class CellTruth:
 
     def _follow_mobile(self) -> None:
         mobile = self.mobile
-        if mobile is None or self.task is None or self.order is None or self.order.path is None:
+        if mobile is None or self.task is None or self.order is None or "path" not in self.order.values:
             return
+        end = self.order.values["path"].nodes[-1]
         goals = [act.goal for act in mobile.acts if isinstance(act.goal, PathGoal)]
-        self._heading = self._heading or any(goal.nodes[-1] == self.order.path.nodes[-1] for goal in goals)
-        here = mobile.stands_at(self.order.path.nodes[-1])
+        self._heading = self._heading or any(goal.nodes[-1] == end for goal in goals)
+        here = mobile.stands_at(end)
         self._arrived = self._arrived or (self._heading and here)
 
 

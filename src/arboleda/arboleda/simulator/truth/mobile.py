@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Cell, Mobile
+from arboleda.core.model import Mobile, StorageCell
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
 from arboleda.wire.payloads import PathGoal
@@ -21,7 +21,7 @@ class MobileTruth(RobotTruth):
     SIGNS = ("next_change_us", "true_node")
     body: MobileBody
 
-    def __init__(self, robot: Mobile, cell: Cell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Mobile, cell: StorageCell, board: Board, client: Client) -> None:
         super().__init__(robot, cell, board, client)
         self.node, self.counted = self.body.true_node, self.body.node
         self.goal: int | None = None

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.core.messages import StopMode
-from arboleda.core.model import Cell, Evidence, Robot
+from arboleda.core.commands import StopMode
+from arboleda.core.model import Evidence, Robot, StorageCell
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
@@ -58,7 +58,7 @@ class RobotTruth:
 
     SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens
 
-    def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Robot, cell: StorageCell, board: Board, client: Client) -> None:
         self.robot = robot
         self.cell = cell
         self.board = board

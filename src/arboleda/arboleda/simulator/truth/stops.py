@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
-from arboleda.core.messages import (
-    Command,
-    Fact,
-    Motion,
-    OperatorAnswer,
-    Remember,
-    SetEffector,
-    Verb,
-)
+from arboleda.core.commands import Command, Motion, SetEffector
+from arboleda.core.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.core.model import PlantModel, Robot
 from arboleda.wire import goals
 from arboleda.wire.payloads import Goal, JointsGoal

@@ -3,19 +3,8 @@
 from __future__ import annotations
 
 from arboleda.core import text
-from arboleda.core.messages import (
-    Fact,
-    FollowPath,
-    Home,
-    MoveJoints,
-    OperatorAnswer,
-    Remember,
-    SetEffector,
-    Stop,
-    TaskChanged,
-    TaskState,
-    Verb,
-)
+from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop
+from arboleda.core.messages import Fact, OperatorAnswer, Remember, TaskChanged, TaskState, Verb
 from arboleda.core.model import Arm, Evidence, Mobile
 from arboleda.core.task import Order
 

@@ -1,0 +1,167 @@
+"""The idioms that recipes are made of: a visit, a switched effector, shared zones, and the recovery.
+
+A task is a Selector with memory over its work and its recovery: once the work has failed, the recovery runs
+to its end. Recovered is not delivered: the task has failed all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+
+from . import zone_plan
+from .commands import Position, SetEffector
+from .context import Context
+from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, TakeZones, Unless
+from .messages import Failure, Reason, SystemStart
+from .model import Pose
+from .sentence import Phrase
+
+MAIN, RECOVERY = PHASES = ("main", "recovery")
+UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
+NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
+NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
+SETTLE_S = 1.0  # after the last stop was confirmed or given up
+Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do there
+
+
+def task(name: str, work: list[Behaviour], context: Context) -> Behaviour:
+    """The work of a task, announced, and the recovery for when it fails."""
+    return selector(name, sequence(MAIN, start(context), *work), recovery(context))
+
+
+def recovery(context: Context) -> Behaviour:
+    """Wait until all has come to rest; carry what is held back to where it came from; go home."""
+    robots = tuple(context.cell.workspaces)
+    ways = [step for robot in robots for step in _way_home(context, robot)]
+    return sequence(RECOVERY, _settle(context, robots), *ways)
+
+
+def sequence(name: str, *children: Behaviour) -> Behaviour:
+    return composites.Sequence(name, memory=True, children=list(children))
+
+
+def selector(name: str, *children: Behaviour) -> Behaviour:
+    return composites.Selector(name, memory=True, children=list(children))
+
+
+def start(context: Context) -> Behaviour:
+    """Tell that a task starts."""
+    announce = Announce("announce", context, SystemStart(cell=context.cell.name))
+    return sequence("system start", announce, Dwell("dwell", context, context.timing.dwell_s))
+
+
+def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Visit]) -> list[Behaviour]:
+    """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
+    space = context.cell.workspaces[robot]
+    legs = zone_plan.plan(space, way, context.way_back(robot)) if space.zones else []
+    steps: list[Behaviour] = []
+    for index, (pose, work) in enumerate(visits):
+        steps += [_take(context, robot, leg.zones) for leg in legs if leg.start == index and leg.zones]
+        steps += _at(context, robot, pose, *work)
+        ends = [leg for leg in legs if leg.end == index + 1 and leg.zones]
+        steps += [LeaveZones("leave zones", context, robot) for _ in ends]
+    return steps
+
+
+def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
+    """Effector on; `check`: the piece sensor has to see the part before and after."""
+    on = _effector(context, robot, on=True)
+    if not check:
+        return [on]
+    retry, wait_s = context.cell.retry, context.timing.piece_wait_s
+    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.name))
+    patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
+    attempts = [_attempt(context, robot, pose, number) for number in range(retry.times + 1)]
+    return [
+        Piece("piece there", context, robot, patience_s, none),
+        selector("grip", *attempts),
+        Carry("carry", context, robot),
+    ]
+
+
+def let_go(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
+    """Effector off; what it held stays at the pose."""
+    off = _effector(context, robot, on=False, then=partial(context.store, pose))
+    return [Carry("arrived", context, None), off] if check else [off]
+
+
+def _way_home(context: Context, robot: str) -> list[Behaviour]:
+    space, back = context.cell.workspaces[robot], context.way_back(robot)
+    steps = _rise(context, robot)
+    if space.zones:
+        needed = partial(context.recovery_zones, robot)
+        steps.append(TakeZones("take zones", context, robot, needed, inside=True))
+    if back is not None:
+        context.back[robot] = back
+        carry = sequence("carry back", *_at(context, robot, back, _effector(context, robot, on=False)))
+        empty = Unless("holds nothing", lambda: robot not in context.holding)
+        steps.append(selector("part back", empty, carry))
+    steps.append(_move(context, robot, space.home.name, space.home.q))
+    return [*steps, LeaveZones("leave zones", context, robot)] if space.zones else steps
+
+
+def _rise(context: Context, robot: str) -> list[Behaviour]:
+    """Where poses have an approach height, a robot that may stand low goes straight up first."""
+    space = context.cell.workspaces[robot]
+    if not any(pose.above for pose in space.poses):
+        return []
+    return [Act("rise", context, lambda id: space.robot.go(id=id, way=(context.risen(robot),)), "rising")]
+
+
+def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
+    def settled() -> bool:
+        return not context.open_commands() and not any(context.obstacle(robot) for robot in robots)
+
+    def unsettled() -> Failure:
+        found = (context.obstacle(robot, was=True) for robot in robots)
+        unended = UNENDED(arm=tuple(robots) or context.cell.name)
+        ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
+        return next((failure for failure in found if failure), ended)
+
+    return Await("settle", context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
+
+
+def _take(context: Context, robot: str, zones: frozenset[str]) -> Behaviour:
+    return TakeZones("take zones", context, robot, lambda: zones)
+
+
+def _at(context: Context, robot: str, pose: Pose, *work: Behaviour) -> list[Behaviour]:
+    """Go to a pose, do the work there and, where the pose has an approach height, come back up."""
+    go = _move(context, robot, pose.name, pose.q)
+    if pose.above is None:
+        return [go, *work]
+    above = partial(_move, context, robot, f"above {pose.name}", pose.above)
+    return [above(), go, *work, above()]
+
+
+def _move(context: Context, robot: str, where: str, goal: Position) -> Behaviour:
+    make = partial(context.cell.workspaces[robot].robot.go, way=(goal,))
+    return Act(f"move to {where}", context, make, f"moving to {where}", guard=context.part_lost)
+
+
+def _effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
+    word = "on" if on else "off"
+    make, doing = partial(SetEffector, robot=robot, on=on), f"switching the effector {word}"
+    act = Act("switch", context, make, doing, then=then)
+    return sequence(f"effector {word}", act, Dwell("dwell", context, context.timing.dwell_s))
+
+
+def _attempt(context: Context, robot: str, pose: Pose, number: int) -> Behaviour:
+    """Effector on and the piece seen in it; a later attempt opens the effector first."""
+    retry = context.cell.retry
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.name))
+    final = number == retry.times
+    seen = Piece("piece gripped", context, robot, context.timing.piece_wait_s, missed, final=final)
+    again = _again(context, robot) if number else []
+    return sequence(f"try {number + 1}", *again, _effector(context, robot, on=True), seen)
+
+
+def _again(context: Context, robot: str) -> list[Behaviour]:
+    """What a further attempt begins with; there is none after another failure than a missed grip."""
+    only_missed = Unless("only missed", lambda: context.failure is None)
+    back_off = Dwell("back-off", context, context.cell.retry.backoff_s)
+    return [only_missed, _effector(context, robot, on=False), back_off]

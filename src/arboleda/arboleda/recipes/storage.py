@@ -1,0 +1,134 @@
+"""What a cell with an arm, a mobile robot and a rack offers: to store a part, and the arm's own cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.core import steps, zone_plan
+from arboleda.core.commands import FollowPath
+from arboleda.core.context import Context
+from arboleda.core.leaves import Act, Require
+from arboleda.core.messages import Failure, Reason
+from arboleda.core.model import Cell, Path, Pose, StorageCell
+from arboleda.core.recipe import Parameter, Recipe
+from arboleda.core.sentence import Phrase
+from arboleda.core.task import Order
+
+NOT_AT_START = Phrase(
+    "path.not_at_start", "{mobile} stands on node {node}, path {path} starts at node {start}"
+)
+PATH = Phrase("text.path", "path")
+STATION = Phrase("text.station", "station")
+
+
+def storage(order: Order, context: Context) -> Behaviour:
+    """Drive the mobile, pick the part up, put it into its station, go home."""
+    path, station = order.values["path"], order.values["station"]
+    cell = _as_storage(context.cell)
+    arm, check = cell.arm.name, cell.piece_check
+    pickup = context.back[arm] = cell.pickup_of(path)
+    way = zone_plan.storage_way(cell, pickup, station, context.standing(arm))
+    visits = [
+        (pickup, steps.grip(context, arm, pickup, check=check)),
+        (station, steps.let_go(context, arm, station, check=check)),
+        (cell.home, []),
+    ]
+    work = [*_drive(context, path), *steps.visit(context, arm, way, visits)]
+    return steps.task(order.recipe, work, context)
+
+
+def palletizing(order: Order, context: Context) -> Behaviour:
+    """Home, pick, place: the arm alone."""
+    cell = _as_storage(context.cell)
+    arm, check = cell.arm.name, cell.piece_check
+    pick, place = cell.palletizing.pick, cell.palletizing.place
+    context.back[arm] = cell.pickup
+    way = zone_plan.palletizing_way(cell, context.standing(arm))
+    visits = [
+        (cell.home, []),
+        (pick, steps.grip(context, arm, pick, check=check)),
+        (place, steps.let_go(context, arm, place, check=check)),
+    ]
+    return steps.task(order.recipe, steps.visit(context, arm, way, visits), context)
+
+
+def _as_storage(cell: Cell) -> StorageCell:
+    assert isinstance(cell, StorageCell)
+    return cell
+
+
+def _codes(cell: Cell) -> Sequence[str]:
+    return [path.code for path in _as_storage(cell).paths]
+
+
+def _path(cell: Cell, code: str) -> Path:
+    return _as_storage(cell).path(code)
+
+
+def _numbers(cell: Cell) -> Sequence[str]:
+    return [str(number) for number in range(len(cell.stations))]
+
+
+def _station(cell: Cell, number: str) -> Pose:
+    return cell.stations[int(number)]
+
+
+STORAGE = Recipe(
+    name="storage",
+    build=storage,
+    parameters=(
+        Parameter(name="path", words=_codes, value=_path, called=PATH),
+        Parameter(name="station", words=_numbers, value=_station, called=STATION),
+    ),
+    is_default=True,
+)
+PALLETIZING = Recipe(name="palletizing", build=palletizing, alone="arm")
+RECIPES = (STORAGE, PALLETIZING)
+
+
+def _drive(context: Context, path: Path) -> list[Behaviour]:
+    cell, start = _as_storage(context.cell), path.nodes[0]
+    follow = _follow(context, f"drive path {path.code}", path.nodes, whole=True)
+    known = _node(context)
+    if known is None or known == start:
+        return [follow]
+    if not cell.drive_to_start:
+        return [Require("at start", context, lambda: _not_at_start(context, path)), follow]
+    way = cell.mobile.grid.route(known, start)
+    return [_follow(context, f"drive to node {start}", way), follow]
+
+
+def _node(context: Context) -> int | None:
+    known = context.position(_as_storage(context.cell).mobile.name)
+    return known if isinstance(known, int) else None
+
+
+def _not_at_start(context: Context, path: Path) -> Failure | None:
+    start, mobile, known = path.nodes[0], _as_storage(context.cell).mobile.name, _node(context)
+    if known == start:
+        return None
+    node = "?" if known is None else known
+    sentence = NOT_AT_START(mobile=mobile, node=node, path=path.code, start=start)
+    return Failure(reason=Reason.REJECTED, sentence=sentence)
+
+
+def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool = False) -> Behaviour:
+    """Drive over nodes; given anew after a hold or a failure, only over what remains of them.
+
+    `whole`: given for the first time all of them, as the robot stands where they begin: the last node that
+    it told may be older than the end of its last drive, and a round trip comes by there once more.
+    """
+    mobile = _as_storage(context.cell).mobile.name
+    doing = name.replace("drive", "driving", 1)
+
+    def all_of_it(id: str) -> FollowPath:
+        return FollowPath(id=id, robot=mobile, nodes=nodes)
+
+    def rest_of_it(id: str) -> FollowPath:
+        node = _node(context)
+        rest = nodes[nodes.index(node) :] if node in nodes else nodes
+        return FollowPath(id=id, robot=mobile, nodes=rest)
+
+    return Act(name, context, all_of_it if whole else rest_of_it, doing, anew=rest_of_it)
