@@ -11,10 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.app import config
+from arboleda.app import config, layout_check
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import PlantModel
 
+EXAMPLES = Path(__file__).parents[3] / "examples"
+WORD = re.compile(r"[^\s<>=\"/]+")
 PLACE = re.compile(r":(\d+):(\d+): .+")
 TOKEN = re.compile(r"[^\s:,{}\[\]]+")
 VALUES = st.sampled_from(
@@ -43,6 +45,32 @@ VALUES = st.sampled_from(
 @cache
 def shipped() -> str:
     return files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")
+
+
+@cache
+def own_arm() -> str:
+    return (EXAMPLES / "plants/own_arm.yaml").read_text("utf-8").replace("../machine_tending/models/", "")
+
+
+@cache
+def urdf() -> str:
+    return (EXAMPLES / "machine_tending/models/tender.urdf").read_text("utf-8")
+
+
+def read_model(folder: Path, text: str) -> None:
+    """The plant with an arm of its own, and this in place of its URDF."""
+    (folder / "plant.yaml").write_text(own_arm(), "utf-8")
+    (folder / "tender.urdf").write_bytes(text.encode("utf-8"))
+    try:
+        plant: PlantModel | None = config.load(folder / "plant.yaml")
+        problems: tuple[str, ...] = ()
+    except ConfigError as error:
+        plant, problems = None, error.problems
+    assert bool(plant) != bool(problems)
+    names = tuple(str(folder / name) for name in ("tender.urdf", "plant.yaml"))
+    assert all(problem.startswith(names) and re.search(PLACE, problem) for problem in problems)
+    warned = layout_check.warnings(plant) if plant is not None else ()
+    assert not any("nobody has looked" in warning for warning in warned), "what is taken can be drawn"
 
 
 def read(folder: Path, text: str) -> None:
@@ -80,3 +108,20 @@ def test_lost_lines(folder: Path, data: st.DataObject) -> None:
 def test_text_put_anywhere(folder: Path, data: st.DataObject, value: str) -> None:
     place = data.draw(st.integers(0, len(shipped())))
     read(folder, shipped()[:place] + value + shipped()[place:])
+
+
+@given(
+    data=st.data(),
+    value=VALUES | st.sampled_from(["tool0", "base_link", "1e-300", "prismatic", "fixed", "mesh"]),
+)
+def test_a_replaced_word_of_a_urdf(folder: Path, data: st.DataObject, value: str) -> None:
+    found = data.draw(st.sampled_from(list(WORD.finditer(urdf()))))
+    read_model(folder, urdf()[: found.start()] + value + urdf()[found.end() :])
+
+
+@given(data=st.data())
+def test_missing_lines_of_a_urdf(folder: Path, data: st.DataObject) -> None:
+    lines = urdf().splitlines(keepends=True)
+    first = data.draw(st.integers(0, len(lines) - 1))
+    last = data.draw(st.integers(first, len(lines)))
+    read_model(folder, "".join(lines[:first] + lines[last:]))

@@ -176,6 +176,12 @@ def test_a_mesh_stays_in_the_urdf_and_is_said_to_have_a_stand_in(tmp_path: Path)
     assert [each["kind"] for each in body(plant)["children"][0]["children"][0]["shapes"]] == ["sphere"]
 
 
+def test_a_mesh_beside_the_file_is_found_from_everywhere(tmp_path: Path) -> None:
+    mesh = '<mesh filename="meshes/my beam.stl"/>'
+    printed = robot_urdf(swing(tmp_path, ONE.replace(link("beam"), link("beam", mesh))), "ra")
+    assert f'filename="{(tmp_path / "meshes/my beam.stl").as_uri()}"' in printed
+
+
 def test_a_yaml_in_the_form_of_the_packaged_ones_is_an_arm(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(CR10A.read_text().replace("step_deg: 0.01", "step_deg: 0.02"))
     poses = ("{deg: [0, 0, 0, 0, 0, 0]}", "{deg: [1, 0, 0, 0, 0, 0]}", "{0: {deg: [2, 0, 0, 0, 0, 0]}}")

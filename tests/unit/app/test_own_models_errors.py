@@ -166,7 +166,7 @@ def test_what_is_no_file_to_read_is_said_where_it_is_named(tmp_path: Path) -> No
         "folder.urdf": "is a directory; a file is wanted",
         "pipe.urdf": "is not a regular file",
         "huge.urdf": "is larger than 1024 KiB",
-        "mine.urdf.xacro": "type `xacro mine.urdf.xacro > mine.urdf` and write mine.urdf",
+        "mine.urdf.xacro": "type `xacro mine.urdf.xacro > mine.urdf` and name that",
         "models/mine.stl": "must be a file that ends in .urdf, .yaml or .yml",
     }
     for name, words in said.items():
@@ -176,6 +176,17 @@ def test_what_is_no_file_to_read_is_said_where_it_is_named(tmp_path: Path) -> No
         assert problem.startswith(f"{tmp_path / 'plant.yaml'}:5:28: cells.a.arm.model: ") and words in problem
     with pytest.raises(ConfigError, match=r"binary.urdf:1:1: this is not XML"):
         swing(tmp_path, model="binary.urdf")
+
+
+def test_a_name_with_letters_that_a_terminal_obeys_is_shown_without_them(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError) as refusal:
+        swing(tmp_path, model='"\\e[2J.urdf"')
+    assert refusal.value.problems[0].endswith("\\x1b[2J.urdf: there is no such file")
+
+
+def test_an_encoding_that_nobody_knows_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"one.urdf:1:\d+: this is not XML: "):
+        swing(tmp_path, '<?xml version="1.0" encoding="klingon"?>' + ONE)
 
 
 IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
@@ -204,6 +215,11 @@ IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
         "{file: one.urdf, steps: {q1_deg: 0.0001}}",
         "a motor step that is not from 0.001 deg or mm",
     ),
+    "a crawl": ("{file: one.urdf, accelerations: {q1_deg_s2: 1e-9}}", "more than a day for its whole way"),
+    "an endless ramp": (
+        "{file: wide.urdf, steps: {q1_deg: 0.001}, accelerations: {q1_deg_s2: 0.01}}",
+        "the joint swing needs more than 250000 motor steps to its full speed",
+    ),
     "a tool of two numbers": (
         "{file: one.urdf, tool: {xyz_mm: [0, 0]}}",
         "tool.xyz_mm: must have at least 3 values, has 2",
@@ -213,6 +229,7 @@ IN_THE_PLANT = {  # what `model:` says, and a part of what is said of it
 
 @pytest.mark.parametrize(("model", "words"), IN_THE_PLANT.values(), ids=IN_THE_PLANT)
 def test_a_mistake_in_what_is_said_of_a_model_is_named(tmp_path: Path, model: str, words: str) -> None:
+    (tmp_path / "wide.urdf").write_text(ONE.replace('="-1"', '="-10"').replace('="1"', '="10"'))
     with pytest.raises(ConfigError) as refusal:
         swing(tmp_path, model=model)
     (said,) = refusal.value.problems

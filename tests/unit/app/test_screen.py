@@ -50,6 +50,7 @@ def test_the_table_fits_eighty_columns(rig: Rig) -> None:
 
 def test_joints_are_shown_in_degrees_then_millimetres() -> None:
     assert joints({"q": (0.7854, 0.1745, 0.05), "units": ["rad", "rad", "m"]}) == "45 10° 50 mm"
+    assert joints({"q": (0.05, -0.2), "units": ["m", "m"]}) == "50 mm -200 mm"
     assert joints({"q": None, "units": None}) == "?"
 
 

@@ -195,7 +195,8 @@ def joints(arm: dict[str, Any]) -> str:
         return "?"
     values = list(zip(arm["q"], arm["units"], strict=True))
     turns = " ".join(f"{math.degrees(value):.0f}" for value, unit in values if unit == "rad")
-    return f"{turns}°" + "".join(f" {value * 1000:.0f} mm" for value, unit in values if unit == "m")
+    slides = " ".join(f"{value * 1000:.0f} mm" for value, unit in values if unit == "m")
+    return " ".join(filter(None, (turns and f"{turns}°", slides)))
 
 
 def effector(arm: dict[str, Any]) -> str:

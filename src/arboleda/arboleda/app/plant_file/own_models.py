@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import Description, Joint
+from arboleda.core.outside import plain
 from arboleda.wire.units import to_wire
 
 from .. import user_file
@@ -17,15 +17,18 @@ from . import urdf_file, xml_marks, yaml_marks, yaml_model
 from .document import Document, Place, choice, shown
 from .drawing import drawing, lifts
 from .robot_models import PINION_MM, TO_SI, ArmModel, millimetres
-from .shapes import MAPPING, POSITIVE, ModelShape, OffsetShape
+from .shapes import DAY_S, MAPPING, POSITIVE, ModelShape, OffsetShape
 from .urdf_file import Axis, Chain
+from .yaml_marks import clipped
 
 ENDINGS = (".urdf", ".yaml", ".yml")
+LONGEST = 500  # characters of a path as a sentence shows it
 MOST_JOINTS = 12  # what one MQTT message of 512 bytes has room for
 FARTHEST = 99_999.0  # deg on the wire
 FASTEST = 1e6  # steps/s, one per microsecond of a board's clock
 FULL_SPEED_S = 0.5  # how long a joint takes to its full speed where nobody says it
 STEP_DEG, STEP_MM = 0.01, 0.1  # a motor step where nobody says it
+LONGEST_RAMP = 250_000  # steps to full speed; a virtual board counts each of them
 LEAST_STEP = 0.001  # deg or mm: MQTT says four decimals
 
 
@@ -57,9 +60,10 @@ def own_model(document: Document, place: Place) -> ArmModel | None:
     joints = _joints(document, place, spot, chain)
     if joints is None:
         return None
+    _find_meshes(chain, _path(document, shape.file).parent)
     urdf = drawing(chain, mount, tool)
     lifting = [replace(joint, up=up) for joint, up in zip(joints, lifts(urdf, joints), strict=True)]
-    name = Path(shape.file).name
+    name = clipped(Path(shape.file).name)
     notes = tuple(f"{name}: {note}" for note in (*chain.notes, *_assumed(document, place, chain)))
     return ArmModel(name=name, joints=tuple(lifting), description=Description(urdf=urdf, notes=notes))
 
@@ -82,7 +86,8 @@ def _content(document: Document, place: Place, file: str) -> bytes | None:
     if file.endswith(".xacro"):
         made = file.removesuffix(".xacro")
         made = made if made.endswith(".urdf") else f"{made}.urdf"
-        document.problem(place, f"xacro is not read here; type `xacro {file} > {made}` and write {made}")
+        type_this = f"xacro {plain(file)} > {plain(made)}"
+        document.problem(place, f"xacro is not read here; type `{type_this}` and name that")
     elif not file.endswith(ENDINGS):
         document.problem(place, f"must be a file that ends in {choice(ENDINGS)}, is {shown(file)}")
     elif document.folder is None:
@@ -92,7 +97,7 @@ def _content(document: Document, place: Place, file: str) -> bytes | None:
         try:
             return user_file.read_bytes(_path(document, file), largest)
         except ConfigError as error:
-            document.problem(place, str(error))
+            document.problem(place, plain(str(error), LONGEST))
     return None
 
 
@@ -107,8 +112,16 @@ def _fits(document: Document, place: Place, shape: ModelShape) -> bool:
 
 def _chain(shape: ModelShape, raw: bytes, path: Path) -> Chain:
     if path.suffix == ".urdf":
-        return urdf_file.read(str(path), raw, base=shape.base_link, tip=shape.tip_link)
-    return yaml_model.read(str(path), raw)
+        return urdf_file.read(plain(str(path), LONGEST), raw, base=shape.base_link, tip=shape.tip_link)
+    return yaml_model.read(plain(str(path), LONGEST), raw)
+
+
+def _find_meshes(chain: Chain, folder: Path) -> None:
+    """Have meshes that are named from where the file lies found from everywhere."""
+    for mesh in chain.robot.iter("mesh"):
+        name = mesh.get("filename", "")
+        if "://" not in name:
+            mesh.set("filename", (folder / name).absolute().as_uri())
 
 
 def _joints(document: Document, place: Place, spot: Place, chain: Chain) -> tuple[Joint, ...] | None:
@@ -159,8 +172,10 @@ def _is_drivable(document: Document, place: Place, joint: Joint) -> bool:
     elif joint.speed / joint.step > FASTEST:
         steps = joint.speed / joint.step
         said = f"takes {steps:.3g} motor steps a second; at most {FASTEST:g}, so give it larger ones"
-    elif not math.isfinite(joint.acceleration / joint.step):
-        said = "has an acceleration that no board can count"
+    elif not joint.travel_s(wide) <= DAY_S:
+        said = "needs more than a day for its whole way"
+    elif min(joint.speed**2 / joint.acceleration, wide) / 2 / joint.step > LONGEST_RAMP:
+        said = f"needs more than {LONGEST_RAMP} motor steps to its full speed; give it larger ones"
     else:
         return True
     document.problem(place, f"the joint {joint.name} {said}")

@@ -123,7 +123,7 @@ def _model(
     """
     name = document.value(place) if document.has(place) else default
     if not isinstance(name, str):
-        if document.has(place):
+        if also and document.has(place):
             document.problem(place, f"must be {choice([*sorted(models), *also])}, is {shown(name)}")
         return None
     if name not in models:

@@ -13,6 +13,7 @@ from .problems import Problems
 from .robot_models import FULL_TURN_RAD
 from .urdf_values import check_color, check_origin, check_shapes, name_of, number, numbers
 from .xml_marks import Tag, XmlFault, parse
+from .yaml_marks import clipped
 
 MOVING = ("revolute", "continuous", "prismatic")
 KNOWN = (*MOVING, "fixed")
@@ -109,7 +110,7 @@ class _Reader:
             self._say(self._top, made)
             self._problems.finish()
         if self._top.name != "robot":
-            self._say(self._top, f"a URDF begins with <robot>, not <{self._top.name[:40]}>")
+            self._say(self._top, f"a URDF begins with <robot>, not <{clipped(self._top.name)}>")
             self._problems.finish()
         for name, kept in (("link", self._links), ("joint", self._joints)):
             for tag in self._top.all(name):
