@@ -11,6 +11,7 @@ from . import zone_plan
 from .belief import Moment
 from .commands import Position
 from .dispatcher import Dispatcher, Make
+from .facts import Value
 from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
@@ -148,6 +149,11 @@ class Context:
         """Whether a robot says that it is still moving."""
         return self._dispatcher.beliefs[robot].moves
 
+    def fact(self, robot: str, name: str) -> Value | None:
+        """What a robot says of a fact; None where it said nothing, or is not heard."""
+        belief = self._dispatcher.beliefs[robot]
+        return belief.fact(name) if belief.online else None
+
     def grip(self, robot: str) -> Grip:
         """What the effector of a robot that has one is known to be."""
         return self._dispatcher.grips[robot]
@@ -215,8 +221,9 @@ class Context:
         return {robot.name: beliefs[robot.name].moment(self._clock()) for robot in self.cell.robots}
 
     def moving_since(self, moments: dict[str, Moment]) -> list[str]:
-        """The online robots of the cell that were not seen still since then."""
-        beliefs = {name: self._dispatcher.beliefs[name] for name in moments}
+        """The online robots of the cell not seen still since then; who finishes its work may move."""
+        ending = [name for name in moments if not self._dispatcher.finishes(name)]
+        beliefs = {name: self._dispatcher.beliefs[name] for name in ending}
         return [name for name, b in beliefs.items() if b.online and not b.still_since(moments[name])]
 
     def reports_a_latch(self) -> bool:

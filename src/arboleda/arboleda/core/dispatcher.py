@@ -146,6 +146,11 @@ class Dispatcher:
         """The work of a robot that has not ended."""
         return next((entry for entry in self.ledger.of_robot(robot) if entry.is_work), None)
 
+    def finishes(self, robot: str) -> bool:
+        """Whether a robot does what goes on even when it is stopped, until it is finished."""
+        work = self.work_of(robot)
+        return work is not None and work.finishes
+
     def obstacle_to_opening(self, robot: str) -> Failure | None:
         """Why an effector cannot be opened by hand now."""
         return self._obstacle_to(self.model.robots[robot].let_go(id=""), by_hand=True)

@@ -420,9 +420,11 @@ class Workspace:
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """Robots that carry out one task at a time; how they are arranged is for its shape to say."""
+    """Robots that carry out one task at a time, each in a role of its own."""
 
     name: str
+    members: tuple[tuple[str, Robot], ...] = ()  # by role
+    spaces: tuple[Workspace, ...] = ()  # of those that go from pose to pose
     queue_limit: int
     retry: Retry = Retry()
     zone_wait_s: float = 30.0
@@ -432,12 +434,12 @@ class Cell:
     @cached_property
     def roles(self) -> dict[str, Robot]:
         """Its robots by what they are in it, in the order of the file."""
-        raise NotImplementedError
+        return dict(self.members)
 
     @cached_property
     def workspaces(self) -> dict[str, Workspace]:
         """By the name of each robot that goes from pose to pose."""
-        return {}
+        return {space.robot.name: space for space in self.spaces}
 
     def recipe(self, name: str) -> Recipe:
         return next(recipe for recipe in self.recipes if recipe.name == name)

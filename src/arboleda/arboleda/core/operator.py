@@ -334,7 +334,8 @@ class Operator:
     def _not_clearable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
             return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.said)
-        mine = [robot.name for robot in cell.cell.robots if robot.name in robots]
+        finishes = self._dispatcher.finishes
+        mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
         moving = tuple(belief.robot.name for belief in beliefs if belief.online and not belief.still)
         return NOT_STILL(robots=moving) if moving else None

@@ -114,7 +114,8 @@ def _rise(context: Context, robot: str) -> list[Behaviour]:
 
 def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
     def settled() -> bool:
-        return not context.open_commands() and not any(context.obstacle(robot) for robot in robots)
+        ending = not all(entry.finishes for entry in context.open_commands())
+        return not ending and not any(context.obstacle(robot) for robot in robots)
 
     def unsettled() -> Failure:
         found = (context.obstacle(robot, was=True) for robot in robots)

@@ -1,0 +1,1 @@
+"""Kinds of devices beside arms and mobile robots."""
