@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -20,20 +21,24 @@ from hypothesis import strategies as st
 from arboleda.adapters.store import VERSION, Store
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import Fact, Journal, Remember, Verb
+from arboleda.core.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
-ACT = Journal(verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence="mesa is free: ra1 was carried away")
+ACT = Journal(
+    verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
+)
 NOBODY = 65534
 AT_FULL = """
 import os, sys, time
 from pathlib import Path
 from arboleda.adapters.store import Store
 from arboleda.core.messages import Fact, Journal, Remember, Verb
+from arboleda.core.sentence import OWN
 store = Store(Path(sys.argv[1]))
 store.open()
 for fact in Fact:
     store.keep(Remember(fact=fact, name="ra1", value="on"))
-store.journal(Journal(verb=Verb.STOP, scope="", cell=None, sentence="everything stopped"), 5.0)
+store.journal(Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped")), 5.0)
 print("kept", flush=True)
 time.sleep(60)
 """
@@ -124,13 +129,13 @@ def test_the_last_word_on_each_fact_counts(facts):
 
 def test_the_journal_is_read_newest_first(path):
     with Store(path) as store:
-        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence="ra1 stopped")
+        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text="ra1 stopped"))
         store.journal(stopped, 1000.25)
         store.journal(ACT, 999.5)
     with Store(path) as store:
         newest, oldest = store.entries()
         assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
-        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, ACT.sentence)
+        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, str(ACT.sentence))
         assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
         assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
         assert store.entries(limit=1) == [newest]
@@ -220,18 +225,22 @@ def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
     assert modes == ["FULL", "NORMAL", "FULL"]
 
 
-def test_a_file_of_the_first_format_is_brought_up_and_keeps_what_it_has(path):
-    with changed(path, "ALTER TABLE journal DROP COLUMN cell") as store:
+@pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",))])
+def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version, later):
+    with changed(path, f"ALTER TABLE journal DROP COLUMN {later[0]}") as store:
         store.close()
     db = sqlite3.connect(path)
-    db.execute("PRAGMA user_version = 1")
+    for column in later[1:]:
+        db.execute(f"ALTER TABLE journal DROP COLUMN {column}")
+    db.execute(f"PRAGMA user_version = {version}")
     db.close()
     with Store(path) as store:
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
         (old,) = store.entries()
-        assert (old.sentence, old.cell) == (ACT.sentence, None)
+        assert (old.sentence, old.cell, old.said) == (str(ACT.sentence), None, None)
         store.journal(replace(ACT, cell="sis_a"), 6.0)
-        assert store.entries()[0].cell == "sis_a"
+        newest = store.entries()[0]
+        assert newest.cell == "sis_a" and json.loads(newest.said) == ACT.sentence.data()
 
 
 def test_a_file_of_a_newer_arboleda_is_left_as_it_is(path):
@@ -309,7 +318,8 @@ def test_a_fact_that_is_no_text_is_one_sentence(path, value):
 
 
 @pytest.mark.parametrize(
-    "change", ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'", "cell = x'00'"]
+    "change",
+    ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'", "cell = x'00'", "said = x'00'"],
 )
 def test_an_entry_that_is_no_entry_is_one_sentence(path, change):
     gone = "move it away"

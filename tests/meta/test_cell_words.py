@@ -12,15 +12,16 @@ from rich.console import Console
 
 from arboleda.adapters.web.schema import Cell
 from arboleda.app.screen import table
-from arboleda.core import view
+from arboleda.core import cell, operator, view
 from arboleda.core.cell_states import CellState
-from arboleda.dashboard.wording import LANGUAGES, tree_of, words
+from arboleda.core.sentence import Phrase
+from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.testing import Rig, shipped
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")
-# A sentence that says the state of a cell, "{} is held ({}); {}"; a robot is "stopped (latched)".
-SAYS_STATE = re.compile(rf"\{{\}} is ({'|'.join(state.value for state in CellState)})\b(?! \(latched\))")
+# A phrase that says the state of a cell, "{cell} is held ({why}); {next}".
+SAYS_STATE = re.compile(rf"\{{cell\}} is ({'|'.join(state.value for state in CellState)})\b")
 OTHER_WORDS = (
     "bloqueada",
     "liberada",
@@ -90,12 +91,13 @@ def test_the_plants_sentences_have_the_word_in_spanish(state: CellState) -> None
 
 def test_a_sentence_about_a_state_has_its_word_and_no_other_in_spanish() -> None:
     spanish, found = on_page("es"), set()
-    for plant, ours in tree_of("es")["phrases"].items():
-        if state := SAYS_STATE.match(plant):
+    for phrase in (*vars(cell).values(), *vars(operator).values()):
+        if isinstance(phrase, Phrase) and (state := SAYS_STATE.match(phrase.english)):
             found.add(state[1])
+            ours = tree_of("es")[SENTENCES][phrase.key]
             said = {word for word in (*spanish.values(), *OTHER_WORDS) if re.search(rf"\b{word}\b", ours)}
-            assert said == {spanish[state[1]]}, plant
-    assert {"held", "aborted", "stopped", "clearing"} <= found
+            assert said == {spanish[state[1]]}, phrase
+    assert found == {"held", "idle"}
 
 
 def test_the_terminal_says_the_words_of_the_api() -> None:

@@ -336,7 +336,7 @@ def test_commands_of_others_to_a_robot_on_ros_are_told_with_their_sender(links):
     stranger.say("/ra1/effector_cmd", UInt8(data=1))
     eventually(lambda: len(side.events) == 2)
     assert all(isinstance(event, Interference) and event.robot == "ra1" for event in side.events)
-    assert [event.sentence for event in side.events] == [
+    assert [str(event.sentence) for event in side.events] == [
         "ra1: joint_goals_q of /teach was sent to it",
         "ra1: effector_cmd 1 of /teach was sent to it",
     ]

@@ -7,7 +7,6 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -19,7 +18,7 @@ from arboleda.core.commands import Command
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Link, PlantModel, Robot
-from arboleda.wire import epochs
+from arboleda.wire import epochs, rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN, FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.status import ERROR, OK, WARN
@@ -61,7 +60,7 @@ class BridgePort(Port):
 
     def tell(self, news: Rejection | ForeignCommand) -> None:
         """Publish that a command was refused, or that one of somebody else was obeyed."""
-        self._last, self._last_at = news.sentence, self._clock()
+        self._last, self._last_at = str(news.sentence), self._clock()
         if isinstance(news, Rejection):
             self._publish_rejection(news)
 
@@ -89,7 +88,8 @@ class BridgePort(Port):
         self._rejected[rejection.robot] += 1
         publisher = self._rejections.get(rejection.robot)
         if publisher is not None:
-            plain = {key: value for key, value in asdict(rejection).items() if key != "at"}
+            plain = {**vars(rejection), "sentence": str(rejection.sentence)}
+            del plain["at"]
             plain["count"] = self._rejected[rejection.robot]
             publisher.publish(String(data=json.dumps(plain)))
 
@@ -120,7 +120,7 @@ class BridgePort(Port):
         try:
             yield
         except PayloadError as error:
-            sentence = f"{robot.name}: {topic} was refused (formato): {error}"
+            sentence = rejections.unreadable(robot, topic, error.sentence)
             self.tell(
                 Rejection(
                     at=self._clock(),

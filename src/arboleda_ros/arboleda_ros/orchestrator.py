@@ -32,7 +32,7 @@ from arboleda.core.messages import (
     TaskRequest,
 )
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
-from arboleda.core.sentence import as_sentence, in_json
+from arboleda.core.sentence import in_json
 from arboleda.wire import rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
 
@@ -227,8 +227,8 @@ class OrchestratorPort(Port):
         command = convert.command(kind, robot, message)
         sentence = rejections.overheard(command, self._senders.of(f"{robot.name}/{PLAIN[kind]}"))
         if self._others.is_due(sentence, self._clock()):
-            self._log.warning(sentence)
-        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=as_sentence(sentence)))
+            self._log.warning("%s", sentence)
+        self._on_event(Interference(at=self._clock(), robot=robot.name, sentence=sentence))
 
     def _on_request(self, message: String) -> None:
         self._on_event(TaskRequest(at=self._clock(), text=message.data))

@@ -6,6 +6,7 @@ import pytest
 
 from arboleda.core.errors import ArboledaError, QueueFull, TextError
 from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.core.sentence import Phrase
 
 from .conftest import QUEUED, TASK, VIEW
 
@@ -104,6 +105,21 @@ def test_a_refused_verb_says_why(web, plant):
     plant.refusal = "ra1 still moves."
     answer = web.post("/api/plant/clear")
     assert (answer.status_code, answer.json()) == (409, {"sentence": "ra1 still moves."})
+
+
+def test_a_refusal_says_what_it_is_made_of(web, plant):
+    full = Phrase("cell.full", "{cell} has {number} tasks waiting")(cell="sis_a", number=20)
+    said = {
+        "sentence": "sis_a has 20 tasks waiting",
+        "key": "cell.full",
+        "values": {"cell": "sis_a", "number": 20},
+    }
+    plant.refusal = full
+    assert web.post("/api/plant/clear").json() == said
+    plant.answer = QueueFull(full)
+    assert web.post("/api/tasks", json={"text": "sis_a 0B 7"}).json() == said
+    plant.answer = QUEUED | {"state": "refused", "sentence": full}
+    assert web.post("/api/tasks", json={"text": "sis_a 0B 7"}).json() == QUEUED | {"state": "refused"} | said
 
 
 @pytest.mark.parametrize("path", ["plant/halt", "cells/sis_a/STOP", "cells/stop/sis_a"])

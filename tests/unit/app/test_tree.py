@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -11,6 +12,7 @@ from arboleda.app.cli import cli
 from arboleda.app.client import PlantClient
 from arboleda.core import view
 from arboleda.core.errors import ArboledaError
+from arboleda.core.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 
@@ -59,12 +61,12 @@ def test_a_cell_that_is_not_there_is_refused_with_the_others() -> None:
 
 @pytest.fixture
 def running() -> dict[str, Any]:
-    """The status of a plant in which sis_b palletizes and sis_a drives its mobile robot."""
+    """The status over HTTP of a plant in which sis_b palletizes and sis_a drives its mobile robot."""
     rig = Rig(shipped("sis_a", "sis_b"))
     rig.submit("sis_b palletizing")
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "drive path 0B")
-    return view.snapshot(rig.plant)
+    return json.loads(json.dumps(view.snapshot(rig.plant), default=in_json))
 
 
 def live(status: dict[str, Any], *words: str) -> Result:

@@ -36,6 +36,9 @@ class Calls(Behaviour):
 class OurCalls(Leaf, Calls):
     """The same, ticked as our leaves are."""
 
+    def __init__(self, returns: tuple[Any, ...]) -> None:
+        Calls.__init__(self, returns)
+
 
 def _ticked(leaf: Calls) -> list[Any]:
     for _ in range(3):

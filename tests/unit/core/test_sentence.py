@@ -5,7 +5,7 @@ import json
 import pytest
 
 from arboleda.core.errors import ArboledaError, TextError
-from arboleda.core.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence, in_json
+from arboleda.core.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence, from_data, in_json
 
 OFFLINE = Phrase("robot.offline", "{robot} is offline")
 LATE = Phrase("late", "{robots}: {seconds:.1f} s late, as {why}")
@@ -57,3 +57,15 @@ def test_json_has_its_text_and_nothing_else_that_json_does_not_know() -> None:
     assert json.dumps({"why": OFFLINE(robot="ra1")}, default=in_json) == '{"why": "ra1 is offline"}'
     with pytest.raises(TypeError):
         json.dumps({"why": object()}, default=in_json)
+
+
+def test_it_survives_as_data() -> None:
+    data = json.loads(json.dumps(late().data()))
+    assert data["values"]["why"] == {"key": "robot.offline", "values": {"robot": "ra3"}}
+    assert from_data(data, {"late": LATE, "robot.offline": OFFLINE}) == late()
+
+
+@pytest.mark.parametrize("data", [None, "late", {}, {"key": "other", "values": {}}, {"key": "late"}])
+def test_what_is_no_data_of_a_sentence_is_refused(data: object) -> None:
+    with pytest.raises(ValueError, match="is no sentence"):
+        from_data(data, {"late": LATE})

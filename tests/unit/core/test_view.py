@@ -23,7 +23,7 @@ def rig() -> Rig:
 
 
 def row(snapshot: dict[str, Any], name: str) -> dict[str, Any]:
-    return next(node for node in snapshot["cells"][0]["tree"] if node["name"] == name)
+    return next(node for node in snapshot["cells"][0]["tree"] if str(node["name"]) == name)
 
 
 def robot(snapshot: dict[str, Any], name: str) -> dict[str, Any]:
@@ -39,7 +39,7 @@ def test_a_snapshot_is_plain_json(rig: Rig) -> None:
 def test_a_node_says_its_kind(rig: Rig) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "move to pick-up")
-    kinds = {node["name"]: node["kind"] for node in rig.snapshot()["cells"][0]["tree"]}
+    kinds = {str(node["name"]): node["kind"] for node in rig.snapshot()["cells"][0]["tree"]}
     assert kinds["storage"] == "selector" and kinds["main"] == "sequence"
     assert kinds["move to pick-up"] == "command" and kinds["dwell"] == "dwell" and kinds["settle"] == "await"
     assert kinds["holds nothing"] == "condition" and kinds["announce"] == "notice"
@@ -113,8 +113,8 @@ def test_a_robot_says_its_last_command_and_what_became_of_it(rig: Rig) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "move to pick-up")
     mobile, arm = (robot(rig.snapshot(), name)["command"] for name in ("rm_sis_a", "ra1"))
-    assert (mobile["what"], mobile["state"]) == ("driving path 0B", "done")
-    assert (arm["what"], arm["state"], arm["age_s"]) == ("moving to pick-up", "running", 0.0)
+    assert (str(mobile["what"]), mobile["state"]) == ("driving path 0B", "done")
+    assert (str(arm["what"]), arm["state"], arm["age_s"]) == ("moving to pick-up", "running", 0.0)
 
 
 def test_a_robot_says_how_often_it_reports(rig: Rig) -> None:

@@ -35,7 +35,7 @@ class Told(Rig):
         """What the page shows of each node, by the node's name; of equal names the last."""
         assert self.story is not None
         tree = self.story.trees[cell]
-        return {row["name"]: tree.statuses[row["path"]] for row in tree.rows}
+        return {str(row["name"]): tree.statuses[row["path"]] for row in tree.rows}
 
 
 @pytest.fixture

@@ -2,10 +2,18 @@ from __future__ import annotations
 
 import pytest
 
+from arboleda.core.sentence import Phrase
 from arboleda.dashboard.tree_drawing import drawing
 from arboleda.dashboard.wording import LANGUAGES, words
 
-TREE = (("root", "storage", "selector"), ("0", "main", "sequence"), ("1", "recovery", "sequence"))
+TREE = tuple(
+    (path, Phrase(f"step.{name}", name)(), kind)
+    for path, name, kind in (
+        ("root", "storage", "selector"),
+        ("0", "main", "sequence"),
+        ("1", "recovery", "sequence"),
+    )
+)
 
 
 def test_a_tree_is_drawn_in_three_ways_the_widest_first() -> None:

@@ -12,7 +12,7 @@ from arboleda.testing import Rig, shipped
 
 
 def row(path: str, status: str, *, kind: str = "command", failure: str | None = None) -> dict[str, Any]:
-    return {"path": path, "name": path, "status": status, "kind": kind, "failure": failure}
+    return {"path": path, "name": path, "phase": None, "status": status, "kind": kind, "failure": failure}
 
 
 def test_a_done_task_leaves_a_tree_that_succeeded(told: Callable[..., Any]) -> None:
@@ -55,10 +55,10 @@ def test_a_step_that_failed_between_two_snapshots_shows_it() -> None:
     for seconds in (0.0, 5.0):
         rig.wait(seconds)
         see(memory, rig)
-    statuses = {row["name"]: memory.statuses[row["path"]] for row in memory.rows}
+    statuses = {str(row["name"]): memory.statuses[row["path"]] for row in memory.rows}
     assert statuses["storage"] == statuses["main"] == statuses["at start"] == "failure"
     assert statuses["system start"] == "success" and statuses["drive path 2A"] == "idle"
-    failures = {row["name"]: row["failure"] for row in memory.rows if row["failure"]}
+    failures = {str(row["name"]): row["failure"] for row in memory.rows if row["failure"]}
     assert failures == {"at start": rig.outcomes()[task].sentence}
 
 
@@ -71,7 +71,7 @@ def test_what_a_stop_interrupts_is_called_interrupted(told: Callable[..., Any]) 
     assert rig.statuses()["storage"] == "failure"
     pickup = rig.face()["rows/changes.sis_a"]
     assert pickup  # the changes tell of it
-    names = {(change.name, change.status) for change in rig.story.trees["sis_a"].changes}
+    names = {(str(change.name), change.status) for change in rig.story.trees["sis_a"].changes}
     assert ("move to pick-up", "halted") in names and ("drive path 0B", "success") in names
 
 
@@ -79,7 +79,7 @@ def test_the_changes_tell_of_steps_each_once(told: Callable[..., Any]) -> None:
     rig = told()
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "effector on/dwell")
-    told_of = [(change.name, change.status) for change in rig.story.trees["sis_a"].changes]
+    told_of = [(str(change.name), change.status) for change in rig.story.trees["sis_a"].changes]
     done = [(name, "success") for name in ("system start", "drive path 0B", "move to pick-up")]
     assert told_of == [*done, ("effector on", "running")]
 
@@ -88,7 +88,7 @@ def test_the_changes_name_the_leaf_that_failed_within_a_step() -> None:
     memory = TreeMemory()
     rows = [
         row("root", "RUNNING", kind="selector") | {"name": "storage"},
-        row("0", "RUNNING", kind="sequence") | {"name": "main"},
+        row("0", "RUNNING", kind="sequence") | {"name": "main", "phase": "main"},
         row("0.0", "RUNNING", kind="sequence") | {"name": "grip"},
         row("0.0.0", "RUNNING") | {"name": "switch"},
     ]
@@ -126,7 +126,7 @@ def test_a_tree_that_ended_between_two_snapshots_is_kept_though_the_next_one_run
     ended = see(memory, rig)
     assert ended is not None and ended.task == first
     assert set(ended.statuses.values()) == {"success", "idle"}
-    assert memory.task != first and "drive to node 0" in {row["name"] for row in memory.rows}
+    assert memory.task != first and "drive to node 0" in {str(row["name"]) for row in memory.rows}
 
 
 @pytest.mark.parametrize(("verb", "came_to"), [(Verb.ABANDON, "failure"), (Verb.CANCEL, "halted")])
@@ -140,7 +140,7 @@ def test_a_recovery_of_its_own_ends_as_a_part_of_the_work_that_it_ended(
         rig.operate(Verb.HOLD, "sis_a")
         assert rig.wait(10.0, until=lambda: rig.snapshot()["cells"][0]["state"] == "held")
     assert rig.operate(verb, "sis_a") is None
-    assert rig.story.trees["sis_a"].rows[0]["name"] == "recovery"
+    assert rig.story.trees["sis_a"].rows[0]["phase"] == "recovery"
     assert rig.wait(60.0, until=lambda: task in rig.story.ended)
     statuses = rig.statuses()
     assert statuses["drive path 0B"] == statuses["recovery"] == statuses["carry back"] == "success"

@@ -6,26 +6,29 @@ from typing import Any
 
 import pytest
 
+from arboleda.app.plant_file.poses import HOME, STATION
 from arboleda.app.simulate.request import Request
+from arboleda.core import belief, dispatcher, evidence, steps, text, zones
 from arboleda.core.cell_states import CellState
 from arboleda.core.ledger import State
 from arboleda.core.messages import Reason, TaskState, Verb
+from arboleda.core.plant import Plant
+from arboleda.core.sentence import Sentence
 from arboleda.core.tree_view import KINDS
-from arboleda.dashboard.wording import LANGUAGES, NOT_OF_THE_PAGE, SLOT, flat, tree_of, words
+from arboleda.core.view import IN_RECOVERY
+from arboleda.dashboard.wording import LANGUAGES, SENTENCES, flat, tree_of, words
+from arboleda.recipes import storage
 
 ENGLISH = LANGUAGES[0]
-# The end of a line of a simulation's trace: an operator's refusal, or a task's state, reason and sentence.
-SAID = re.compile(r"(?: refusal=|: (?:queued|refused|failed|cancelled) (?:\(\w+\) )?)(?P<sentence>.+)$")
 
 
 def keys(language: str) -> dict[str, str]:
-    return flat({name: part for name, part in tree_of(language).items() if name not in NOT_OF_THE_PAGE})
+    return flat({name: part for name, part in tree_of(language).items() if name != SENTENCES})
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_language_has_the_same_keys(language: str) -> None:
     assert keys(language).keys() == keys(ENGLISH).keys()
-    assert tree_of(language)["phrases"].keys() == tree_of(ENGLISH)["phrases"].keys()
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -35,15 +38,6 @@ def test_every_language_puts_the_same_values_in(language: str) -> None:
 
     english = keys(ENGLISH)
     assert [key for key, text in keys(language).items() if fields(text) != fields(english[key])] == []
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_every_phrase_keeps_its_slots(language: str) -> None:
-    def slots(pair: tuple[str, str]) -> bool:
-        plant, ours = pair
-        return plant.count(SLOT) >= ours.count(SLOT)
-
-    assert [pair for pair in tree_of(language)["phrases"].items() if not slots(pair)] == []
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -65,45 +59,76 @@ def test_every_word_of_the_plant_has_a_name(language: str, group: str, known: se
 
 
 @pytest.mark.parametrize(
-    ("plant", "spanish"),
+    ("plant", "english", "spanish"),
     [
-        ("move to station 7", "ir a la estación 7"),
-        ("recovery: move to home", "recuperación: ir a reposo"),
-        ("ra1 is offline", "ra1 está sin conexión"),
+        (steps.MOVE(pose=STATION(number=7)), "move to station 7", "ir a la estación 7"),
         (
+            IN_RECOVERY(step=steps.MOVE(pose=HOME())),
+            "recovery: move to home",
+            "recuperación: ir a reposo",
+        ),
+        (belief.OFFLINE.said(robot="ra1"), "ra1 is offline", "ra1 está sin conexión"),
+        (
+            dispatcher.NO_TELEMETRY(robot="rm_sis_a", seconds=1.5, doing=storage.DRIVING(path="0B")),
             "rm_sis_a: no telemetry for 1.5 s while driving path 0B",
             "rm_sis_a: sin telemetría durante 1.5 s mientras estaba recorriendo el camino 0B",
         ),
         (
+            evidence.SHORT_OF_TARGET(robot="ra1", doing=steps.MOVING(pose=STATION(number=3))),
             "ra1: stopped before its target while moving to station 3",
             "ra1: se detuvo antes de su destino mientras estaba yendo a la estación 3",
         ),
-        ("rm_sis_a is still homing", "rm_sis_a sigue buscando la referencia"),
         (
+            zones.NOT_QUARANTINED(zone="centre", now=zones.HELD_BY(robot="ra1")),
             "zone centre is held by ra1, which still reports; only a quarantined zone can be overridden",
             "la zona centre está ocupada por ra1, que aún informa; solo se libera una zona en cuarentena",
         ),
         (
+            text.UNKNOWN_BUT_NEAR(
+                word="'0D'", kind=storage.PATH(), where="sis_a", there=("0A", "0B"), near="0A"
+            ),
             "'0D' is not a path of sis_a; there are 0A, 0B; did you mean 0A?",
             "'0D' no es un camino de sis_a; hay 0A, 0B; ¿quiso decir 0A?",
         ),
     ],
+    ids=str,
 )
-def test_the_plants_sentences_are_said_in_spanish(plant: str, spanish: str) -> None:
+def test_the_plants_sentences_are_said_in_spanish(plant: Sentence, english: str, spanish: str) -> None:
     assert words("es").say(plant) == spanish
-    assert words("en").say(plant) == plant
+    assert words("en").say(plant) == str(plant) == english
 
 
 def test_what_a_plant_says_under_every_kind_of_fault_is_said_in_spanish() -> None:
-    lines: list[str] = []
+    said: set[Sentence] = set()
     for seed in range(1, 7):
-        Request(cycles=8, faults="many").setting.run(seed, tell=lines.append)
-    sentences = {found["sentence"] for line in lines if (found := SAID.search(line))}
-    assert len(sentences) > 60
-    assert [sentence for sentence in sorted(sentences) if words("es").say(sentence) == sentence] == []
+        run(seed, said)
+    assert len(said) > 60
+    assert [each for each in said if words("es").say(each) == str(each)] == []
 
 
-def test_a_sentence_that_nobody_knows_stays_as_it_is() -> None:
+def run(seed: int, said: set[Sentence]) -> None:
+    """Add what a plant says to people in a simulation."""
+
+    def look(message: Any) -> None:
+        told = getattr(message, "sentence", None) or getattr(message, "refusal", None)
+        if isinstance(told, Sentence):
+            said.add(told)
+
+    setting = Request(cycles=8, faults="many").setting
+    with pytest.MonkeyPatch.context() as patch:
+        step = Plant.step
+
+        def heard(plant: Plant, now: float, events: Any) -> list[Any]:
+            out = step(plant, now, events)
+            for message in out:
+                look(message)
+            return out
+
+        patch.setattr(Plant, "step", heard)
+        setting.run(seed)
+
+
+def test_what_is_no_sentence_stays_as_it_is() -> None:
     assert words("es").say("polish the part") == "polish the part"
 
 
@@ -113,7 +138,7 @@ def test_an_unknown_language_is_english() -> None:
 
 def spanish() -> dict[str, str]:
     """Every Spanish text by its key, or by the sentence of the plant that it stands for."""
-    return keys("es") | tree_of("es")["phrases"] | tree_of("es")["sentences"]
+    return keys("es") | tree_of("es")[SENTENCES]
 
 
 def test_spanish_frees_zones_and_nothing_else() -> None:

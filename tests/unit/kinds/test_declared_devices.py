@@ -193,4 +193,4 @@ def test_screens_show_a_cell_of_any_devices() -> None:
     here.wait(3.0)
     (cell,) = view.snapshot(here.plant)["cells"]
     assert (cell["oven"], cell["eye"], cell["state"]) == ("oven", "eye", "execute")
-    assert [row["name"] for row in cell["tree"]][:3] == ["bake", "main", "system start"]
+    assert [str(row["name"]) for row in cell["tree"]][:3] == ["bake", "main", "system start"]

@@ -550,7 +550,7 @@ def test_what_a_kind_of_robot_cannot_say_is_refused_and_believed_by_nobody(world
         begin(world, fault("foreign_report", board, word=word))
         world.settle()
         assert world.bridge.counters[robot].refused == count
-        assert word in world.bridge.counters[robot].last
+        assert word in str(world.bridge.counters[robot].last)
     assert world.plant.dispatcher.beliefs[robot].reports == reports
 
 

@@ -51,7 +51,7 @@ def copy(bench: Bench, command: Command) -> list[object]:
 
 
 def news(messages: list[object]) -> list[str]:
-    return [each.sentence for each in messages if isinstance(each, Rejection | ForeignCommand)]
+    return [str(each.sentence) for each in messages if isinstance(each, Rejection | ForeignCommand)]
 
 
 @pytest.mark.parametrize("command", [MOVE, GRIP, HOME, CLEAR], ids=lambda each: type(each).__name__)
@@ -60,7 +60,7 @@ def test_a_plants_robot_takes_no_command_of_another_node(beaten, sent, command: 
     assert sent(out) == []
     (rejection,) = [each for each in out if isinstance(each, Rejection)]
     assert (rejection.robot, rejection.id, rejection.reason) == ("ra1", "", "foreign")
-    assert "/teleop was refused (foreign): a plant commands this robot" in rejection.sentence
+    assert "/teleop was refused (foreign): a plant commands this robot" in str(rejection.sentence)
 
 
 def test_the_plant_hears_of_it_who_and_how_often(beaten, reports) -> None:
@@ -69,7 +69,7 @@ def test_the_plant_hears_of_it_who_and_how_often(beaten, reports) -> None:
     others(beaten, GRIP, "/panel")
     (telemetry,) = reports(beaten.tell())
     assert telemetry.foreign_refused == 2
-    assert telemetry.foreign.startswith("ra1: effector_cmd 1 of /panel was refused")
+    assert str(telemetry.foreign).startswith("ra1: effector_cmd 1 of /panel was refused")
 
 
 def test_a_burst_of_them_makes_no_burst_of_reports(beaten, reports) -> None:
@@ -183,7 +183,7 @@ def test_a_refusal_by_the_board_names_the_command(linked) -> None:
     out = linked.tell("rm_sis_a", ack_epoch=EPOCH, ack=0, refusal="limite", refused_seq=1)
     (rejection,) = [each for each in out if isinstance(each, Rejection)]
     assert (rejection.command, rejection.id, rejection.reason) == ("path_cmd", "", "limite")
-    assert "begins at the robot's node or next to it" in rejection.sentence
+    assert "begins at the robot's node or next to it" in str(rejection.sentence)
     again = linked.tell("rm_sis_a")
     assert news(list(again)) == []
     assert linked.bridge.counters["rm_sis_a"].refused == 1
@@ -202,7 +202,7 @@ def test_a_board_that_took_another_clients_command_betrays_it(linked, reports) -
     sentence = f"ra1: its board took a command of another MQTT client (epoca {EPOCH + 50}, seq 3)"
     assert news(list(out)) == [sentence]
     (report,) = reports(out)
-    assert (report.foreign_obeyed, report.foreign) == (1, sentence)
+    assert (report.foreign_obeyed, str(report.foreign)) == (1, sentence)
     assert news(list(linked.tell())) == []
 
 

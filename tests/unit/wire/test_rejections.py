@@ -13,5 +13,5 @@ from arboleda.wire.rejections import refused
 @pytest.mark.parametrize("word", sorted(REFUSALS))
 def test_each_word_of_a_board_is_explained(word: str) -> None:
     robot = shipped().cells[0].arm
-    said, _, why = refused(robot, Home(id="1-1", robot=robot.name), word, "", by_board=True).partition("): ")
-    assert said.startswith(f"{robot.name}: ") and why not in ("", word)
+    said = refused(robot, Home(id="1-1", robot=robot.name), word, "", by_board=True)
+    assert said.values["robot"] == robot.name and str(said.values["why"]) not in ("", word)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from arboleda.core.commands import MoveJoints, SetEffector
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState
+from arboleda.core.sentence import OWN
 from arboleda.testing import shipped
+from arboleda.wire import rejections
 from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status
 
 ROBOTS = shipped("sis_a").robots
@@ -26,7 +30,16 @@ SAID = {
     "state": st.none() | st.sampled_from(MotionState),
     "homed": FLAG,
 }
-FOREIGN = st.sampled_from([{}, {"foreign": "ra1: effector_cmd 1 of /teleop was obeyed", "foreign_obeyed": 3}])
+ON = SetEffector(id="", robot="ra1", on=True)
+FAR = MoveJoints(id="", robot="ra1", q=(9.0, 0.0, 0.0))
+OBEYED = rejections.obeyed(ROBOTS["ra1"], ON, "/teleop")
+OTHERS = (
+    OBEYED,
+    rejections.obeyed(ROBOTS["ra1"], ON, ""),
+    rejections.refused(ROBOTS["ra1"], FAR, "limite", "/teleop", by_board=False),
+    OWN(text="somebody moved it"),
+)
+FOREIGN = st.sampled_from([{}, *({"foreign": said, "foreign_obeyed": 3} for said in OTHERS)])
 OF_ARMS = {"effector": FLAG, "piece": FLAG}
 JOINTS = st.none() | st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 3)
 REJECTED = st.sampled_from([{}, {"rejected": "7-1", "refusal": "sin_ref"}])
@@ -140,3 +153,27 @@ def test_a_label_of_somebody_else_is_no_id(label: str) -> None:
 def test_a_broken_label_is_refused(label: str) -> None:
     with pytest.raises(PayloadError, match="label"):
         from_label(label)
+
+
+@pytest.mark.parametrize(
+    "made_of",
+    [
+        None,
+        "",
+        "no JSON",
+        "[" * 1500,
+        "[]",
+        '{"key": "foreign.obeyed"}',
+        '{"key": "foreign.obeyed", "values": {}}',
+        '{"key": "foreign.obeyed", "values": {"robot": null}}',
+        '{"key": "robot.offline", "values": {"robot": "ra1"}}',
+        json.dumps(rejections.obeyed(ROBOTS["ra1"], ON, "/panel").data()),
+    ],
+)
+def test_what_a_sentence_is_made_of_counts_only_where_it_says_the_same(made_of: str | None) -> None:
+    status = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", foreign=OBEYED))
+    values = {key: value for key, value in status.values.items() if key != "foreign_said"}
+    if made_of is not None:
+        values["foreign_said"] = made_of
+    report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
+    assert report.foreign == OWN(text=str(OBEYED))

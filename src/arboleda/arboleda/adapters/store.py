@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,14 +12,14 @@ from pathlib import Path
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import Fact, Journal, Remember
 
-VERSION = 2
+VERSION = 3
 SCHEMA = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name)) WITHOUT ROWID",
     "CREATE TABLE journal (id INTEGER PRIMARY KEY, unix_s REAL NOT NULL, verb TEXT NOT NULL,"
-    " scope TEXT NOT NULL, sentence TEXT NOT NULL, cell TEXT)",
+    " scope TEXT NOT NULL, sentence TEXT NOT NULL, cell TEXT, said TEXT)",
     f"PRAGMA user_version = {VERSION}",
 )
-FROM_1 = ("ALTER TABLE journal ADD COLUMN cell TEXT", f"PRAGMA user_version = {VERSION}")
+SINCE = {1: "ALTER TABLE journal ADD COLUMN cell TEXT", 2: "ALTER TABLE journal ADD COLUMN said TEXT"}
 IN_MEMORY = Path(":memory:")
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 
@@ -41,7 +42,8 @@ ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
 class JournalEntry:
     """One act of an operator; `id` grows by one, `unix_s` is what the clock of the plant's machine said.
 
-    `cell` is None where the act was for more than one, or is older than this column.
+    `cell` is None where the act was for more than one, or is older than this column; `said` is JSON of the
+    sentence, None where it is older than that column.
     """
 
     id: int
@@ -50,6 +52,7 @@ class JournalEntry:
     scope: str
     sentence: str
     cell: str | None
+    said: str | None
 
 
 class Store:
@@ -107,18 +110,19 @@ class Store:
 
     def journal(self, entry: Journal, unix_s: float) -> None:
         """Commit one act of an operator."""
-        row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell)
-        insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell) VALUES (?, ?, ?, ?, ?)"
+        said = json.dumps(entry.sentence.data(), ensure_ascii=False)
+        row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell, said)
+        insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
         self._commit(insert, row, durable=True)
 
     def entries(self, limit: int = 100) -> list[JournalEntry]:
         """The last acts, the newest first."""
-        columns = "id", "unix_s", "verb", "scope", "sentence", "cell"
+        columns = "id", "unix_s", "verb", "scope", "sentence", "cell", "said"
         query = f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?"
         with self._explained(ArboledaError):
             rows = self._db.execute(query, (limit,)).fetchall()
-        for _, unix_s, *texts, cell in rows:
-            known = [*texts, cell or ""]
+        for _, unix_s, *texts, cell, said in rows:
+            known = [*texts, cell or "", said or ""]
             if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in known):
                 raise self._damaged()
         return [JournalEntry(**dict(zip(columns, row, strict=True))) for row in rows]
@@ -162,8 +166,9 @@ class Store:
             db.execute("BEGIN IMMEDIATE")  # refused where another program writes, or nobody may
         if db.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
             raise sqlite3.DatabaseError("database disk image is malformed")
-        if version == 1:
-            _carry_out(db, FROM_1)
+        if 0 < version < VERSION:
+            news = [statement for since, statement in SINCE.items() if since >= version]
+            _carry_out(db, (*news, f"PRAGMA user_version = {VERSION}"))
 
     def _damaged(self) -> ArboledaError:
         return ArboledaError(

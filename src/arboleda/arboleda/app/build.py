@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import logging
 import threading
 import time
@@ -14,10 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.mqtt import Credentials
-from arboleda.adapters.store import Store
+from arboleda.adapters.store import JournalEntry, Store
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import Link, MqttVersion, PlantModel
+from arboleda.core.operator import ACTS_TOLD
+from arboleda.core.sentence import OWN, Sentence, from_data
 
 from .log_queue import Output
 from .parts.bridge import BridgePart
@@ -288,9 +291,17 @@ def _acts(store: Store) -> list[dict[str, Any]]:
     """What operators did before this start, oldest first."""
     entries = reversed(store.entries())
     return [
-        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": each.sentence}
+        {"at": each.unix_s, "scope": each.scope, "cell": each.cell, "sentence": _told(each)}
         for each in entries
     ]
+
+
+def _told(entry: JournalEntry) -> Sentence:
+    """What an operator did; of older starts, or of another version, only as text."""
+    try:
+        return from_data(json.loads(entry.said or ""), ACTS_TOLD)
+    except ValueError:
+        return OWN(text=entry.sentence)
 
 
 def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker | OtherBroker:

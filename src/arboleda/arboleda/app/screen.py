@@ -182,10 +182,10 @@ def _obstacles(snapshot: dict[str, Any]) -> list[str]:
     """What keeps a robot without a task from working; a latch alone is told of all robots in one line, and
     what its idle cell says already not again.
     """
-    told = " ".join(str(cell["not_ready"] or "") for cell in snapshot["cells"])
+    told = {cell["blocked_by"] for cell in snapshot["cells"]}
     idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
-    robots = [each for each in robots if str(each["obstacle"]) not in told]
+    robots = [each for each in robots if each["name"] not in told]
     return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 

@@ -16,7 +16,7 @@ from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
 from .model import Cell, Evidence, MotionState, Pose, Timing
-from .sentence import Phrase
+from .sentence import Phrase, Sentence
 from .zones import Zones
 
 __all__ = ["Context", "Make"]
@@ -97,7 +97,7 @@ class Context:
         self.failure = self.failed_leaf = self.last_failure = None
         self._plan()
 
-    def send(self, make: Make, doing: str) -> Entry:
+    def send(self, make: Make, doing: Sentence) -> Entry:
         """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
         self.sent += 1
         return self._dispatcher.send(make, self.cell.name, doing, self._clock())

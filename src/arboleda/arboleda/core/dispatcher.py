@@ -17,12 +17,13 @@ from .interference import Interferences
 from .ledger import Entry, Feed, Ledger, State
 from .messages import Fact, Failure, Notice, Reason, Remember, Report
 from .model import Evidence, Link, MotionState, PlantModel, Pose, Workspace
-from .sentence import BOTH, Phrase, Sentence, as_sentence
+from .sentence import BOTH, Phrase, Sentence
 from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
 Memory = Mapping[Fact, Mapping[str, str]]
+HOMING = Phrase("doing.home", "homing")
 NOT_GIVEN = Phrase("command.not_given", "{why}: no {doing}")
 BUSY_MOVING = (
     Phrase("robot.open_motion", "{robot} has an open motion command"),
@@ -91,7 +92,7 @@ class Dispatcher:
         stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
         return min(self.ledger.next_deadline, stale_at)
 
-    def send(self, make: Make, cell: str, doing: str, now: float, *, by_hand: bool = False) -> Entry:
+    def send(self, make: Make, cell: str, doing: Sentence, now: float, *, by_hand: bool = False) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one.
 
         By hand, on an operator's word, an effector is opened even while its arm is stopped.
@@ -188,7 +189,7 @@ class Dispatcher:
     def home(self, robot: str, now: float) -> None:
         """Have a robot run its homing routine."""
         cell = self.model.cell_of[robot].name
-        self.send(partial(Home, robot=robot), cell, "homing", now)
+        self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
     def declare_homed(self, robot: str) -> None:
         """An operator has put a robot that cannot say so at its reference, wherever it stood before."""
@@ -269,7 +270,7 @@ class Dispatcher:
         """A bridge counts the commands of others; each count that rose is news."""
         refused, obeyed = self.interference.rise(report)
         if report.foreign is not None and (refused or obeyed):
-            self.interfere(report.robot, as_sentence(report.foreign), report.at, obeyed=obeyed)
+            self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
 
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves; `before` is None where it only repeats what was believed."""

@@ -11,7 +11,7 @@ from py_trees.common import Status
 from .context import Context, Make
 from .ledger import Entry, State
 from .messages import Failure, Notice, Reason
-from .sentence import NOTHING, Phrase, Sentence, as_sentence
+from .sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
 CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
 AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")
@@ -31,13 +31,29 @@ RETRYABLE = frozenset(
 )
 
 
+def titled(node: Behaviour, title: Sentence | str) -> Behaviour:
+    """Give a node of py_trees its name as a sentence."""
+    node.title = as_sentence(title)  # type: ignore[attr-defined]
+    return node
+
+
+def title_of(node: Behaviour) -> Sentence:
+    """The name of a node as a sentence; of one that nobody titled its plain name."""
+    return getattr(node, "title", None) or OWN(text=node.name)
+
+
 class Leaf(Behaviour):
-    """A leaf of ours: `told` is its feedback message as a sentence, and `last_failure` keeps the one of a
-    failure when py_trees has forgotten the status.
+    """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
+    its last failure, kept when py_trees has forgotten the status.
     """
 
+    title: Sentence
     told: Sentence = NOTHING
     last_failure: Sentence | None = None
+
+    def __init__(self, name: Sentence | str) -> None:
+        super().__init__(str(name))
+        self.title = as_sentence(name)
 
     @property
     def feedback_message(self) -> str:
@@ -85,10 +101,10 @@ class Act(Leaf):
 
     def __init__(
         self,
-        name: str,
+        name: Sentence | str,
         context: Context,
         make: Make,
-        doing: str,
+        doing: Sentence | str,
         *,
         anew: Make | None = None,
         guard: Guard | None = None,
@@ -99,7 +115,7 @@ class Act(Leaf):
         self.then = then
         self.make = make
         self.anew = anew or make
-        self.doing = doing
+        self.doing = as_sentence(doing)
         self.guard = guard
         self.entry: Entry | None = None
         self.left = False  # whether its robot may have got the command
@@ -113,7 +129,7 @@ class Act(Leaf):
 
     def send(self) -> None:
         """Give the command, or give it anew."""
-        self.told = as_sentence(self.doing)
+        self.told = self.doing
         self.again_at = None
         self.patient_until = self.context.now + self.context.timing.stop_timeout_s
         self._give()
@@ -187,7 +203,7 @@ class Act(Leaf):
 class Dwell(Leaf):
     """Wait a fixed time."""
 
-    def __init__(self, name: str, context: Context, seconds: float) -> None:
+    def __init__(self, name: Sentence | str, context: Context, seconds: float) -> None:
         super().__init__(name)
         self.context = context
         self.seconds = seconds
@@ -204,7 +220,7 @@ class Dwell(Leaf):
 class Announce(Leaf):
     """Tell the outside once."""
 
-    def __init__(self, name: str, context: Context, notice: Notice) -> None:
+    def __init__(self, name: Sentence | str, context: Context, notice: Notice) -> None:
         super().__init__(name)
         self.context = context
         self.notice = notice
@@ -217,7 +233,7 @@ class Announce(Leaf):
 class Require(Leaf):
     """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
 
-    def __init__(self, name: str, context: Context, obstacle: Guard) -> None:
+    def __init__(self, name: Sentence | str, context: Context, obstacle: Guard) -> None:
         super().__init__(name)
         self.context = context
         self.obstacle = obstacle
@@ -233,7 +249,7 @@ class Require(Leaf):
 class Unless(Leaf):
     """SUCCESS where `holds()`, else FAILURE without a cause: the way past a branch that is not needed."""
 
-    def __init__(self, name: str, holds: Callable[[], bool]) -> None:
+    def __init__(self, name: Sentence | str, holds: Callable[[], bool]) -> None:
         super().__init__(name)
         self.holds = holds
 
@@ -246,7 +262,7 @@ class Await(Leaf):
 
     def __init__(
         self,
-        name: str,
+        name: Sentence | str,
         context: Context,
         arrived: Callable[[], bool],
         seconds: float,
@@ -281,7 +297,14 @@ class Piece(Await):
     """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there."""
 
     def __init__(
-        self, name: str, context: Context, robot: str, seconds: float, failure: Failure, *, final: bool = True
+        self,
+        name: Sentence | str,
+        context: Context,
+        robot: str,
+        seconds: float,
+        failure: Failure,
+        *,
+        final: bool = True,
     ) -> None:
         super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
         self.robot = robot
@@ -298,7 +321,7 @@ class Piece(Await):
 class Carry(Leaf):
     """Note which robot carries the checked part now; None: it has arrived."""
 
-    def __init__(self, name: str, context: Context, robot: str | None) -> None:
+    def __init__(self, name: Sentence | str, context: Context, robot: str | None) -> None:
         super().__init__(name)
         self.context = context
         self.robot = robot
@@ -316,7 +339,7 @@ class TakeZones(Await):
 
     def __init__(
         self,
-        name: str,
+        name: Sentence | str,
         context: Context,
         robot: str,
         needed: Callable[[], frozenset[str]],
@@ -350,7 +373,7 @@ class TakeZones(Await):
 class LeaveZones(Await):
     """Give a robot's zones back once it is seen outside."""
 
-    def __init__(self, name: str, context: Context, robot: str) -> None:
+    def __init__(self, name: Sentence | str, context: Context, robot: str) -> None:
         failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
         left = partial(context.leave_zones, robot)
         super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)

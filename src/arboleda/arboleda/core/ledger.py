@@ -75,9 +75,11 @@ class Seen:
 
 
 class Entry:
-    """One command's life; times in s of the plant's clock; `doing` is a phrase such as "moving home"."""
+    """One command's life; times in s of the plant's clock; `doing` is said as "moving home"."""
 
-    def __init__(self, command: Command, *, cell: str, doing: str, sent_at: float, deadline: float) -> None:
+    def __init__(
+        self, command: Command, *, cell: str, doing: Sentence, sent_at: float, deadline: float
+    ) -> None:
         self.command = command
         self.cell = cell
         self.doing = doing

@@ -193,7 +193,7 @@ class Report:
     facts: Facts | None = None
     foreign_refused: int | None = None
     foreign_obeyed: int | None = None
-    foreign: str | None = None
+    foreign: Sentence | None = None
 
     def fact(self, name: str) -> Value | None:
         """What it says of a fact; None where it says nothing."""

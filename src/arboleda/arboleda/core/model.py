@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 from .commands import Command, FollowPath, MoveJoints, Position, SetEffector
 from .counting import counted
 from .recipe import Recipe
+from .sentence import NOTHING, OWN, Sentence
 
 if TYPE_CHECKING:
     from .messages import Report
@@ -348,6 +349,12 @@ class Pose:
     q: tuple[float, ...]
     above: tuple[float, ...] | None = None
     zones: frozenset[str] = frozenset()
+    title: Sentence = NOTHING
+
+    @property
+    def said(self) -> Sentence:
+        """Its name as sentences have it."""
+        return self.title or OWN(text=self.name)
 
 
 @dataclass(frozen=True, kw_only=True)

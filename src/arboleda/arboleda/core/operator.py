@@ -71,6 +71,7 @@ QUEUE_RUNS = Phrase("refusal.queue_runs", "{cell} is idle and its queue runs")
 ONLY_HELD = Phrase(
     "refusal.only_held", "{cell} is {state}; only a held cell or a paused queue can be resumed"
 )
+RELEASING = Phrase("doing.release", "releasing by hand")
 NOT_OPENED = Phrase("refusal.not_opened", "{why}: no releasing by hand")
 HOLD_FIRST = Phrase("refusal.hold_first", "{cell} is {state}; hold or stop it first")
 NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
@@ -377,7 +378,7 @@ class Operator:
             if name in robots:
                 cell.let_go(name)
                 make = self._dispatcher.model.robots[name].let_go
-                self._dispatcher.send(make, cell.cell.name, "releasing by hand", self._clock(), by_hand=True)
+                self._dispatcher.send(make, cell.cell.name, RELEASING(), self._clock(), by_hand=True)
 
 
 def _scope(request: OperatorRequest) -> str:
@@ -437,6 +438,10 @@ def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sen
 
 BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
 BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
+ACTS_TOLD = {
+    phrase.key: phrase for phrase in (*DO.values(), PLANT, DID, DID_BY_HAND, DECLARED_HOMED, DID_BY_CLIENT)
+}
+"""All that is said of what operators did, by key."""
 CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence=BY_OPERATOR())
 CANCELLED_BY_CLIENT = Failure(reason=Reason.CANCELLED, sentence=BY_CLIENT())
 

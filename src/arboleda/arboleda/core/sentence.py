@@ -5,7 +5,7 @@ Nobody finds out anything by reading a text; who needs to know looks at the key 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Union
 
 Value = Union[str, int, float, "Sentence", "tuple[Value, ...]"]
@@ -50,9 +50,9 @@ class Sentence:
     def key(self) -> str:
         return self.phrase.key
 
-    def told(self, template: Callable[[Phrase], str], word: Callable[[str], str] | None = None) -> str:
+    def told(self, template: Callable[[Phrase], str]) -> str:
         """It in the language whose text for a phrase, with the same slots, is `template`."""
-        words = {slot: _told(value, template, word) for slot, value in self.values.items()}
+        words = {slot: _told(value, template) for slot, value in self.values.items()}
         return template(self.phrase).format(**words)
 
     def parts(self) -> Iterator[Sentence]:
@@ -62,6 +62,10 @@ class Sentence:
             for each in value if isinstance(value, tuple) else (value,):
                 if isinstance(each, Sentence):
                     yield from each.parts()
+
+    def data(self) -> dict[str, Any]:
+        """Key and values for JSON; a sentence inside it likewise."""
+        return {"key": self.key, "values": {slot: _data(value) for slot, value in self.values.items()}}
 
     def __str__(self) -> str:
         if self._text is None:
@@ -97,16 +101,37 @@ def in_json(value: object) -> str:
     raise TypeError(f"{type(value).__name__} is not for JSON")
 
 
+def from_data(data: Any, phrases: Mapping[str, Phrase]) -> Sentence:
+    """The sentence of such data, made of these phrases; ValueError for anything else."""
+    try:
+        phrase, values = phrases[data["key"]], data["values"].items()
+        return phrase(**{slot: _value(value, phrases) for slot, value in values})
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError(f"{data!r} is no sentence") from error
+
+
+def _data(value: Value) -> Any:
+    if isinstance(value, tuple):
+        return [_data(each) for each in value]
+    return value.data() if isinstance(value, Sentence) else value
+
+
+def _value(data: Any, phrases: Mapping[str, Phrase]) -> Value:
+    if isinstance(data, list):
+        return tuple(_value(each, phrases) for each in data)
+    return data if isinstance(data, str | int | float) else from_data(data, phrases)
+
+
 def _english(phrase: Phrase) -> str:
     return phrase.english
 
 
-def _told(value: Value, template: Callable[[Phrase], str], word: Callable[[str], str] | None) -> Any:
+def _told(value: Value, template: Callable[[Phrase], str]) -> Any:
     if isinstance(value, Sentence):
-        return str(value) if template is _english else value.told(template, word)
+        return str(value) if template is _english else value.told(template)
     if isinstance(value, tuple):
-        return ", ".join(str(_told(each, template, word)) for each in value)
-    return word(value) if word is not None and isinstance(value, str) else value
+        return ", ".join(str(_told(each, template)) for each in value)
+    return value
 
 
 OWN = Phrase("own", "{text}")

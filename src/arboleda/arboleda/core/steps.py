@@ -13,14 +13,43 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 
 from . import zone_plan
-from .commands import Position, SetEffector
+from .commands import Command, SetEffector
 from .context import Context
-from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, TakeZones, Unless
+from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, TakeZones, Unless, titled
 from .messages import Failure, Reason, SystemStart
 from .model import Pose
-from .sentence import Phrase
+from .sentence import Phrase, Sentence
 
 MAIN, RECOVERY = PHASES = ("main", "recovery")
+TITLES = {name: Phrase(f"step.{name}", name) for name in PHASES}
+ANNOUNCE = Phrase("step.announce", "announce")
+SYSTEM_START = Phrase("step.system_start", "system start")
+DWELL = Phrase("step.dwell", "dwell")
+SETTLE = Phrase("step.settle", "settle")
+RISE = Phrase("step.rise", "rise")
+RISING = Phrase("doing.rise", "rising")
+CARRY_BACK = Phrase("step.carry_back", "carry back")
+PART_BACK = Phrase("step.part_back", "part back")
+HOLDS_NOTHING = Phrase("step.holds_nothing", "holds nothing")
+TAKE_ZONES = Phrase("step.take_zones", "take zones")
+LEAVE_ZONES = Phrase("step.leave_zones", "leave zones")
+MOVE = Phrase("step.move", "move to {pose}")
+MOVING = Phrase("doing.move", "moving to {pose}")
+MOVE_ABOVE = Phrase("step.move_above", "move to above {pose}")
+MOVING_ABOVE = Phrase("doing.move_above", "moving to above {pose}")
+SWITCH = Phrase("step.switch", "switch")
+EFFECTOR_ON = Phrase("step.effector_on", "effector on")
+EFFECTOR_OFF = Phrase("step.effector_off", "effector off")
+SWITCHING_ON = Phrase("doing.switch_on", "switching the effector on")
+SWITCHING_OFF = Phrase("doing.switch_off", "switching the effector off")
+PIECE_THERE = Phrase("step.piece_there", "piece there")
+PIECE_GRIPPED = Phrase("step.piece_gripped", "piece gripped")
+GRIP = Phrase("step.grip", "grip")
+TRY = Phrase("step.try", "try {number}")
+ONLY_MISSED = Phrase("step.only_missed", "only missed")
+BACK_OFF = Phrase("step.back_off", "back-off")
+CARRY = Phrase("step.carry", "carry")
+ARRIVED = Phrase("step.arrived", "arrived")
 UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
 NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
 NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
@@ -28,30 +57,30 @@ SETTLE_S = 1.0  # after the last stop was confirmed or given up
 Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do there
 
 
-def task(name: str, work: list[Behaviour], context: Context) -> Behaviour:
+def task(title: Sentence | str, work: list[Behaviour], context: Context) -> Behaviour:
     """The work of a task, announced, and the recovery for when it fails."""
-    return selector(name, sequence(MAIN, start(context), *work), recovery(context))
+    return selector(title, sequence(TITLES[MAIN](), start(context), *work), recovery(context))
 
 
 def recovery(context: Context) -> Behaviour:
     """Wait until all has come to rest; carry what is held back to where it came from; go home."""
     robots = tuple(context.cell.workspaces)
     ways = [step for robot in robots for step in _way_home(context, robot)]
-    return sequence(RECOVERY, _settle(context, robots), *ways)
+    return sequence(TITLES[RECOVERY](), _settle(context, robots), *ways)
 
 
-def sequence(name: str, *children: Behaviour) -> Behaviour:
-    return composites.Sequence(name, memory=True, children=list(children))
+def sequence(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    return titled(composites.Sequence(str(title), memory=True, children=list(children)), title)
 
 
-def selector(name: str, *children: Behaviour) -> Behaviour:
-    return composites.Selector(name, memory=True, children=list(children))
+def selector(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    return titled(composites.Selector(str(title), memory=True, children=list(children)), title)
 
 
 def start(context: Context) -> Behaviour:
     """Tell that a task starts."""
-    announce = Announce("announce", context, SystemStart(cell=context.cell.name))
-    return sequence("system start", announce, Dwell("dwell", context, context.timing.dwell_s))
+    announce = Announce(ANNOUNCE(), context, SystemStart(cell=context.cell.name))
+    return sequence(SYSTEM_START(), announce, Dwell(DWELL(), context, context.timing.dwell_s))
 
 
 def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Visit]) -> list[Behaviour]:
@@ -63,7 +92,7 @@ def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Vi
         steps += [_take(context, robot, leg.zones) for leg in legs if leg.start == index and leg.zones]
         steps += _at(context, robot, pose, *work)
         ends = [leg for leg in legs if leg.end == index + 1 and leg.zones]
-        steps += [LeaveZones("leave zones", context, robot) for _ in ends]
+        steps += [LeaveZones(LEAVE_ZONES(), context, robot) for _ in ends]
     return steps
 
 
@@ -73,20 +102,20 @@ def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behav
     if not check:
         return [on]
     retry, wait_s = context.cell.retry, context.timing.piece_wait_s
-    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.name))
+    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.said))
     patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
     attempts = [_attempt(context, robot, pose, number) for number in range(retry.times + 1)]
     return [
-        Piece("piece there", context, robot, patience_s, none),
-        selector("grip", *attempts),
-        Carry("carry", context, robot),
+        Piece(PIECE_THERE(), context, robot, patience_s, none),
+        selector(GRIP(), *attempts),
+        Carry(CARRY(), context, robot),
     ]
 
 
 def let_go(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
     """Effector off; what it held stays at the pose."""
     off = _effector(context, robot, on=False, then=partial(context.store, pose))
-    return [Carry("arrived", context, None), off] if check else [off]
+    return [Carry(ARRIVED(), context, None), off] if check else [off]
 
 
 def _way_home(context: Context, robot: str) -> list[Behaviour]:
@@ -94,14 +123,14 @@ def _way_home(context: Context, robot: str) -> list[Behaviour]:
     steps = _rise(context, robot)
     if space.zones:
         needed = partial(context.recovery_zones, robot)
-        steps.append(TakeZones("take zones", context, robot, needed, inside=True))
+        steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, inside=True))
     if back is not None:
         context.back[robot] = back
-        carry = sequence("carry back", *_at(context, robot, back, _effector(context, robot, on=False)))
-        empty = Unless("holds nothing", lambda: robot not in context.holding)
-        steps.append(selector("part back", empty, carry))
-    steps.append(_move(context, robot, space.home.name, space.home.q))
-    return [*steps, LeaveZones("leave zones", context, robot)] if space.zones else steps
+        carry = sequence(CARRY_BACK(), *_at(context, robot, back, _effector(context, robot, on=False)))
+        empty = Unless(HOLDS_NOTHING(), lambda: robot not in context.holding)
+        steps.append(selector(PART_BACK(), empty, carry))
+    steps.append(_move(context, robot, space.home))
+    return [*steps, LeaveZones(LEAVE_ZONES(), context, robot)] if space.zones else steps
 
 
 def _rise(context: Context, robot: str) -> list[Behaviour]:
@@ -109,7 +138,11 @@ def _rise(context: Context, robot: str) -> list[Behaviour]:
     space = context.cell.workspaces[robot]
     if not any(pose.above for pose in space.poses):
         return []
-    return [Act("rise", context, lambda id: space.robot.go(id=id, way=(context.risen(robot),)), "rising")]
+
+    def make(id: str) -> Command:
+        return space.robot.go(id=id, way=(context.risen(robot),))
+
+    return [Act(RISE(), context, make, RISING())]
 
 
 def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
@@ -123,46 +156,47 @@ def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
         ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
         return next((failure for failure in found if failure), ended)
 
-    return Await("settle", context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
+    return Await(SETTLE(), context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
 
 
 def _take(context: Context, robot: str, zones: frozenset[str]) -> Behaviour:
-    return TakeZones("take zones", context, robot, lambda: zones)
+    return TakeZones(TAKE_ZONES(), context, robot, lambda: zones)
 
 
 def _at(context: Context, robot: str, pose: Pose, *work: Behaviour) -> list[Behaviour]:
     """Go to a pose, do the work there and, where the pose has an approach height, come back up."""
-    go = _move(context, robot, pose.name, pose.q)
+    go = _move(context, robot, pose)
     if pose.above is None:
         return [go, *work]
-    above = partial(_move, context, robot, f"above {pose.name}", pose.above)
-    return [above(), go, *work, above()]
+    return [_move(context, robot, pose, above=True), go, *work, _move(context, robot, pose, above=True)]
 
 
-def _move(context: Context, robot: str, where: str, goal: Position) -> Behaviour:
+def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> Behaviour:
+    goal = pose.q if pose.above is None or not above else pose.above
     make = partial(context.cell.workspaces[robot].robot.go, way=(goal,))
-    return Act(f"move to {where}", context, make, f"moving to {where}", guard=context.part_lost)
+    title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
+    return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.part_lost)
 
 
 def _effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
-    word = "on" if on else "off"
-    make, doing = partial(SetEffector, robot=robot, on=on), f"switching the effector {word}"
-    act = Act("switch", context, make, doing, then=then)
-    return sequence(f"effector {word}", act, Dwell("dwell", context, context.timing.dwell_s))
+    make = partial(SetEffector, robot=robot, on=on)
+    title, doing = (EFFECTOR_ON, SWITCHING_ON) if on else (EFFECTOR_OFF, SWITCHING_OFF)
+    act = Act(SWITCH(), context, make, doing(), then=then)
+    return sequence(title(), act, Dwell(DWELL(), context, context.timing.dwell_s))
 
 
 def _attempt(context: Context, robot: str, pose: Pose, number: int) -> Behaviour:
     """Effector on and the piece seen in it; a later attempt opens the effector first."""
     retry = context.cell.retry
-    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.name))
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.said))
     final = number == retry.times
-    seen = Piece("piece gripped", context, robot, context.timing.piece_wait_s, missed, final=final)
+    seen = Piece(PIECE_GRIPPED(), context, robot, context.timing.piece_wait_s, missed, final=final)
     again = _again(context, robot) if number else []
-    return sequence(f"try {number + 1}", *again, _effector(context, robot, on=True), seen)
+    return sequence(TRY(number=number + 1), *again, _effector(context, robot, on=True), seen)
 
 
 def _again(context: Context, robot: str) -> list[Behaviour]:
     """What a further attempt begins with; there is none after another failure than a missed grip."""
-    only_missed = Unless("only missed", lambda: context.failure is None)
-    back_off = Dwell("back-off", context, context.cell.retry.backoff_s)
+    only_missed = Unless(ONLY_MISSED(), lambda: context.failure is None)
+    back_off = Dwell(BACK_OFF(), context, context.cell.retry.backoff_s)
     return [only_missed, _effector(context, robot, on=False), back_off]

@@ -10,8 +10,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from .leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless
+from .leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless, title_of
 from .sentence import NOTHING, Sentence
+from .steps import PHASES
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
@@ -39,7 +40,8 @@ def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) ->
     found.append(
         {
             "path": path or "root",
-            "name": node.name,
+            "name": title_of(node),
+            "phase": node.name if node.name in PHASES else None,
             "kind": kind(node),
             "status": node.status.value,
             "feedback": _feedback(node),

@@ -13,14 +13,16 @@ from .advice import Advice, Hand, in_words, sentence
 from .belief import Belief
 from .cell import CellRun
 from .cell_states import CellState
+from .leaves import title_of
 from .ledger import Entry
 from .messages import OperatorRequest, TaskChanged, Verb
 from .model import PlantModel, StorageCell
 from .operator import OperatorAct
 from .plant import Plant
-from .sentence import BOTH, NOTHING, Sentence
+from .sentence import BOTH, NOTHING, Phrase, Sentence
 from .task import Task
 
+IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
@@ -118,7 +120,7 @@ def change(changed: TaskChanged) -> dict[str, Any]:
     }
 
 
-def step_of(tree: Behaviour | None) -> str | None:
+def step_of(tree: Behaviour | None) -> Sentence | None:
     """The name of the step that runs, a step's own parts left out; a recovery's steps say so."""
     running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
     if not running:
@@ -127,7 +129,8 @@ def step_of(tree: Behaviour | None) -> str | None:
     while step.parent is not None and step.parent.name not in steps.PHASES:
         step = step.parent
     phase = step.parent.name if step.parent else ""
-    return f"{phase}: {step.name}" if phase == steps.RECOVERY else step.name
+    title = title_of(step)
+    return IN_RECOVERY(step=title) if phase == steps.RECOVERY else title
 
 
 def progress_of(tree: Behaviour | None) -> float | None:
@@ -171,6 +174,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
         "not_ready": _not_ready(cell, ways),
+        "blocked_by": _blocked_by(plant, cell),
         "held_by": cell.held_by,
         "advice": [_advice(each) for each in ways],
         "refused": _refused(plant, cell.cell.name, OF_CELLS),
@@ -184,6 +188,16 @@ def _not_ready(cell: CellRun, ways: tuple[Advice, ...]) -> Sentence | None:
     if why is None or why == cell.why_paused or not ways:
         return why
     return BOTH(first=why, second=sentence(ways))
+
+
+def _blocked_by(plant: Plant, cell: CellRun) -> str | None:
+    """The robot whose obstacle is why an idle cell would start no task."""
+    why = cell.not_ready
+    for robot in cell.cell.robots if why is not None else ():
+        obstacle = plant.dispatcher.obstacle(robot.name)
+        if obstacle is not None and obstacle.sentence == why:
+            return robot.name
+    return None
 
 
 def _advice(advice: Advice) -> dict[str, Any]:

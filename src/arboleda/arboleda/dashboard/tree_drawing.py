@@ -5,12 +5,13 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
+from arboleda.core.sentence import Sentence
 from arboleda.drawing.layout import Layout, Line, Node, columns, outline, wide
 
 from .wording import LANGUAGES, Words, words
 
 Drawing = dict[str, Any]
-Named = tuple[str, str, str]  # path, the plant's name, kind
+Named = tuple[str, Sentence, str]  # path, the plant's name, kind
 WAYS = {"wide": wide, "columns": columns, "narrow": outline}  # the widest first
 SIGNS = {"selector": "? ", "sequence": "→ ", "parallel": "⇉ "}  # as behaviour trees are drawn everywhere
 
@@ -20,7 +21,7 @@ def drawing(nodes: tuple[Named, ...], words: Words) -> Drawing:
     return {**_drawing(_labelled(nodes, words)), "need": _need(nodes)}
 
 
-def label(name: str, kind: str, words: Words) -> str:
+def label(name: Sentence, kind: str, words: Words) -> str:
     """What stands on a node."""
     return SIGNS.get(kind, "") + words.say(name)
 

@@ -6,12 +6,13 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.core.sentence import Sentence
+from arboleda.core.steps import RECOVERY
 from arboleda.drawing.layout import parent
 
 IDLE, RUNNING, SUCCESS, FAILURE, HALTED = "idle", "running", "success", "failure", "halted"
 SEEN = {"RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE}
 CHANGES = 30  # kept of each cell
-PHASES = MAIN, RECOVERY = "main", "recovery"
 
 Row = dict[str, Any]
 
@@ -23,7 +24,7 @@ class Change:
     number: int
     at: float
     path: str
-    name: str
+    name: Sentence
     status: str
 
 
@@ -122,7 +123,7 @@ class TreeMemory:
             if kinds[above] == "sequence":
                 _conclude(above, list(kinds), after)
 
-    def _become(self, path: str, name: str, status: str, unix_s: float) -> None:
+    def _become(self, path: str, name: Sentence, status: str, unix_s: float) -> None:
         told = path in self._steps or (status == FAILURE and path in self._leaves)
         if told and self.statuses.get(path, IDLE) != status:
             self._count += 1
@@ -140,14 +141,14 @@ def _task_of(cell: Row) -> str | None:
 
 def _within(rows: list[Row], recovery: dict[str, str]) -> dict[str, str]:
     """What a recovery of its own came to, as that of the recipe whose rows these are."""
-    place = next((row["path"] for row in rows if row["name"] == RECOVERY), None)
+    place = next((row["path"] for row in rows if row["phase"] == RECOVERY), None)
     moved = {place if path == "root" else f"{place}.{path}": status for path, status in recovery.items()}
     return {row["path"]: moved[row["path"]] for row in rows if row["path"] in moved}
 
 
 def phases(rows: list[Row]) -> list[Row]:
     """The work and the recovery of a recipe; none of a tree that is built otherwise."""
-    return [row for row in rows if row["name"] in PHASES]
+    return [row for row in rows if row["phase"] is not None]
 
 
 def steps(rows: list[Row]) -> list[str]:
@@ -190,9 +191,9 @@ def last_status(row: Row, rows: list[Row], state: str | None, *, recovered: bool
     """What a node that ran came to when its tree ended with the task in `state`."""
     if state == "done":
         return SUCCESS
-    names = {each["path"]: each["name"] for each in rows}
+    phases = {each["path"]: each["phase"] for each in rows}
     way = [row["path"], *ancestors(row["path"])]
-    if recovered and any(names[path] == RECOVERY for path in way):
+    if recovered and any(phases[path] == RECOVERY for path in way):
         return SUCCESS
     return FAILURE if row["path"] == "root" and state == "failed" else HALTED
 
@@ -203,5 +204,5 @@ def ancestors(path: str) -> list[str]:
     return [] if above is None else [above, *ancestors(above)]
 
 
-def _shape(rows: list[Row]) -> list[tuple[str, str]]:
+def _shape(rows: list[Row]) -> list[tuple[str, Sentence]]:
     return [(row["path"], row["name"]) for row in rows]

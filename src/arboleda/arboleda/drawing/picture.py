@@ -89,7 +89,7 @@ def _node(row: dict[str, Any], place: Place) -> list[Box | Line | Word]:
     box = Box(x=x, y=y, width=width, height=HEIGHT, fill=look.fill, edge=look.edge)
     mark = _strokes(look.mark, x + width - MARK + 6, middle - 5, look.edge)
     sign, indent = _sign(row["kind"], x + 7, middle)
-    return [box, *sign, Word(x=x + 7 + indent, y=middle, text=row["name"]), *mark]
+    return [box, *sign, Word(x=x + 7 + indent, y=middle, text=str(row["name"])), *mark]
 
 
 def _sign(kind: str, x: float, middle: float) -> tuple[list[Line | Word], float]:

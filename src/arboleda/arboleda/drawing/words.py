@@ -35,5 +35,5 @@ def dot(rows: Sequence[dict[str, Any]]) -> str:
 def _dot_node(row: dict[str, Any]) -> str:
     look = LOOKS[row["status"]]
     sign = {"selector": "? ", "sequence": "→ ", "parallel": "⇉ "}.get(row["kind"], "")
-    label = (sign + row["name"]).replace("\\", r"\\").replace('"', r"\"")
+    label = (sign + str(row["name"])).replace("\\", r"\\").replace('"', r"\"")
     return f'  "{row["path"]}" [label="{label}", fillcolor="{look.fill}", color="{look.edge}"];'

@@ -13,9 +13,16 @@ from arboleda.core.leaves import Act, Require
 from arboleda.core.messages import Failure, Reason
 from arboleda.core.model import Cell, Path, Pose, StorageCell
 from arboleda.core.recipe import Parameter, Recipe
-from arboleda.core.sentence import Phrase
+from arboleda.core.sentence import Phrase, Sentence
 from arboleda.core.task import Order
 
+STORING = Phrase("step.storage", "storage")
+CYCLE = Phrase("step.palletizing", "palletizing")
+AT_START = Phrase("step.at_start", "at start")
+DRIVE = Phrase("step.drive", "drive path {path}")
+DRIVING = Phrase("doing.drive", "driving path {path}")
+DRIVE_TO = Phrase("step.drive_to", "drive to node {node}")
+DRIVING_TO = Phrase("doing.drive_to", "driving to node {node}")
 NOT_AT_START = Phrase(
     "path.not_at_start", "{mobile} stands on node {node}, path {path} starts at node {start}"
 )
@@ -36,7 +43,7 @@ def storage(order: Order, context: Context) -> Behaviour:
         (cell.home, []),
     ]
     work = [*_drive(context, path), *steps.visit(context, arm, way, visits)]
-    return steps.task(order.recipe, work, context)
+    return steps.task(STORING(), work, context)
 
 
 def palletizing(order: Order, context: Context) -> Behaviour:
@@ -51,7 +58,7 @@ def palletizing(order: Order, context: Context) -> Behaviour:
         (pick, steps.grip(context, arm, pick, check=check)),
         (place, steps.let_go(context, arm, place, check=check)),
     ]
-    return steps.task(order.recipe, steps.visit(context, arm, way, visits), context)
+    return steps.task(CYCLE(), steps.visit(context, arm, way, visits), context)
 
 
 def _as_storage(cell: Cell) -> StorageCell:
@@ -90,14 +97,15 @@ RECIPES = (STORAGE, PALLETIZING)
 
 def _drive(context: Context, path: Path) -> list[Behaviour]:
     cell, start = _as_storage(context.cell), path.nodes[0]
-    follow = _follow(context, f"drive path {path.code}", path.nodes, whole=True)
+    code = path.code
+    follow = _follow(context, DRIVE(path=code), DRIVING(path=code), path.nodes, whole=True)
     known = _node(context)
     if known is None or known == start:
         return [follow]
     if not cell.drive_to_start:
-        return [Require("at start", context, lambda: _not_at_start(context, path)), follow]
+        return [Require(AT_START(), context, lambda: _not_at_start(context, path)), follow]
     way = cell.mobile.grid.route(known, start)
-    return [_follow(context, f"drive to node {start}", way), follow]
+    return [_follow(context, DRIVE_TO(node=start), DRIVING_TO(node=start), way), follow]
 
 
 def _node(context: Context) -> int | None:
@@ -114,14 +122,15 @@ def _not_at_start(context: Context, path: Path) -> Failure | None:
     return Failure(reason=Reason.REJECTED, sentence=sentence)
 
 
-def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool = False) -> Behaviour:
+def _follow(
+    context: Context, title: Sentence, doing: Sentence, nodes: tuple[int, ...], *, whole: bool = False
+) -> Behaviour:
     """Drive over nodes; given anew after a hold or a failure, only over what remains of them.
 
     `whole`: given for the first time all of them, as the robot stands where they begin: the last node that
     it told may be older than the end of its last drive, and a round trip comes by there once more.
     """
     mobile = _as_storage(context.cell).mobile.name
-    doing = name.replace("drive", "driving", 1)
 
     def all_of_it(id: str) -> FollowPath:
         return FollowPath(id=id, robot=mobile, nodes=nodes)
@@ -131,4 +140,4 @@ def _follow(context: Context, name: str, nodes: tuple[int, ...], *, whole: bool 
         rest = nodes[nodes.index(node) :] if node in nodes else nodes
         return FollowPath(id=id, robot=mobile, nodes=rest)
 
-    return Act(name, context, all_of_it if whole else rest_of_it, doing, anew=rest_of_it)
+    return Act(title, context, all_of_it if whole else rest_of_it, doing, anew=rest_of_it)

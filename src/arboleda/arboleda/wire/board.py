@@ -9,6 +9,7 @@ from arboleda.core.commands import Command, Motion, Stop, StopMode
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
+from arboleda.core.sentence import NOTHING, Phrase, Sentence
 
 from . import goals, rejections
 from .copies import Copies
@@ -24,6 +25,8 @@ from .transport import Delivery, Publication
 from .units import from_wire
 
 Message = Publication | Report | Rejection | ForeignCommand
+UNREADABLE = Phrase("message.unreadable", "{topic}: {why}")
+ABSENT = Phrase("message.absent", "telemetry of a board whose conexion is 0")
 AGAIN_S = 0.1  # of a burst of commands of others no report is made between two of the board's own
 
 
@@ -33,7 +36,7 @@ class Counters:
 
     refused: int = 0
     old: int = 0
-    last: str = ""
+    last: Sentence = NOTHING
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +45,7 @@ class Foreign:
 
     refused: int = 0
     obeyed: int = 0
-    last: str = ""
+    last: Sentence = NOTHING
 
 
 class Board:
@@ -99,7 +102,7 @@ class Board:
         self._words = None
         return [rejection, self._word(at)] if command.id else [rejection]
 
-    def told_of(self, at: float, sentence: str, *, refused: bool) -> list[Message]:
+    def told_of(self, at: float, sentence: Sentence, *, refused: bool) -> list[Message]:
         """Somebody else commands the robot of a plant, which is told at once."""
         self._count_foreign(sentence, refused=refused)
         told = [] if refused else [ForeignCommand(at=at, robot=self.robot.name, sentence=sentence)]
@@ -108,7 +111,7 @@ class Board:
         self._foreign_told_at = at
         return [*told, self._word(at)]
 
-    def _count_foreign(self, sentence: str, *, refused: bool) -> None:
+    def _count_foreign(self, sentence: Sentence, *, refused: bool) -> None:
         known, self._words = self._foreign, None
         self._foreign = Foreign(
             refused=known.refused + refused, obeyed=known.obeyed + (not refused), last=sentence
@@ -141,7 +144,7 @@ class Board:
             said = decode(channel, delivery.payload, axes=self._axes)
             self._check(said, delivery)
         except PayloadError as error:
-            self._count(f"{delivery.topic}: {error}")
+            self._count(UNREADABLE(topic=delivery.topic, why=error.sentence))
             return []
         if isinstance(said, Presence):
             return self._presence(delivery.at, said.online)
@@ -192,7 +195,7 @@ class Board:
         if heard is Heard.OLD:
             self.counters = replace(self.counters, old=self.counters.old + 1)
         if heard is Heard.ABSENT:
-            self._count("telemetry of a board whose conexion is 0")
+            self._count(ABSENT())
         if heard in (Heard.LATE, Heard.ABSENT, Heard.OLD):
             return []
         if heard is Heard.REBOOT:
@@ -311,7 +314,7 @@ class Board:
     def _publication(self, channel: Channel, payload: Payload, qos: int = 1) -> Publication:
         return Publication(topic=topic(self.robot.mqtt, channel), payload=encode(payload), qos=qos)
 
-    def _count(self, sentence: str) -> None:
+    def _count(self, sentence: Sentence) -> None:
         self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
 
 

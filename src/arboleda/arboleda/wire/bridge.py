@@ -16,6 +16,7 @@ from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import ForeignCommands, Link, PlantModel
 from arboleda.core.outside import quoted
+from arboleda.core.sentence import as_sentence
 
 from . import epochs, rejections, topics
 from .board import Board, Counters, Message
@@ -150,7 +151,7 @@ class Bridge:
         return out
 
     def _stray(self, sentence: str) -> list[Message]:
-        self._strays = Counters(refused=self._strays.refused + 1, last=sentence)
+        self._strays = Counters(refused=self._strays.refused + 1, last=as_sentence(sentence))
         return []
 
     def _command(self, event: FromPlant, command: Command) -> list[Message]:

@@ -6,24 +6,38 @@ from dataclasses import dataclass
 
 from arboleda.core.commands import Command, FollowPath, MoveJoints
 from arboleda.core.model import Arm, Mobile, Robot
+from arboleda.core.sentence import OWN, Phrase, Sentence
 
 from .goals import FLOAT32_SLACK
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
-SOMEBODY = "another node"
+SOMEBODY = Phrase("foreign.somebody", "another node")
+REJECTED = Phrase("rejection", "{robot}: {command} was refused ({word}): {why}")
+REJECTED_OF = Phrase("rejection_of", "{robot}: {command} of {sender} was refused ({word}): {why}")
+OBEYED = Phrase("foreign.obeyed", "{robot}: {command} of {sender} was obeyed")
+OVERHEARD = Phrase("foreign.overheard", "{robot}: {command} of {sender} was sent to it")
+TAKEN = Phrase(
+    "foreign.taken",
+    "{robot}: its board took a command of another MQTT client (epoca {epoch}, seq {seq})",
+)
+ON_THE_GRID = Phrase(
+    "why.on_the_grid", "a path begins at the robot's node or next to it, and follows the grid"
+)
+NODES = Phrase("why.nodes", "its nodes are 0 to {last}")
+BEYOND = Phrase("why.beyond", "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}")
 WHY = {
-    "no_link": "its board is not heard",
-    "no_stop": "the plant file says that it has no stop",
-    "old_epoch": "it is of another start of the plant than the one that is heard",
-    FOREIGN: "a plant commands this robot (foreign_commands: refuse)",
-    "formato": "it makes no sense for this robot",
-    "limite": "it is beyond a limit of the robot",
-    "paro": "its stop is latched",
-    "sin_ref": "it is not homed",
-    "ocupado": "it is homing",
-    "viejo": "its board has taken a later command",
-    "retenido": "the broker kept it",
+    "no_link": Phrase("why.no_link", "its board is not heard"),
+    "no_stop": Phrase("why.no_stop", "the plant file says that it has no stop"),
+    "old_epoch": Phrase("why.old_epoch", "it is of another start of the plant than the one that is heard"),
+    FOREIGN: Phrase("why.foreign", "a plant commands this robot (foreign_commands: refuse)"),
+    "formato": Phrase("why.formato", "it makes no sense for this robot"),
+    "limite": Phrase("why.limite", "it is beyond a limit of the robot"),
+    "paro": Phrase("why.paro", "its stop is latched"),
+    "sin_ref": Phrase("why.sin_ref", "it is not homed"),
+    "ocupado": Phrase("why.ocupado", "it is homing"),
+    "viejo": Phrase("why.viejo", "its board has taken a later command"),
+    "retenido": Phrase("why.retenido", "the broker kept it"),
 }
 """What the words of bridge and boards mean."""
 
@@ -40,7 +54,7 @@ class Rejection:
     command: str
     id: str
     reason: str
-    sentence: str
+    sentence: Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,45 +63,60 @@ class ForeignCommand:
 
     at: float
     robot: str
-    sentence: str
+    sentence: Sentence
 
 
-def refused(robot: Robot, command: Command, word: str, sender: str, *, by_board: bool) -> str:
-    """The sentence for a command that was refused with a word."""
-    of = f" of {sender}" if sender else ""
+def refused(robot: Robot, command: Command, word: str, sender: str, *, by_board: bool) -> Sentence:
+    """What is said of a command that was refused with a word."""
     why = _why(robot, command, word, by_board=by_board)
-    return f"{robot.name}: {shown(command)}{of} was refused ({word}): {why}"
+    if sender:
+        return REJECTED_OF(robot=robot.name, command=shown(command), sender=sender, word=word, why=why)
+    return REJECTED(robot=robot.name, command=shown(command), word=word, why=why)
 
 
-def obeyed(robot: Robot, command: Command, sender: str) -> str:
-    """The sentence for a command of somebody else that was carried out."""
-    return f"{robot.name}: {shown(command)} of {sender or SOMEBODY} was obeyed"
+def unreadable(robot: Robot, topic: str, why: Sentence) -> Sentence:
+    """What is said of a message on a robot's topic that is no command."""
+    return REJECTED(robot=robot.name, command=topic, word="formato", why=why)
 
 
-def overheard(command: Command, sender: str) -> str:
-    """The sentence for a command of somebody else to a robot that hears everybody."""
-    return f"{command.robot}: {shown(command)} of {sender or SOMEBODY} was sent to it"
+def obeyed(robot: Robot, command: Command, sender: str) -> Sentence:
+    """What is said of a command of somebody else that was carried out."""
+    return OBEYED(robot=robot.name, command=shown(command), sender=sender or SOMEBODY())
 
 
-def taken(robot: Robot, epoch: int, seq: int) -> str:
-    """The sentence for a command that the board has from nobody but another MQTT client."""
-    return f"{robot.name}: its board took a command of another MQTT client (epoca {epoch}, seq {seq})"
+def overheard(command: Command, sender: str) -> Sentence:
+    """What is said of a command of somebody else to a robot that hears everybody."""
+    return OVERHEARD(robot=command.robot, command=shown(command), sender=sender or SOMEBODY())
 
 
-def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> str:
+def taken(robot: Robot, epoch: int, seq: int) -> Sentence:
+    """What is said of a command that the board has from nobody but another MQTT client."""
+    return TAKEN(robot=robot.name, epoch=epoch, seq=seq)
+
+
+def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> Sentence | str:
+    beyond = None
     if word == "limite" and isinstance(command, MoveJoints) and isinstance(robot, Arm):
-        return _beyond(robot, command) or WHY[word]
-    if word == "limite" and isinstance(command, FollowPath) and isinstance(robot, Mobile):
-        if by_board:
-            return "a path begins at the robot's node or next to it, and follows the grid"
-        return f"its nodes are 0 to {robot.grid.size - 1}"
-    return WHY.get(word, word)
+        beyond = _beyond(robot, command)
+    elif word == "limite" and isinstance(command, FollowPath) and isinstance(robot, Mobile):
+        beyond = ON_THE_GRID() if by_board else NODES(last=robot.grid.size - 1)
+    return beyond or (WHY[word]() if word in WHY else word)
 
 
-def _beyond(arm: Arm, command: MoveJoints) -> str:
-    """The first joint beyond its limits; "" where none is."""
+def _beyond(arm: Arm, command: MoveJoints) -> Sentence | None:
+    """The first joint beyond its limits; None where none is."""
     for number, (joint, value) in enumerate(zip(arm.joints, command.q, strict=True), start=1):
         if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
-            allowed = f"{joint.lower:.4g} to {joint.upper:.4g} {joint.unit}"
-            return f"number {number} is {value:.4g}; allowed: {allowed}"
-    return ""
+            lower, upper = joint.lower, joint.upper
+            return BEYOND(number=number, value=value, lower=lower, upper=upper, unit=joint.unit)
+    return None
+
+
+SAID_OF_OTHERS = {
+    phrase.key: phrase
+    for phrase in (
+        *(SOMEBODY, REJECTED, REJECTED_OF, OBEYED, OVERHEARD, TAKEN, ON_THE_GRID, NODES, BEYOND, OWN),
+        *WHY.values(),
+    )
+}
+"""All that a bridge may say of commands of others, by key."""

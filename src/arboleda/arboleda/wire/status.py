@@ -6,23 +6,28 @@ false; what the robot did not say has no key. Keys this version does not know ar
 
 from __future__ import annotations
 
+import json
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState, Robot
 from arboleda.core.outside import quoted
+from arboleda.core.sentence import OWN, Sentence, from_data
 from arboleda.core.view import ERROR, OK, STALE, WARN
 
+from .rejections import SAID_OF_OTHERS
 from .strict import UINT32
 
 _LABEL = "id="
 _NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
+_MOST_DATA = 2000  # characters of what a sentence is made of
+FOREIGN, FOREIGN_SAID = "foreign", "foreign_said"
 _FLAGS = {"true": True, "false": False}
 _SAID = {
     MotionState.STOPPED: (OK, "stopped"),
@@ -51,6 +56,8 @@ def to_status(robot: Robot, report: Report) -> Status:
     values = {
         key: write(getattr(report, name)) for key, (name, _, write) in _ROWS.items() if _said(report, name)
     }
+    if report.foreign is not None:
+        values |= _written(report.foreign)
     return Status(name=_name(robot), hardware_id=robot.mqtt, level=level, message=message, values=values)
 
 
@@ -61,7 +68,7 @@ def from_status(at: float, robot: Robot, status: Status) -> Report:
     said = {
         name: read(key, status.values[key]) for key, (name, read, _) in _ROWS.items() if key in status.values
     }
-    report = Report(at=at, robot=robot.name, **said)  # type: ignore[arg-type]
+    report = Report(at=at, robot=robot.name, foreign=_foreign(status.values), **said)  # type: ignore[arg-type]
     _fits(robot, report)
     return report
 
@@ -103,6 +110,25 @@ def _sentence(key: str, text: str) -> str:
     if not 1 <= len(text) <= _LONGEST or not text.isprintable():
         raise PayloadError(f"{key} is {text[:40]!a}; 1 to {_LONGEST} printable characters are needed")
     return text
+
+
+def _written(sentence: Sentence) -> dict[str, str]:
+    """A sentence as text for whoever reads it, and as what it is made of."""
+    return {FOREIGN: str(sentence), FOREIGN_SAID: json.dumps(sentence.data())}
+
+
+def _foreign(values: Mapping[str, str]) -> Sentence | None:
+    """The sentence on commands of others; its text alone where what it is made of does not say the same."""
+    if FOREIGN not in values:
+        return None
+    text, said = _sentence(FOREIGN, values[FOREIGN]), values.get(FOREIGN_SAID, "")
+    try:
+        made = from_data(json.loads(said), SAID_OF_OTHERS) if len(said) <= _MOST_DATA else None
+        if str(made) == text and made is not None:
+            return made
+    except (ValueError, LookupError, RecursionError):  # as an older bridge, or somebody else, writes it
+        pass
+    return OWN(text=text)
 
 
 def _count(key: str, text: str) -> int:
@@ -160,6 +186,5 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "piece": ("piece", _flag, _write_flag),
     "foreign_refused": ("foreign_refused", _count, str),
     "foreign_obeyed": ("foreign_obeyed", _count, str),
-    "foreign": ("foreign", _sentence, str),
 }
 """Key of the status -> (field of the Report, how it is read, how it is written)."""

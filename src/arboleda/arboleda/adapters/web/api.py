@@ -22,7 +22,7 @@ from . import limits, listing, login, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .nothing_else import NothingElse
-from .plain_json import PlainJson
+from .plain_json import PlainJson, explained
 from .plant_side import PlantSide
 from .schema import ByHand, Done, Sentence, Snapshot, Task, TaskText
 
@@ -83,7 +83,7 @@ def routes(side: PlantSide) -> APIRouter:
     @api.get("/tasks", response_model=list[Task])
     async def tasks() -> JSONResponse:
         """Every open task and those that ended last, in the order of their acceptance."""
-        return PlainJson(side.snapshot()["tasks"])
+        return PlainJson([explained(task) for task in side.snapshot()["tasks"]])
 
     @api.post(
         "/tasks", status_code=202, response_model=Task, responses=REFUSED, openapi_extra=_body(TaskText)
@@ -92,7 +92,7 @@ def routes(side: PlantSide) -> APIRouter:
         """Queue a task; 422 where its text is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
         task = await in_time(side.submit(task_text(await request.body())))
-        return PlainJson(task, status_code=422 if task["state"] == "refused" else 202)
+        return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
@@ -100,7 +100,7 @@ def routes(side: PlantSide) -> APIRouter:
         known = side.find(task_id)
         if known is None:
             raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
-        return PlainJson(known)
+        return PlainJson(explained(known))
 
     verb_route: dict[str, Any] = {
         "response_model": Done,
@@ -123,7 +123,7 @@ def routes(side: PlantSide) -> APIRouter:
         require(request.scope["arboleda.role"], verb.value)
         answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
         if answer.refusal is not None:
-            return PlainJson({"sentence": answer.refusal}, status_code=409)
+            return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         return JSONResponse({"verb": verb.value, "scope": scope})
 
     return api
@@ -172,7 +172,8 @@ async def refuse(_request: Request, error: Exception) -> JSONResponse:
     if isinstance(error, HTTPException):
         return JSONResponse({"sentence": error.detail}, status_code=error.status_code, headers=error.headers)
     headers = {"retry-after": LATER_S} if isinstance(error, QueueFull) else None
-    return JSONResponse({"sentence": str(error)}, status_code=STATUS.get(type(error), 503), headers=headers)
+    said = {"sentence": error.sentence if isinstance(error, ArboledaError) else str(error)}
+    return PlainJson(explained(said), status_code=STATUS.get(type(error), 503), headers=headers)
 
 
 async def own_up(request: Request, error: Exception) -> JSONResponse:

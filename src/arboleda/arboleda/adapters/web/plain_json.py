@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from fastapi.responses import JSONResponse
 
-from arboleda.core.sentence import in_json
+from arboleda.core.sentence import OWN, Sentence, in_json
 
 
 class PlainJson(JSONResponse):
@@ -18,3 +19,10 @@ class PlainJson(JSONResponse):
             content, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=in_json
         )
         return text.encode("utf-8")
+
+
+def explained(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row with what its `sentence` is made of: `key` and `values`; as it is where that is text only."""
+    said = row["sentence"]
+    by_key = isinstance(said, Sentence) and said and said.phrase is not OWN
+    return {**row, **said.data()} if by_key else {**row}

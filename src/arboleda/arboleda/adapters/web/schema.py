@@ -33,9 +33,13 @@ class ByHand(_Asked):
 
 
 class Sentence(_Told):
-    """What went wrong, for a person."""
+    """What went wrong, for a person and as data."""
 
-    sentence: str = Field(examples=["'sis_z' is not a cell; there are sis_a, sis_b, sis_c."])
+    sentence: str = Field(examples=["'sis_z' is not a cell of this plant; there are sis_a, sis_b, sis_c"])
+    key: str | None = Field(
+        default=None, examples=["text.unknown"], description="What it says, whatever its language."
+    )
+    values: dict[str, Any] | None = Field(default=None, description="What stands in it, by name.")
 
 
 class Task(_Told):
@@ -45,6 +49,8 @@ class Task(_Told):
     state: str = Field(description="queued, running, done, failed, cancelled or refused.")
     reason: str | None = None
     sentence: str = ""
+    key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
+    values: dict[str, Any] | None = None
 
 
 class Done(_Told):
@@ -78,6 +84,7 @@ class Cell(_Told):
     paused: bool
     waiting_for: str | None
     not_ready: str | None = Field(description="Why an idle cell would start no task, and what can be done.")
+    blocked_by: str | None = Field(description="The robot whose obstacle that is.")
     held_by: str | None = Field(description="Why the cell is held, and what can be done.")
     advice: list[Advice] = Field(description="What leads it out of its state, in the order to do it.")
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")

@@ -118,7 +118,7 @@ class BridgePart:
             self._report(message)
         elif isinstance(message, Rejection | ForeignCommand):
             if self._seldom.is_due(message.sentence, message.at):
-                LOG.warning(message.sentence)
+                LOG.warning("%s", message.sentence)
             self._tell(message)
         elif self._client is not None:
             self._client.publish(message)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from arboleda.core.model import Path, Pose
 
 from .document import Document, Place, choice
-from .poses import PoseReader
+from .poses import PICKUP, PICKUP_AT, PoseReader
 from .shapes import MAPPING
 
 Pickups = tuple[tuple[str, Pose], ...]  # by exit
@@ -15,7 +15,7 @@ Pickups = tuple[tuple[str, Pose], ...]  # by exit
 
 def default_pickup(reader: PoseReader, cell: Place) -> Pose | None:
     """The pick-up of all exits that have none of their own."""
-    return reader.pose((*cell, "pickup"), "pick-up")
+    return reader.pose((*cell, "pickup"), PICKUP())
 
 
 def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups | None:
@@ -36,7 +36,7 @@ def pickups(reader: PoseReader, cell: Place, paths: Sequence[Path]) -> Pickups |
         elif exits and key.upper() not in exits:
             rule = f"is no exit of a path here, the second character of its code; there is {choice(exits)}"
             document.problem((*place, key), rule, at=(*place, key))
-        found.append((key.upper(), reader.pose((*place, key), f"pick-up {key.upper()}")))
+        found.append((key.upper(), reader.pose((*place, key), PICKUP_AT(exit=key.upper()))))
     _check_every_exit(document, cell, exits, seen)
     whole = tuple((exit, pose) for exit, pose in found if pose)
     return whole if len(whole) == len(found) else None

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count, repeat
 
 from arboleda.core.counting import counted
 from arboleda.core.model import Joint, Pose
+from arboleda.core.sentence import Phrase, Sentence
 
 from .document import Document, Place
 from .robot_models import TO_SI, millimetres
 from .shapes import NUMBER, NUMBERS, PoseShape, PositionShape
 
+HOME = Phrase("pose.home", "home")
+PICKUP = Phrase("pose.pickup", "pick-up")
+PICKUP_AT = Phrase("pose.pickup_at", "pick-up {exit}")
+STATION = Phrase("pose.station", "station {number}")
 ROUNDING = 1e-9  # rad or m, far below a motor step
 
 
@@ -29,13 +34,13 @@ class PoseReader:
     def home(self, place: Place) -> Pose | None:
         """The home pose; nothing is picked up there, so it has no approach height."""
         q = self.position(place)
-        return self.checked("home", q, self._places(place)) if q else None
+        return self.checked(HOME(), q, self._places(place)) if q else None
 
-    def pose(self, place: Place, name: str) -> Pose | None:
+    def pose(self, place: Place, title: Sentence) -> Pose | None:
         """A pose with its approach height."""
         shape = self.document.read(PoseShape, place)
         q = self._spread(shape, place) if shape else None
-        pose = self.checked(name, q, self._places(place)) if q else None
+        pose = self.checked(title, q, self._places(place)) if q else None
         return self.lifted(pose, shape.approach_mm, place) if pose and shape else None
 
     def position(self, place: Place) -> tuple[float, ...] | None:
@@ -43,10 +48,10 @@ class PoseReader:
         shape = self.document.read(PositionShape, place)
         return self._spread(shape, place) if shape else None
 
-    def checked(self, name: str, q: tuple[float, ...], places: tuple[Place, ...]) -> Pose | None:
+    def checked(self, title: Sentence, q: tuple[float, ...], places: tuple[Place, ...]) -> Pose | None:
         """The pose, if each joint is inside its limits; `places` says where each value stands."""
         inside = [self._inside(index, q[index], place) for index, place in enumerate(places)]
-        return Pose(name=name, q=q) if all(inside) else None
+        return Pose(name=str(title), title=title, q=q) if all(inside) else None
 
     def lifted(self, pose: Pose, approach_mm: float, place: Place) -> Pose | None:
         """The pose with the point `approach_mm` over it; 0 is no approach."""
@@ -63,7 +68,7 @@ class PoseReader:
             self.problem(place, reach)
             return None
         above = (*pose.q[:index], min(max(up, joint.lower), joint.upper), *pose.q[index + 1 :])
-        return Pose(name=pose.name, q=pose.q, above=above)
+        return replace(pose, above=above)
 
     def heights(self, place: Place, *, needed: bool) -> tuple[float, ...] | None:
         """`mm` in m, one value for each sliding joint; empty where it may be left out and is."""

@@ -10,7 +10,7 @@ from arboleda.core.model import Palletizing, Pose
 
 from .document import Place, shown
 from .pickups import Pickups, pickup_names
-from .poses import PoseReader
+from .poses import STATION, PoseReader
 from .robot_models import TO_SI
 from .shapes import PalletizingShape, RackShape
 
@@ -52,7 +52,8 @@ def _by_number(reader: PoseReader, place: Place, keys: tuple[str, ...]) -> list[
             rule = f"stations are numbered 0, 1, 2, ... without a gap, at most {MOST}"
             reader.problem((*place, key), f"is not a station here; {rule}", at=(*place, key))
     return [
-        reader.pose((*place, number), f"station {number}") if number in keys else None for number in numbers
+        reader.pose((*place, number), STATION(number=number)) if number in keys else None
+        for number in numbers
     ]
 
 
@@ -80,7 +81,7 @@ def _by_rule(reader: PoseReader, place: Place, home: Pose | None) -> list[Pose |
     for row, column in product(range(len(rows)), range(len(columns))):
         q = (TO_SI["deg"](columns[column]), TO_SI["deg"](rows[row]), *rest)
         places = ((*place, "columns_q1_deg", column), (*place, "rows_q2_deg", row), *others)
-        pose = reader.checked(f"station {len(poses)}", q, places)
+        pose = reader.checked(STATION(number=len(poses)), q, places)
         poses.append(reader.lifted(pose, shape.approach_mm, place) if pose else None)
     return poses
 

@@ -16,6 +16,7 @@ from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import Arm, MotionState, Robot, StorageCell
 from arboleda.core.sentence import Phrase, Sentence
+from arboleda.core.view import IN_RECOVERY
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -93,7 +94,8 @@ def _progress(cell: KnownCell, row: Row) -> Iterator[str]:
     if (row["progress"] is None) is not (done is None) or abs((row["progress"] or 0) - (done or 0)) > EXACT:
         yield f"{cell.name}: {row['progress']} of the work is shown as done, it is {done}"
     runs = [node.name for node in tree.iterate() if node.status is Status.RUNNING]
-    step = (row["step"] or "").removeprefix("recovery: ")
+    said = row["step"]
+    step = str(said.values["step"] if said is not None and said.phrase is IN_RECOVERY else said or "")
     if bool(runs) is not bool(step) or (step and step not in runs):
         yield f"{cell.name}: {row['step']!r} is shown as the step, {runs} run"
 

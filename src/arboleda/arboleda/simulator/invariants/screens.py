@@ -160,7 +160,7 @@ def _tree(cell: KnownCell, rows_: list[Row], now: float) -> Iterator[str]:
         yield f"{cell.name}: {len(rows_)} nodes are shown of a tree with more or less"
     for row in rows_:
         node = _node(tree, row["path"])
-        if (row["name"], row["status"]) != (node.name, node.status.value):
+        if (str(row["name"]), row["status"]) != (node.name, node.status.value):
             yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
         entry = getattr(node, "entry", None)
         if entry is not None and row["parameters"].get("command") != entry.command.id:

@@ -437,9 +437,9 @@ class _Board:
     def _check_told(self, id: str, word: str) -> None:
         """People are told which robot refused what, and why in words."""
         for each in self._rejections:
-            why = each.sentence.partition(f" was refused ({word}): ")[2]
-            if (each.id, each.reason) == (id, word) and each.sentence.startswith(f"{self.robot.name}: "):
-                if not why or why == word:
+            said = each.sentence.values
+            if (each.id, each.reason, said["robot"], said["word"]) == (id, word, self.robot.name, word):
+                if str(said["why"]) in ("", word):
                     self._say(COMMANDS, f"{id} was refused without a reason: {each.sentence}")
                 return
         self._say(COMMANDS, f"{id} was refused as {word}, and people are told {self._rejections}")
