@@ -304,6 +304,15 @@ FOUND = {
         seconds=8,
         faults=NEW_PLANT_IN_A_STALL,
     ),
+    "a stalled bridge seemed to invent that a link was lost, for it refused a stop before it was back": Found(
+        seed=1675,
+        seconds=8,
+        faults=(
+            Fault(kind="broker_restart", at=3.0, seconds=2.4, target="broker"),
+            Fault(kind="bridge_stall", at=3.3, seconds=3.0, target="bridge"),
+            Fault(kind="operator_stop", at=4.0, target="sis_a"),
+        ),
+    ),
 }
 
 

@@ -175,7 +175,7 @@ class _Board:
         self.touched = True  # in this step
         self._late = False
         self._parsed: tuple[bytes, bytes, dict[str, Any]] | None = None  # the last telemetry as it was read
-        self._is_new = True  # a bridge that starts tells that it has no link yet
+        self._was_down = True  # after the step before, or as a bridge that starts tells of it
         self._rejections: list[Rejection] = []  # that the bridge told of it in this step
         self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
         self._is_foreign_new = False  # whether there was one in this step
@@ -192,6 +192,7 @@ class _Board:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
         self._plant_before = belief.plant
         self._up, self._heard_at = belief.heard_at is not None, now
+        self._was_down = not self._up
 
     @property
     def stale_at(self) -> float:
@@ -363,7 +364,7 @@ class _Board:
         self._telling, self._maybe, self._orders = [], [], []
         if self._rejections or self._is_foreign_new:
             self._rejections, self._is_foreign_new = [], False
-        self._is_new = False
+        self._was_down = not self._up
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
         self._fell = self._rose = self._heard_beat = self._is_new_plant = False
@@ -463,7 +464,7 @@ class _Board:
         lost = [each for each in reports if each.state is MotionState.NO_LINK]
         if self._fell and not lost:
             self._say(REPORTS, f"the link to {name} was lost, and nobody was told")
-        if lost and self._up and not self._fell and not self._is_new:
+        if lost and self._up and not (self._fell or self._was_down):
             self._say(REPORTS, f"{name} is reported lost, and is there")
         before = [self._words[2] if self._words else None, *told]
         rest = list(zip(before, told, strict=False))
