@@ -26,7 +26,7 @@ ZONES = (
         "An arm gives its zones back without being seen outside.",
         edit(
             Context.leave_zones,
-            "if held and self._dispatcher.place(self.cell) is not None:",
+            "if held and self._dispatcher.place(self.cell.workspaces[robot]) is not None:",
             "if held:",
         ),
         seeds=SHARED,
@@ -146,7 +146,7 @@ ROBBED = (
     mutant(
         "robbed_task_is_not_done",
         "An effector that opened by itself is looked after only where pieces are checked.",
-        edit(Context.part_gone, "if sentence is None or", "if True or"),
+        edit(Context.part_gone, "if robot is None or", "if True or"),
         weather={"opened_effector": 20.0},
     ),
 )

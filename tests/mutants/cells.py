@@ -17,9 +17,13 @@ from .mutant import SHARED, edit, mutant
 BEAT = "self._beat()\n    self.next_deadline = self._earliest()"
 COLLECT = "out, self.dispatcher.outbox = self.dispatcher.outbox, []"
 STAYS_SHORT = (
-    " or belief.position == entry.origin:\n"
+    " or at < seen.stopped_since + QUIET_S:\n"
+    "        return False\n"
+    "    if not entry.way:\n"
+    "        return True\n"
+    "    if belief.position == entry.origin:\n"
     "        return False  # who never left may have said only the end of an earlier move\n"
-    "    return at"
+    "    return belief"
 )
 PATIENCE_S = 60.0  # enough for what comes to rest at all
 
@@ -43,7 +47,7 @@ TASKS = (
     mutant(
         "no_task_fails_without_a_fault",
         'The late "moving, stopped" of an earlier move counts as a stop short of the goal.',
-        edit(evidence._stays_short, STAYS_SHORT, ":\n        return False\n    return True or at"),
+        edit(evidence._stays_short, STAYS_SHORT, ":\n        return False\n    return True or belief"),
         weather="none",
         seeds=SHARED,
     ),

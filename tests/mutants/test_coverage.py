@@ -19,6 +19,7 @@ from . import campaign
 REASONS_THAT_CANNOT_BE = {
     Reason.INTERNAL: "it is a defect; an invariant forbids it",
     Reason.INTERRUPTED: "only a plant that is asked to end interrupts a task, and nobody here asks it",
+    Reason.PRECONDITION: "no arm or mobile needs a fact before it is told something",
 }
 CELL_ROWS_THAT_CANNOT_BE = {
     (CellState.HOLDING, Cause.STUCK): "it is a defect; an invariant forbids it",
