@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from arboleda.core.commands import Home, MoveJoints, SetEffector
+from arboleda.core.commands import Home, MoveJoints, SetEffector, Stop
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.ledger import State
 from arboleda.core.messages import Reason, Report
@@ -43,6 +43,19 @@ def test_a_halt_is_proven_only_by_what_is_said_after_it(dispatcher: Dispatcher) 
         dispatcher.report(Report(at=at, **STILL), at)
         states.append(move.state)
     assert states == [State.CANCELLING, State.CANCELLED]
+
+
+def test_a_robot_that_is_back_is_stopped_once_and_not_by_a_word_of_only_where_it_stands(
+    latched: Dispatcher,
+) -> None:
+    latched.report(Report(at=100.1, robot="ra1", state=MotionState.NO_LINK), 100.1)
+    latched.outbox.clear()
+    for at in (100.2, 100.3):
+        latched.report(Report(at=at, robot="ra1", q=(0.0, 0.0, 0.0)), at)
+    assert latched.outbox == []
+    for at in (100.4, 100.5):
+        latched.report(Report(at=at, **STILL), at)
+    assert [type(message) for message in latched.outbox] == [Stop]
 
 
 @pytest.mark.parametrize("make", [partial(SetEffector, on=True), Home], ids=["effector", "home"])

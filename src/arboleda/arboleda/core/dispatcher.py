@@ -242,7 +242,7 @@ class Dispatcher:
         before, told = Before.of(belief), self._told(belief)
         was_held, held_since_boot = belief.held_in(belief), belief.held_boot
         self._hear_of_others(report)
-        returned = _returned(belief, report)
+        was_online, new_link = belief.online, _is_new_link(belief, report)
         belief.merge(report)
         if was_held and belief.held_in(belief) is False:
             self._note_opening(belief, rebooted=belief.held_boot != held_since_boot)
@@ -253,7 +253,8 @@ class Dispatcher:
         if astray or evidence.displaced(before, belief, report):
             belief.displaced = True
         self._prove(belief, report, now, before)
-        if returned and report.robot in self.latched:
+        returned = belief.online and not was_online
+        if (returned or new_link) and report.robot in self.latched:  # it may have forgotten its stop
             self._stop(report.robot, StopMode.LATCH)
         if self._told(belief) != told:
             self.version += 1
@@ -509,11 +510,10 @@ def _grips(command: Command) -> bool:
     return isinstance(command, Switch) and command.grips is not None
 
 
-def _returned(belief: Belief, report: Report) -> bool:
-    """Whether a robot that is heard again, or through a new bridge or boot, may have forgotten its stop."""
-    back = not belief.online and report.state is not MotionState.NO_LINK
+def _is_new_link(belief: Belief, report: Report) -> bool:
+    """Whether a robot is heard through a new bridge or boot."""
     new_bridge = report.epoch is not None and report.epoch != belief.epoch
-    return back or new_bridge or (report.boot_id is not None and report.boot_id != belief.boot_id)
+    return new_bridge or (report.boot_id is not None and report.boot_id != belief.boot_id)
 
 
 def _explained(entry: Entry, failure: Failure | None) -> Failure | None:
