@@ -20,34 +20,53 @@ SCREENS = {
     "phone": {"viewport": {"width": 390, "height": 844}, "has_touch": True},
     "desktop": {"viewport": {"width": 1280, "height": 800}},
 }
-Look = Callable[[str], Any]
+JUDGE = """async (options) => {
+  await new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)));
+  const { violations } = await axe.run(document, { preload: false, resultTypes: ["violations"], ...options });
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html}`));
+}"""
+ALL: dict[str, Any] = {}
+OF_COLOURS = {
+    "runOnly": ["color-contrast", "link-in-text-block"]
+}  # the dark changes nothing else: test_looks.py
 
 
-@pytest.fixture(params=itertools.product(LANGUAGES, ("light", "dark"), SCREENS), ids="-".join)
-def look(request: pytest.FixtureRequest, browser: Any) -> Iterator[Look]:
-    """`look(address)`: a page as one of those who look at it has it."""
-    language, scheme, screen = request.param
-    context = browser.new_context(locale=language, color_scheme=scheme, **SCREENS[screen])
+class Eye:
+    """Looks at a page in light and in the dark; what axe finds there is a line each of `violations`."""
 
-    def go(address: str) -> Any:
+    def __init__(self, page: Any) -> None:
+        from axe_playwright_python.base import AXE_SCRIPT
+
+        self.page = page
+        self.violations: list[str] = []
+        page.evaluate(f"() => {{ {AXE_SCRIPT} }}")
+
+    def look(self, where: str) -> None:
+        self._judge(where, ALL)
+        self.page.emulate_media(color_scheme="dark")
+        self._judge(f"{where} in the dark", OF_COLOURS)
+        self.page.emulate_media(color_scheme="light")
+
+    def _judge(self, where: str, options: dict[str, Any]) -> None:
+        self.violations += [f"{where}: {line}" for line in self.page.evaluate(JUDGE, options)]
+
+
+@pytest.fixture(params=itertools.product(LANGUAGES, SCREENS), ids="-".join)
+def eye(request: pytest.FixtureRequest, browser: Any) -> Iterator[Callable[[str], Eye]]:
+    """`eye(address)` is on the page as one of those who look at it has it."""
+    language, screen = request.param
+    context = browser.new_context(locale=language, color_scheme="light", **SCREENS[screen])
+
+    def go(address: str) -> Eye:
         page = context.new_page()
         page.set_default_timeout(PATIENCE_MS)
         page.goto(address)
         connected(page)
         assert page.get_attribute("html", "lang") == language
-        return page
+        return Eye(page)
 
     yield go
     context.close()
-
-
-def found(page: Any, where: str) -> list[str]:
-    """What axe finds, a line each."""
-    from axe_playwright_python.base import AXE_SCRIPT
-
-    page.evaluate("script => window.axe ?? eval(script)", AXE_SCRIPT)
-    rules = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
-    return [f"{where}: {rule['id']}: {node['html']}" for rule in rules for node in rule["nodes"]]
 
 
 @pytest.fixture(scope="module")
@@ -71,46 +90,46 @@ def in_trouble(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield address
 
 
-def test_axe_finds_nothing_on_a_plant_at_work(at_work: str, look: Look) -> None:
-    page = look(at_work)
+def test_axe_finds_nothing_on_a_plant_at_work(at_work: str, eye: Callable[[str], Eye]) -> None:
+    eyes = eye(at_work)
+    page = eyes.page
     page.wait_for_selector('[data-row=done][data-s="done"]', state="attached")
     page.wait_for_selector('[data-row=failed][data-s="failed"]', state="attached")
-    violations = []
     for part in PARTS:
         show(page, part)
-        violations += found(page, part)
+        eyes.look(part)
     show(page, "tasks")
     page.click("[data-row=failed] a")
     page.wait_for_selector("#task g.node.is-failure")
-    violations += found(page, "a task that failed")
+    eyes.look("a task that failed")
     page.click("#task g.node.is-failure[data-path='0']")
     page.wait_for_selector("#node:visible")
-    violations += found(page, "a node of its tree")
+    eyes.look("a node of its tree")
     page.click("#node-close")
     show(page, "cells")
     page.click("[data-choose=sis_b]")
-    violations += found(page, "a cell that nobody gave a task")
+    eyes.look("a cell that nobody gave a task")
     show(page, "panel")
     page.click("[data-scope=sis_a]")
-    violations += found(page, "the verbs of a cell")
+    eyes.look("the verbs of a cell")
     page.click(".verb[data-verb=home] button")
     page.wait_for_selector("dialog button:focus")
-    violations += found(page, "a question")
-    assert not violations, "\n".join(violations)
+    eyes.look("a question")
+    assert not eyes.violations, "\n".join(eyes.violations)
 
 
-def test_axe_finds_nothing_on_a_plant_in_trouble(in_trouble: str, look: Look) -> None:
-    page = look(in_trouble)
+def test_axe_finds_nothing_on_a_plant_in_trouble(in_trouble: str, eye: Callable[[str], Eye]) -> None:
+    eyes = eye(in_trouble)
+    page = eyes.page
     page.click("#stop")
     page.wait_for_selector(".stop-state[data-s=unconfirmed]")
-    violations = []
     for part in PARTS:
         show(page, part)
-        violations += found(page, part)
+        eyes.look(part)
     page.click("[data-tab=panel]")
     page.click("[data-scope=left]")
-    violations += found(page, "the verbs of a cell")
+    eyes.look("the verbs of a cell")
     page.evaluate("window.socket.disconnect()")
     page.wait_for_selector(".silent #connection:not([hidden])")
-    violations += found(page, "no news")
-    assert not violations, "\n".join(violations)
+    eyes.look("no news")
+    assert not eyes.violations, "\n".join(eyes.violations)
