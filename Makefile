@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test ros-test campaign drawn-campaign mutants firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
+.PHONY: run test judge-test ros-test campaign drawn-campaign mutants firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -15,9 +15,13 @@ MUTANTS ?= --sample 400
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
 
-test:  ## run the whole test suite; PYTEST_ARGS="-m 'not system'" for the quick part
+test:  ## run the test suite; PYTEST_ARGS="-m 'not system'" for the quick part
 	@scripts/install test
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest --ignore=tests/mutants $(PYTEST_ARGS)
+
+judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tests/mutants
+	@scripts/install test
+	$(BIN)/python -m pytest tests/mutants $(PYTEST_ARGS)
 
 ros-test:  ## build and test the ROS 2 packages with colcon, in .colcon
 	@scripts/install colcon
