@@ -16,6 +16,7 @@ from arboleda.adapters.web.server import Server
 from arboleda.core import view
 from arboleda.core.errors import StartError
 from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.core.sentence import OWN, Sentence
 from arboleda.dashboard import page
 from arboleda.testing import Rig, shipped
 
@@ -46,6 +47,8 @@ def poisoned(data: Any, key: str = "") -> Any:
         return {name: poisoned(value, name) for name, value in data.items()}
     if isinstance(data, list):
         return [poisoned(value, key) for value in data]
+    if isinstance(data, Sentence) and key in SAID:
+        return OWN(text=f"{data} {EVIL}")
     return f"{data} {EVIL}" if isinstance(data, str) and key in SAID else data
 
 
