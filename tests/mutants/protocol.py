@@ -15,6 +15,10 @@ from arboleda.wire.bridge import Bridge
 
 from .mutant import edit, mutant
 
+TOLD = "self._stop(report.robot, "
+ASKED = f"{TOLD}StopMode(report.robot in self.latched))"
+RETURNED = "if (returned or new_link) and report.robot in self.latched:  # it may have forgotten its stop"
+
 COMMANDS = (
     mutant(
         "no_move_after_its_halt",
@@ -34,15 +38,15 @@ COMMANDS = (
         "A robot that comes back is told whether it is stopped, and so cleared where it is not.",
         edit(
             Dispatcher.report,
-            "if returned and report.robot in self.latched:\n        self._stop(report.robot, StopMode.LATCH)",
-            "if returned:\n        self._stop(report.robot, StopMode(int(report.robot in self.latched)))",
+            f"{RETURNED}\n        {TOLD}StopMode.LATCH)",
+            f"if returned or new_link:\n        {ASKED}",
         ),
     ),
     mutant(
         "one_motion_per_robot",
         "Nobody asks whether the last move has ended, neither who sends nor who recovers.",
         edit(Dispatcher._busy_with, "return self.work_of(command.robot)", "return None"),
-        edit(steps._settle, "not context.open_commands() and ", ""),
+        edit(steps._settle, "return not ending and not any", "return not any"),
         likely=6,
     ),
     mutant(

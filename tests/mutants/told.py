@@ -84,8 +84,8 @@ PEOPLE = (
         "After an effector nobody dwells.",
         edit(
             steps._effector,
-            'Dwell("dwell", context, context.timing.dwell_s)',
-            'Dwell("dwell", context, 0.0)',
+            "Dwell(DWELL(), context, context.timing.dwell_s)",
+            "Dwell(DWELL(), context, 0.0)",
         ),
         weather="none",
     ),
