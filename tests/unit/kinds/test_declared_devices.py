@@ -166,6 +166,26 @@ def test_a_recipe_with_a_wrong_word_fails_its_task_and_nothing_else() -> None:
     assert "has no verb 'opne'" in str(ended.sentence)
 
 
+def test_only_a_step_of_a_device_has_an_answer_to_choose_by() -> None:
+    @recipe("wrong")
+    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.choose(cell.wait(1.0), {"good": []})
+
+    here = Bench(model(wrong))
+    here.submit("bench wrong")
+    assert "choose looks at the answer of a device's step; wait has none" in str(here.outcome().sentence)
+
+
+def test_a_wait_names_the_fact_that_never_came() -> None:
+    @recipe("wait")
+    def waits(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.device("oven").becomes(lid="open", clamped=True, at_most_s=2.0)
+
+    here = Bench(model(waits))
+    here.submit("bench wait")
+    assert str(here.outcome().sentence) == "oven did not say true of clamped within 2 s"
+
+
 def test_a_parameter_says_what_it_can_be() -> None:
     with pytest.raises(RecipeError, match="dose needs an annotation"):
 

@@ -91,18 +91,21 @@ class DeviceKind:
         known = self.verbs.get(verb)
         if known is None:
             raise UseError(f"a {self.name} has no verb {quoted(verb)}; there are {', '.join(self.verbs)}")
-        for name, type in known.parameters:
+        self._check(known, values)
+        in_order = tuple((name, values[name]) for name, _ in known.parameters)
+        return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known)
+
+    def _check(self, verb: DeviceVerb, values: Mapping[str, Value]) -> None:
+        for name, type in verb.parameters:
             if name not in values:
-                raise UseError(f"{verb} of a {self.name} needs {name}: {type.allowed()}")
+                raise UseError(f"{verb.name} of a {self.name} needs {name}: {type.allowed()}")
             if not type.takes(values[name]):
                 given = quoted(values[name])
-                raise UseError(f"{name} of {verb} is {given}; a {self.name} takes {type.allowed()}")
-        extra = [name for name in values if name not in dict(known.parameters)]
-        if extra:
-            takes = ", ".join(name for name, _ in known.parameters) or "none"
-            raise UseError(f"{verb} of a {self.name} has no {quoted(extra[0])}; its values: {takes}")
-        given_values = tuple((name, values[name]) for name, _ in known.parameters)
-        return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=given_values, told=known)
+                raise UseError(f"{name} of {verb.name} is {given}; a {self.name} takes {type.allowed()}")
+        unknown = next((name for name in values if name not in dict(verb.parameters)), None)
+        if unknown is not None:
+            takes = ", ".join(name for name, _ in verb.parameters) or "none"
+            raise UseError(f"{verb.name} of a {self.name} has no {quoted(unknown)}; its values: {takes}")
 
 
 @dataclass(frozen=True, kw_only=True)

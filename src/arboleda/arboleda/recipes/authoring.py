@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from py_trees import common, composites
@@ -110,28 +111,27 @@ class Kit:
         return Handle(device, self._context)
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
-        """What to do for each answer to a step that asks; another answer is a failure."""
-        assert isinstance(asked, Act)
-        context, robot = self._context, asked.name
+        """What to do for each answer to a step that asks a device; another answer is a failure."""
+        if not isinstance(asked, Act):
+            raise RecipeError(f"choose looks at the answer of a device's step; {asked.name} has none")
 
-        def is_answer(value: Value) -> Callable[[], bool]:
-            return lambda: asked.entry is not None and asked.entry.answer == value
+        def answers(value: Value) -> bool:
+            return asked.entry is not None and asked.entry.answer == value
 
         def other() -> Failure | None:
-            answer = asked.entry.answer if asked.entry else None
-            if answer in ways:
-                return context.failure
-            known = tuple(shown(value) for value in ways)
-            told = "nothing" if answer is None else shown(answer)
-            return Failure(
-                reason=Reason.REJECTED, sentence=OTHER_ANSWER(robot=robot, answer=told, known=known)
-            )
+            """A way that was taken and failed has named its cause."""
+            told = asked.entry.answer if asked.entry else None
+            if told in ways:
+                return self._context.failure
+            known = tuple(map(shown, ways))
+            sentence = OTHER_ANSWER(robot=asked.name, answer=_said(told), known=known)
+            return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         branches = [
-            steps.sequence(shown(value), Unless(f"is {shown(value)}", is_answer(value)), *_flat([way]))
+            steps.sequence(shown(value), Unless(f"is {shown(value)}", partial(answers, value)), *_flat([way]))
             for value, way in ways.items()
         ]
-        return steps.selector("choose", *branches, Require("no other answer", context, other))
+        return steps.selector("choose", *branches, Require("no other answer", self._context, other))
 
     def fail(self, sentence: str) -> Step:
         """The task has failed, with this sentence."""
@@ -139,6 +139,7 @@ class Kit:
         return Require("fail", self._context, lambda: failure)
 
     def wait(self, seconds: float) -> Step:
+        """Nothing for so long; the time stands still while the cell is held."""
         return Dwell("wait", self._context, seconds)
 
 
@@ -164,25 +165,37 @@ class Handle:
 
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
-        return Require("says", self._context, lambda: self._not_so(facts))
+        return Require("says", self._context, partial(self._objection, facts))
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
-        robot, (name, value) = self._device.name, next(iter(facts.items()))
-        late = NOT_YET(robot=robot, value=shown(value), fact=name, seconds=at_most_s)
-        failure = Failure(reason=Reason.DEADLINE, sentence=late)
-        arrived = self._context
-        return Await("becomes", arrived, lambda: self._not_so(facts) is None, at_most_s, lambda: failure)
 
-    def _not_so(self, facts: Mapping[str, Value]) -> Failure | None:
-        robot = self._device.name
-        for name, value in facts.items():
-            told = self._context.fact(robot, name)
-            if told != value:
-                says = "nothing" if told is None else shown(told)
-                sentence = NOT_SO(robot=robot, told=says, fact=name, value=shown(value))
-                return Failure(reason=Reason.PRECONDITION, sentence=sentence)
+        def late() -> Failure:
+            name = self._unsaid(facts)[0]
+            sentence = NOT_YET(
+                robot=self._device.name, value=shown(facts[name]), fact=name, seconds=at_most_s
+            )
+            return Failure(reason=Reason.DEADLINE, sentence=sentence)
+
+        return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+
+    def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
+        """Those of the facts that the device does not say."""
+        return [name for name, value in facts.items() if self._told(name) != value]
+
+    def _told(self, fact: str) -> Value | None:
+        return self._context.fact(self._device.name, fact)
+
+    def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
+        for name in self._unsaid(facts):
+            told, value = _said(self._told(name)), shown(facts[name])
+            sentence = NOT_SO(robot=self._device.name, told=told, fact=name, value=value)
+            return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
+
+
+def _said(value: Value | None) -> str:
+    return "nothing" if value is None else shown(value)
 
 
 def _flat(parts: Sequence[Step | Sequence[Step]]) -> list[Step]:
