@@ -34,9 +34,9 @@ class Plant:
         self.app = app
         self.states: dict[str, str] = {}
         self._news: SimpleQueue[Callable[[], None]] = SimpleQueue()
-        self._steps: dict[str, str | None] = {}
+        self._steps: dict[str, str] = {}
         self._robots: dict[str, Snapshot] = {}
-        self._told: set[str] = set()
+        self._told: set[object] = set()
         app.listen(lambda change: self._news.put(lambda: self._changed(change)))
         app.watch(lambda snapshot: self._news.put(lambda: self._stepped(snapshot)))
 
@@ -74,9 +74,9 @@ class Plant:
         self._robots = {robot["name"]: robot for robot in snapshot["robots"]}
         for cell in snapshot["cells"]:
             name, step = cell["name"], cell["step"]
-            if step and step.startswith("recovery") and step != self._steps.get(name):
+            if step and step.key == "step.in_recovery" and str(step) != self._steps.get(name):
                 print(f"  {name}: {step}", flush=True)
-            self._steps[name] = step
+            self._steps[name] = str(step or "")
             for said in {row["feedback"] for row in cell["tree"]} - self._told:
                 self._told.add(said)
                 if isinstance(said, Sentence) and said.key == "command.again":
