@@ -89,7 +89,8 @@ def set_off(bench: Bench, steps: tuple[int, ...]) -> Steps:
     moving = yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
     demand(moving, "it does not begin to move")
     yield Wait(seconds=0.3, until=lambda: False)
-    demand(bench.steps != before or bench.last.q is None, "its joints do not change while it moves")
+    changed = yield Wait(seconds=ANSWER_S, until=lambda: bench.steps != before or bench.last.q is None)
+    demand(changed, "its joints do not change while it moves")
 
 
 def stop(bench: Bench, mode: int, **numbers: int) -> Send:
