@@ -87,6 +87,23 @@ def test_the_form_is_told_with_an_example_that_is_taken(text: str) -> None:
     assert parse(order.text, made) == order
 
 
+def test_two_cells_may_offer_recipes_of_one_name() -> None:
+    model = shipped("sis_a", "sis_b")
+    first, second = model.cells
+    other = replace(PAINT, parameters=PAINT.parameters[:1])
+    both = replace(model, cells=(replace(first, recipes=(PAINT,)), replace(second, recipes=(other,))))
+    assert parse("sis_a paint red 1001", both).values == {"colour": "red", "program": 1001}
+    assert parse("sis_b paint green", both).values == {"colour": "green"}
+
+
+def test_a_cell_that_offers_nothing_is_no_example() -> None:
+    model = shipped("sis_a", "sis_b")
+    first, second = model.cells
+    idle = replace(model, cells=(replace(first, recipes=()), replace(second, recipes=(PAINT,))))
+    with pytest.raises(TextError, match=r"e\.g\. sis_b paint red 1002"):
+        parse("", idle)
+
+
 def test_a_recipe_that_another_cell_offers_is_refused() -> None:
     model = shipped("sis_a", "sis_b")
     first, second = model.cells

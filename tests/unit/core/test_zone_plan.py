@@ -9,7 +9,8 @@ import pytest
 
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import Crossing, Palletizing, Pose, StorageCell
-from arboleda.core.zone_plan import Leg, palletizing_way, plan, plan_problems, storage_way
+from arboleda.core.zone_plan import Leg, plan
+from arboleda.recipes.storage import palletizing_way, plan_problems, storage_way
 from arboleda.testing import shipped
 
 NONE = frozenset[str]()

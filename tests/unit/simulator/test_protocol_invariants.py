@@ -302,7 +302,6 @@ def test_one_motion_per_robot(monkeypatch, bites):
 
 def test_only_legal_command_states(monkeypatch, bites):
     monkeypatch.setitem(TABLE, (State.RUNNING, Feed.ACCEPTED), State.SENT)
-    monkeypatch.setattr("arboleda.core.evidence._work_by_ids", lambda *seen: None)
     watch = Watch()
     watch.task(wait_s=1)
     for _ in range(2):

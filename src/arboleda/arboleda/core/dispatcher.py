@@ -80,9 +80,8 @@ class Dispatcher:
         self.under_way = UnderWay(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
-        self.rejected: dict[
-            str, tuple[int, Sentence | None]
-        ] = {}  # how often a robot refused, and the last why
+        # how often a robot refused a command, and the last why
+        self.rejected: dict[str, tuple[int, Sentence | None]] = {}
         self.interference = Interferences()
         self._count = 0
 
@@ -373,7 +372,7 @@ class Dispatcher:
         return obstacle or self._unmet(command, was=was)
 
     def _busy_with(self, command: Command) -> Entry | None:
-        """What keeps a robot from another command: its work, from a query another one too."""
+        """What keeps a robot from another command: its work; from a query, only another query."""
         if not isinstance(command, Query):
             return self.work_of(command.robot)
         queries = (e for e in self.ledger.of_robot(command.robot) if isinstance(e.command, Query))

@@ -93,17 +93,19 @@ def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None)
 def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]:
     """What the first two words name: the second a recipe, or it is a parameter of the cell's default."""
     second = words[1] if len(words) > 1 else ""
-    asked = {each.name: each for cell in plant.cells for each in cell.recipes if not each.is_default}
-    named = asked.get(_known(second, asked) or "")
-    short = len(words) == 2 and any(each.alone and not each.parameters for each in asked.values())
-    cell = _cell(words[0], plant, named, robots=named.alone is not None if named else short)
+    asked = [each for each in _offered(plant) if not each.is_default]
+    name = _known(second, [each.name for each in asked])
+    meant = [each for each in asked if each.name == name]
+    short = len(words) == 2 and any(each.alone and not each.parameters for each in asked)
+    cell = _cell(words[0], plant, robots=any(each.alone for each in meant) if meant else short)
     default = next((each for each in cell.recipes if each.is_default), None)
-    if named is not None and named in cell.recipes:
+    named = next((each for each in meant if each in cell.recipes), None)
+    if named is not None:
         return cell, named
     if not second and default is None:
         there = tuple(each.name for each in cell.recipes)
         raise TextError(NO_RECIPE(cell=cell.name, there=there, form=_form(plant)))
-    if default is None or named is not None:
+    if default is None or meant:
         raise TextError(_unknown(RECIPE(), second, [each.name for each in cell.recipes], cell.name))
     first = default.parameters[0] if default.parameters else None
     if short and first is not None and _known(second, first.words(cell)) is None:
@@ -143,7 +145,7 @@ def _split_id(words: list[str]) -> tuple[list[str], str | None]:
     return words[:-1], task_id
 
 
-def _cell(word: str, plant: PlantModel, recipe: Recipe | None, *, robots: bool) -> Cell:
+def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
     by_name = {cell.name: cell for cell in plant.cells}
     roles = dict.fromkeys(each.alone for each in _offered(plant) if each.alone) if robots else {}
     for role in roles:
@@ -161,9 +163,9 @@ def _offered(plant: PlantModel) -> list[Recipe]:
 
 
 def _form(plant: PlantModel) -> Sentence:
-    """How tasks are written here, with an example of the first cell's."""
+    """How tasks are written here, with an example of the first cell that offers something."""
     forms = list(dict.fromkeys(each.form() for each in _offered(plant)))
-    cell = plant.cells[0]
+    cell = next(cell for cell in plant.cells if cell.recipes)
     recipe = next(each for each in _offered(plant) if each in cell.recipes)
     shown = example(cell, recipe).text
     if len(forms) == 1:

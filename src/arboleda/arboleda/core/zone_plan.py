@@ -1,4 +1,4 @@
-"""Which shared zones a way of the arm needs, and from where to where it must hold them."""
+"""Which shared zones a way of a robot needs, and from where to where it must hold them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from .errors import ConfigError
-from .model import Pose, StorageCell, Workspace
+from .model import Pose, Workspace
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,16 +22,6 @@ class Leg:
     zones: frozenset[str]
 
 
-def storage_way(cell: StorageCell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
-    """The poses of the storage recipe for an arm that stands at `start`."""
-    return (start, pickup, station, cell.home)
-
-
-def palletizing_way(cell: StorageCell, start: Pose) -> tuple[Pose, ...]:
-    """The poses of the palletizing recipe for an arm that stands at `start`; it stays at the last one."""
-    return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
-
-
 def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
     """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way.
 
@@ -39,7 +29,7 @@ def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
     """
     for pose in (way[0], way[-1]):
         if pose.zones:
-            raise ConfigError((f"{space.robot.name}: {_lying(pose)}, so no way may start or end there",))
+            raise ConfigError((f"{space.robot.name}: {lying(pose)}, so no way may start or end there",))
     free = [index for index, pose in enumerate(way) if not pose.zones]
     left = max((index for index, pose in enumerate(way) if pose.name != space.home.name), default=0)
     return [
@@ -56,18 +46,6 @@ def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> f
     return _zones(space, way, back) | _crossed(space, moves)
 
 
-def plan_problems(cell: StorageCell) -> dict[str, str]:
-    """Why no recipe of the cell can be planned: a sentence by the name of the pose that is in the way."""
-    problems = {}
-    if (place := cell.palletizing.place).zones:
-        rule = "palletizing ends and waits there, so it must be outside all zones"
-        problems[place.name] = f"cell {cell.name}: {_lying(place)}; {rule}"
-    if cell.home.zones:
-        rule = "the arm waits there, so it must be outside all zones"
-        problems[cell.home.name] = f"cell {cell.name}: {_lying(cell.home)}; {rule}"
-    return problems
-
-
 def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
     """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
     recovery = (back, space.home) if back else (space.home,)
@@ -82,5 +60,6 @@ def _crossed(space: Workspace, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[
     return frozenset[str]().union(*(each.zones for each in space.crossings if {each.a, each.b} in ends))
 
 
-def _lying(pose: Pose) -> str:
+def lying(pose: Pose) -> str:
+    """Which zones a pose lies in, for a sentence."""
     return f"{pose.name} lies in zone {', '.join(sorted(pose.zones))}"

@@ -36,7 +36,7 @@ def storage(order: Order, context: Context) -> Behaviour:
     cell = _as_storage(context.cell)
     arm, check = cell.arm.name, cell.piece_check
     pickup = context.back[arm] = cell.pickup_of(path)
-    way = zone_plan.storage_way(cell, pickup, station, context.standing(arm))
+    way = storage_way(cell, pickup, station, context.standing(arm))
     visits = [
         (pickup, steps.grip(context, arm, pickup, check=check)),
         (station, steps.let_go(context, arm, station, check=check)),
@@ -52,13 +52,35 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     arm, check = cell.arm.name, cell.piece_check
     pick, place = cell.palletizing.pick, cell.palletizing.place
     context.back[arm] = cell.pickup
-    way = zone_plan.palletizing_way(cell, context.standing(arm))
+    way = palletizing_way(cell, context.standing(arm))
     visits = [
         (cell.home, []),
         (pick, steps.grip(context, arm, pick, check=check)),
         (place, steps.let_go(context, arm, place, check=check)),
     ]
     return steps.task(CYCLE(), steps.visit(context, arm, way, visits), context)
+
+
+def storage_way(cell: StorageCell, pickup: Pose, station: Pose, start: Pose) -> tuple[Pose, ...]:
+    """The poses of the storage recipe for an arm that stands at `start`."""
+    return (start, pickup, station, cell.home)
+
+
+def palletizing_way(cell: StorageCell, start: Pose) -> tuple[Pose, ...]:
+    """The poses of the palletizing recipe for an arm that stands at `start`; it stays at the last one."""
+    return (start, cell.home, cell.palletizing.pick, cell.palletizing.place)
+
+
+def plan_problems(cell: StorageCell) -> dict[str, str]:
+    """Why no recipe of the cell can be planned: a sentence by the name of the pose that is in the way."""
+    problems = {}
+    if (place := cell.palletizing.place).zones:
+        rule = "palletizing ends and waits there, so it must be outside all zones"
+        problems[place.name] = f"cell {cell.name}: {zone_plan.lying(place)}; {rule}"
+    if cell.home.zones:
+        rule = "the arm waits there, so it must be outside all zones"
+        problems[cell.home.name] = f"cell {cell.name}: {zone_plan.lying(cell.home)}; {rule}"
+    return problems
 
 
 def _as_storage(cell: Cell) -> StorageCell:

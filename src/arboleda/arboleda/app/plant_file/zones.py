@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from arboleda.core.model import Crossing, Pose, StorageCell
-from arboleda.core.zone_plan import plan_problems
+from arboleda.recipes.storage import plan_problems
 
 from .alike import confusions, with_alike_crossings
 from .document import Document, Place, nearest, shown
