@@ -75,7 +75,8 @@ def operator(arboleda: Callable[..., Any], quick: tuple[str, ...]) -> Operator:
     return at_work(arboleda, quick)
 
 
-def test_stop_clear_reset_and_work_again(operator: Operator) -> None:
+def test_stop_clear_reset_and_work_again(arboleda: Callable[..., Any], tmp_path: Path) -> None:
+    operator = at_work(arboleda, plant_at(tmp_path, 10))  # slow: the stop comes before the arm has a part
     assert operator.ask("stop") == (0, "done: stop (software), the whole plant")
     operator.up.wait_for("(stopped)")
     assert "failed    sis_a 0B 7" in operator.up.output
