@@ -26,10 +26,10 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.app.config import load
-from arboleda.core import view
 from arboleda.core.commands import Command, FollowPath, MoveJoints
 from arboleda.core.messages import Report
 from arboleda.core.model import PlantModel
+from arboleda.views import view
 
 from . import plants
 from .obedient import Yard, command_in, is_over

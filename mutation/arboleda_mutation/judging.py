@@ -21,7 +21,8 @@ TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
 FOLDERS = {
     TESTS: (str(PACKAGE), "wire_vectors"),
     SIMULATOR: tuple(
-        str(PACKAGE / each) for each in ("core", "recipes", "wire", "sim", "simulator", "app", "plants")
+        str(PACKAGE / each)
+        for each in ("core", "kinds", "recipes", "views", "wire", "sim", "simulator", "app", "plants")
     ),
 }
 LIBRARIES = ("fastapi", "httpx", "PIL", "py_trees", "pydantic", "rich.progress", "typer", "yaml")

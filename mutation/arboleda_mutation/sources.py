@@ -12,7 +12,7 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
-MUTATED = ("core", "recipes", "wire")
+MUTATED = ("core", "recipes", "views", "wire")
 
 
 class Sources:

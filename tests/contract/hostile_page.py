@@ -13,12 +13,12 @@ from arboleda.adapters.web.auth import Door
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
-from arboleda.core import view
 from arboleda.core.errors import StartError
 from arboleda.core.messages import OperatorAnswer, Verb
 from arboleda.core.sentence import OWN, Sentence
 from arboleda.dashboard import page
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
 
 EVIL = sys.argv[1]
 SAID = {

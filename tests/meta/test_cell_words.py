@@ -12,11 +12,12 @@ from rich.console import Console
 
 from arboleda.adapters.web.schema import Cell
 from arboleda.app.screen import table
-from arboleda.core import cell, operator, view
+from arboleda.core import cell, operator
 from arboleda.core.cell_states import CellState
 from arboleda.core.sentence import Phrase
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
 
 ROOT = Path(__file__).parents[2]
 STANDINGS = ("blocked", "paused")

@@ -30,6 +30,7 @@ def third_party(path: Path) -> set[str]:
         ("drawing", set()),
         ("wire", set()),
         ("sim", set()),
+        ("views", {"py_trees"}),
     ],
 )
 def test_these_layers_need_no_other_package(layer: str, allowed: set[str]) -> None:

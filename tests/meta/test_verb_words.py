@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.core.messages import Verb
-from arboleda.core.verb_words import ABOUT
+from arboleda.views.verb_words import ABOUT
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/operate.md"
 

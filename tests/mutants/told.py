@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core import advisor, evidence, steps, view
+from arboleda.core import advisor, evidence, steps
 from arboleda.core.advisor import Advisor
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
@@ -11,6 +11,7 @@ from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.recipes import storage
+from arboleda.views import view
 from arboleda.wire import status
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge

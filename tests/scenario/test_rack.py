@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core import twin_view
 from arboleda.core.messages import Fact, TaskState, Verb
 from arboleda.testing import Rig, shipped
+from arboleda.views import twin_view
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from arboleda.core.model import Evidence
-from arboleda.core.view import ERROR, OK, STALE
+from arboleda.wire.status import ERROR, OK, STALE
 
 from .conftest import Chain
 

@@ -17,7 +17,6 @@ from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
 
 from arboleda.app import view_text
 from arboleda.app.seldom import Seldom
-from arboleda.core import view
 from arboleda.core.commands import Command
 from arboleda.core.errors import ArboledaError, PayloadError
 from arboleda.core.messages import (
@@ -33,6 +32,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
 from arboleda.core.sentence import in_json
+from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
 

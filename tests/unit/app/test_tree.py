@@ -10,11 +10,11 @@ from typer.testing import CliRunner, Result
 
 from arboleda.app.cli import cli
 from arboleda.app.client import PlantClient
-from arboleda.core import view
 from arboleda.core.errors import ArboledaError
 from arboleda.core.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
+from arboleda.views import view
 
 BEGINS = {"ascii": b"{o} storage", "svg": b"<svg", "png": b"\x89PNG", "dot": b"digraph"}
 

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from arboleda.app import verbs
 from arboleda.app.cli import cli
 from arboleda.core.messages import Verb
-from arboleda.core.verb_words import ABOUT
+from arboleda.views.verb_words import ABOUT
 
 NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE]
 PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]

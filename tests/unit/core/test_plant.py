@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import leaves, view
+from arboleda.core import leaves
 from arboleda.core.cell_states import CellState
 from arboleda.core.commands import FollowPath, MoveJoints, SetEffector, Stop, StopMode
 from arboleda.core.messages import (
@@ -23,6 +23,7 @@ from arboleda.core.messages import (
 from arboleda.core.model import Evidence, MotionState, Timing
 from arboleda.core.plant import Plant
 from arboleda.testing import shipped
+from arboleda.views import view
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core import view
 from arboleda.core.commands import MoveJoints
 from arboleda.core.messages import OperatorRequest, Verb
 from arboleda.core.model import Evidence
+from arboleda.views import view
 
 
 def test_a_screen_is_told_that_a_step_is_over(hand: Callable[[Evidence], Any]) -> None:

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import view
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.story import Story
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
 
 LINKS: dict[str, Any] = {"broker": {"address": "here:1883", "connected": True}, "ros": None, "refused": {}}
 

@@ -18,7 +18,7 @@ import arboleda
 from arboleda.core.sentence import Phrase, Sentence
 from arboleda.dashboard.wording import LANGUAGES, tree_of, words
 
-TOLD_BY = ("core", "recipes", "wire", "app.parts", "app.plant_file", "dashboard")
+TOLD_BY = ("core", "recipes", "views", "wire", "app.parts", "app.plant_file", "dashboard")
 OTHERS = LANGUAGES[1:]
 
 

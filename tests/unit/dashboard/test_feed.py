@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import view
 from arboleda.dashboard.feed import BEHIND, Feed
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
 
 
 class Side:

@@ -14,10 +14,10 @@ from arboleda.core.ledger import State
 from arboleda.core.messages import Reason, TaskState, Verb
 from arboleda.core.plant import Plant
 from arboleda.core.sentence import Sentence
-from arboleda.core.tree_view import KINDS
-from arboleda.core.view import IN_RECOVERY
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, flat, tree_of, words
 from arboleda.recipes import storage
+from arboleda.views.tree_view import KINDS
+from arboleda.views.view import IN_RECOVERY
 
 ENGLISH = LANGUAGES[0]
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core import view
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Reason, TaskState, Verb
 from arboleda.core.model import Evidence
 from arboleda.kinds.declared import UseError
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
+from arboleda.views import view
 
 from .lab import EYE, OVEN, Bench, bake, careless, model
 

@@ -23,7 +23,7 @@ class Format(str, Enum):
 
 
 def draw(rows: Rows, format: Format | str, *, statuses: bool = False) -> bytes:
-    """A tree (rows of `core/tree_view.py`) as the content of a file; only ASCII leaves statuses out."""
+    """A tree (rows of `views/tree_view.py`) as the content of a file; only ASCII leaves statuses out."""
     return FORMATS[Format(format)](rows, statuses)
 
 

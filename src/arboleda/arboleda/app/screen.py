@@ -17,12 +17,12 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.core import view
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.core.outside import plain
 from arboleda.core.sentence import Sentence
+from arboleda.views import view
 
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text

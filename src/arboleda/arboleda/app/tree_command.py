@@ -8,10 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.core import text, tree_view
+from arboleda.core import text
 from arboleda.core.errors import ArboledaError
 from arboleda.core.model import Cell, PlantModel
 from arboleda.core.plant import Plant
+from arboleda.views import tree_view
 
 from . import config
 from .draw import Format, draw

@@ -10,7 +10,7 @@ import typer
 
 from arboleda.core.messages import Verb
 from arboleda.core.outside import plain
-from arboleda.core.verb_words import ABOUT, PLANT, VerbWords
+from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
 from .where import PlantFile, StateFolder, client
 

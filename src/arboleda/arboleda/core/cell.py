@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import advice, steps, tree_view
+from . import advice, steps
 from .advice import Advice
 from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
@@ -21,7 +21,7 @@ from .model import Cell
 from .recipe import Build
 from .sentence import Phrase, Sentence
 from .task import Task
-from .tree_run import TreeRun
+from .tree_run import TreeRun, path_of
 
 
 class CellRun:
@@ -386,7 +386,7 @@ class CellRun:
         if task is None:
             return
         if found is not None:
-            task.fail(found, tree_view.path_of(leaf) if leaf else None)
+            task.fail(found, path_of(leaf) if leaf else None)
         if self._cancelling:
             self._finish(task, TaskState.CANCELLED)
         else:

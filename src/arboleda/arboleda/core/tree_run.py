@@ -94,3 +94,12 @@ class TreeRun:
 
     def _tell(self, error: Exception) -> None:
         self._context.notify(InternalError(cell=self._context.cell.name, error=error))
+
+
+def path_of(node: Behaviour) -> str:
+    """The path of a node in its tree, as tasks and screens name it: child numbers, e.g. `0.2.1`."""
+    numbers = []
+    while node.parent is not None:
+        numbers.append(node.parent.children.index(node))
+        node = node.parent
+    return ".".join(str(number) for number in reversed(numbers)) or "root"

@@ -17,13 +17,13 @@ class PlantSide(Protocol):
     """The plant as seen from the page; no call blocks, all data is plain and never changed by the page."""
 
     def snapshot(self) -> Snapshot:
-        """`core.view.snapshot` as of now."""
+        """`views.view.snapshot` as of now."""
 
     def layout(self) -> Layout:
-        """`core.view.layout`: what never changes."""
+        """`views.view.layout`: what never changes."""
 
     def positions(self) -> dict[str, Any]:
-        """`core.twin_view.positions` as of now, and `now` on the plant's clock."""
+        """`views.twin_view.positions` as of now, and `now` on the plant's clock."""
 
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""

@@ -1,1 +1,1 @@
-"""Drawings of trees from their rows, as `core/tree_view.py` and the status of a plant have them; pure."""
+"""Drawings of trees from their rows, as `views/tree_view.py` and the status of a plant have them; pure."""

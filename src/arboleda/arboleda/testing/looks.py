@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from arboleda.core import view
 from arboleda.core.model import Arm
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.world import World
+from arboleda.views import view
 
 MM_PER_M = 1000.0
 Joints = tuple[float, ...]

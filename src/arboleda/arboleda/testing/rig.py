@@ -7,10 +7,10 @@ from typing import Any
 
 from py_trees.common import Status
 
-from arboleda.core import view
 from arboleda.core.messages import Event, OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import PlantModel
 from arboleda.simulator.world import PLANT, World
+from arboleda.views import view
 from arboleda.wire.transport import Publication
 
 

@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from arboleda.core import view
 from arboleda.core.messages import Verb
 from arboleda.core.model import PlantModel
 from arboleda.core.recipe import Build
@@ -19,6 +18,7 @@ from arboleda.simulator.people import Attendant
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.watched import Broken, Watched
 from arboleda.simulator.world import World
+from arboleda.views import view
 
 from . import asked, looks, seeds, wording
 from .desk import Desk, Handle

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterable
 
 from arboleda.app.simulate.words import told
-from arboleda.core import view
 from arboleda.core.counting import counted
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.run import Result
 from arboleda.simulator.watched import Broken, Watched
+from arboleda.views import view
 
 from .desk import Handle
 from .seeds import Seeds

@@ -17,11 +17,11 @@ from arboleda.core.messages import Report
 from arboleda.core.model import MotionState, Robot
 from arboleda.core.outside import quoted
 from arboleda.core.sentence import OWN, Sentence, from_data
-from arboleda.core.view import ERROR, OK, STALE, WARN
 
 from .rejections import SAID_OF_OTHERS
 from .strict import UINT32
 
+OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 _LABEL = "id="
 _NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)

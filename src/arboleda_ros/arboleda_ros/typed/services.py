@@ -8,9 +8,9 @@ from arboleda_interfaces.msg import Task
 from arboleda_interfaces.srv import CellCommand, SubmitTask
 from rclpy.node import Node
 
-from arboleda.core import view
 from arboleda.core.messages import TaskState, Verb
 from arboleda.core.outside import quoted
+from arboleda.views import view
 
 from ..asking import Asker, NoAnswer
 from . import values

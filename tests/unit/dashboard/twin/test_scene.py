@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.model import Crossing, PlantModel
-from arboleda.core.places import places
 from arboleda.dashboard.twin import kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.scene import MARGIN, scene
 from arboleda.testing import shipped
+from arboleda.views.places import places
 
 
 def zoned() -> PlantModel:

@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import twin_view
 from arboleda.core.messages import Report, TaskRequest, Verb
 from arboleda.core.model import Evidence, MotionState, PlantModel
-from arboleda.core.places import places
 from arboleda.core.plant import Plant
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.testing import Rig, shipped
+from arboleda.views import twin_view
+from arboleda.views.places import places
 
 
 class Watched:

@@ -11,7 +11,7 @@ from fastapi import APIRouter, FastAPI
 from fastapi.responses import HTMLResponse, JSONResponse
 
 from arboleda.core.messages import Verb
-from arboleda.core.verb_words import ABOUT
+from arboleda.views.verb_words import ABOUT
 
 from .plain_page import page
 

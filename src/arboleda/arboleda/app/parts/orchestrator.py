@@ -12,7 +12,6 @@ from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.store import Store
-from arboleda.core import twin_view, view
 from arboleda.core.commands import Command, Stop, StopMode
 from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import (
@@ -35,6 +34,7 @@ from arboleda.core.messages import (
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.sentence import Phrase, as_sentence
+from arboleda.views import twin_view, view
 
 from ..loop import Loop
 from ..memory import remembered

@@ -8,8 +8,8 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from arboleda.core import view
 from arboleda.core.model import PlantModel
+from arboleda.views import view
 
 from ..urdf import robot_urdf
 from .web import Side

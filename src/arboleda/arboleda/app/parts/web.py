@@ -18,9 +18,9 @@ from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
 from arboleda.adapters.web.server import DEFAULT_PORT, Server
-from arboleda.core import view
 from arboleda.core.errors import QueueFull
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.views import view
 
 from .. import tokens
 from ..web_options import WebOptions

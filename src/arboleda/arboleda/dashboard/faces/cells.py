@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.view import standing
 from arboleda.drawing.layout import parent
+from arboleda.views.view import standing
 
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases

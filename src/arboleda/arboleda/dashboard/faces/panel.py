@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from arboleda.core.view import standing
+from arboleda.views.view import standing
 
 from . import Face
 from .cells import trouble

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.view import standing
+from arboleda.views.view import standing
 
 from . import Face, cells, links, panel, stop, tasks, timeline
 from .moment import Moment

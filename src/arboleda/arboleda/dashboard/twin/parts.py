@@ -30,7 +30,7 @@ class Part:
         self._shown: Row | None = None
 
     def see(self, part: Row | None, arm: Row, stored: list[int]) -> Row | None:
-        """`part` as `core.twin_view.part` has it, `arm` as its Track draws it, the stations with a part."""
+        """`part` as `views.twin_view.part` has it, `arm` as its Track draws it, the stations with a part."""
         if part is not None:
             self._shown = self._placed(part["q"]) if part["at"] == "pose" else {"sure": False, **part}
         elif self._shown is not None and self._shown["at"] == "arm" and self._at_one_of(stored, arm):

@@ -19,7 +19,7 @@ STEPS = 8  # points on a move that crosses a zone
 
 
 def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
-    """`places` as `core.places` has them, and a body for each robot."""
+    """`places` as `views.places` has them, and a body for each robot."""
     robots = {robot["name"]: robot for robot in places["robots"]}
     cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
     zones = [_zone(zone, robots, drawings) for zone in places["zones"]]

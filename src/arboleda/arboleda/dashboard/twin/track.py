@@ -18,7 +18,7 @@ MEASURED, ESTIMATED, STALE, UNHOMED, UNKNOWN = KINDS = (
 
 
 class Track:
-    """What to draw of a robot, from its row of `core.twin_view.positions` and the plant's time, s.
+    """What to draw of a robot, from its row of `views.twin_view.positions` and the plant's time, s.
 
     That is {kind, q, estimate, goal, age}: `q` the last report and nothing else, `estimate` where it may be
     by now, `goal` where its open move ends, `age` whole s since the last report of a robot that is silent.

@@ -14,7 +14,7 @@ Row = dict[str, Any]
 
 
 class Twin:
-    """`places` as `core.places` has them, and each robot's body."""
+    """`places` as `views.places` has them, and each robot's body."""
 
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         self.scene = scene(places, drawings)

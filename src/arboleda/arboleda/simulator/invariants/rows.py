@@ -16,7 +16,7 @@ from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import Arm, MotionState, Robot, StorageCell
 from arboleda.core.sentence import Phrase, Sentence
-from arboleda.core.view import IN_RECOVERY
+from arboleda.views.view import IN_RECOVERY
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand

@@ -8,12 +8,12 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core import places, twin_view, view
 from arboleda.core.cell_states import CellState
 from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.errors import PayloadError
 from arboleda.core.ledger import OPEN, State
 from arboleda.core.model import Arm, Mobile
+from arboleda.views import places, twin_view, view
 from arboleda.wire import status
 
 from ..recorded.cells import KnownCell

@@ -6,14 +6,14 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from .belief import Belief
-from .cell import CellRun
-from .commands import FollowPath, MoveJoints, SetEffector
-from .grips import Grip
-from .leaves import Act
-from .ledger import OPEN, Entry, State
-from .model import StorageCell
-from .plant import Plant
+from arboleda.core.belief import Belief
+from arboleda.core.cell import CellRun
+from arboleda.core.commands import FollowPath, MoveJoints, SetEffector
+from arboleda.core.grips import Grip
+from arboleda.core.leaves import Act
+from arboleda.core.ledger import OPEN, Entry, State
+from arboleda.core.model import StorageCell
+from arboleda.core.plant import Plant
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})

@@ -8,23 +8,25 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import places, steps, tree_view, twin_view
-from .advice import Advice, Hand, in_words, sentence
-from .belief import Belief
-from .cell import CellRun
-from .cell_states import CellState
-from .leaves import title_of
-from .ledger import Entry
-from .messages import OperatorRequest, TaskChanged, Verb
-from .model import PlantModel, StorageCell
-from .operator import OperatorAct
-from .plant import Plant
-from .sentence import BOTH, NOTHING, Phrase, Sentence
-from .task import Task
+from arboleda.core import steps
+from arboleda.core.advice import Advice, Hand, in_words, sentence
+from arboleda.core.belief import Belief
+from arboleda.core.cell import CellRun
+from arboleda.core.cell_states import CellState
+from arboleda.core.leaves import title_of
+from arboleda.core.ledger import Entry
+from arboleda.core.messages import OperatorRequest, TaskChanged, Verb
+from arboleda.core.model import PlantModel, StorageCell
+from arboleda.core.operator import OperatorAct
+from arboleda.core.plant import Plant
+from arboleda.core.sentence import BOTH, NOTHING, Phrase, Sentence
+from arboleda.core.task import Task
+from arboleda.wire.status import ERROR, OK, STALE, WARN
+
+from . import places, tree_view, twin_view
 
 IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
-OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
 OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
 OF_CELLS = (

@@ -10,9 +10,9 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from .leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless, title_of
-from .sentence import NOTHING, Sentence
-from .steps import PHASES
+from arboleda.core.leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless, title_of
+from arboleda.core.sentence import NOTHING, Sentence
+from arboleda.core.steps import PHASES
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
@@ -23,15 +23,6 @@ def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     _add(tree, "", now, found)
     return found
-
-
-def path_of(node: Behaviour) -> str:
-    """The path of a node in its tree, as `rows` names it."""
-    numbers = []
-    while node.parent is not None:
-        numbers.append(node.parent.children.index(node))
-        node = node.parent
-    return ".".join(str(number) for number in reversed(numbers)) or "root"
 
 
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:

@@ -1,18 +1,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core import tree_view, view
 from arboleda.core.messages import Verb
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.sentence import in_json
 from arboleda.testing import Rig, shipped
+from arboleda.views import tree_view, view
+
+from ..core.conftest import Hand
 
 
 @pytest.fixture
@@ -126,8 +127,8 @@ def test_a_robot_says_how_often_it_reports(rig: Rig) -> None:
     assert robot(rig.snapshot(), "ra1")["telemetry_hz"] is None
 
 
-def test_refused_commands_are_counted_with_the_last_reason(hand: Callable[[Evidence], Any]) -> None:
-    plant = hand(Evidence.IDS)
+def test_refused_commands_are_counted_with_the_last_reason() -> None:
+    plant = Hand(shipped(evidence=Evidence.IDS))
     plant.awake()
     plant.submit("sis_a 0B 7")
     plant.wait(0.2)

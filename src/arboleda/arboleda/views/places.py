@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell, Workspace
+from arboleda.core.model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell, Workspace
 
 Row = dict[str, Any]
 

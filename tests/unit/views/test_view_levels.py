@@ -8,11 +8,11 @@ import pytest
 from py_trees.behaviours import Failure, Running, Success
 from py_trees.composites import Selector, Sequence
 
-from arboleda.core import view
 from arboleda.core.messages import TaskState, Verb
 from arboleda.core.model import MotionState
-from arboleda.core.view import ERROR, OK, STALE, WARN
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
+from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 TASK = "sis_a 0B 7"
 
