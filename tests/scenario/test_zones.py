@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -28,6 +29,7 @@ zones:
 """
 CELLS = ("sis_a", "sis_b", "sis_c")
 WAIT_S = 40.0  # zone_wait_s of every cell
+HASTE_S = 1.0  # the same, of hasty cells
 Plants = Callable[..., PlantModel]
 levels = pytest.mark.parametrize("evidence", list(Evidence))
 supervised = pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS])
@@ -293,6 +295,54 @@ def test_a_stopped_arm_keeps_its_zones_until_it_is_recovered(zoned: Plants, evid
     assert rig.wait(90.0, until=lambda: at_rest(rig))
     assert [change.state for change in rig.outcomes().values()] == [TaskState.FAILED, TaskState.DONE]
     honest(witness)
+
+
+@levels
+def test_a_recovery_keeps_its_place_among_those_that_wait_for_who_works_in_the_zone(
+    zoned: Plants, evidence: Evidence
+) -> None:
+    rig, witness = start(hasty(zoned(evidence, 6.0)))
+    held: set[str] = set()
+    rig.watchers.append(lambda: held.update(c for c in CELLS if rig.plant.cells[c].state is CellState.HELD))
+    rig.submit("ra1 palletizing")
+    for text in ("ra2 palletizing", "ra3 palletizing", "ra1 palletizing", "ra2 palletizing"):
+        rig.wait(2 * HASTE_S)
+        rig.submit(text)
+    assert rig.runs("sis_b", "recovery/take zones")
+    assert rig.wait(300.0, until=lambda: at_rest(rig))
+    reasons = [change.reason for change in rig.outcomes().values()]
+    assert reasons[1] is Reason.ZONE_UNAVAILABLE, "it had no patience in its work"
+    assert held == set(), "nobody had to help"
+    honest(witness)
+
+
+@levels
+def test_a_recovery_gives_up_where_who_has_the_zone_or_waits_before_it_is_held(
+    zoned: Plants, evidence: Evidence
+) -> None:
+    rig, witness = start(hasty(zoned(evidence, 6.0)))
+    rig.submit("ra1 palletizing")
+    rig.wait(1.0)
+    rig.submit("ra3 palletizing")
+    rig.wait(2 * HASTE_S)
+    assert rig.operate(Verb.HOLD, "sis_c") is None
+    rig.submit("ra2 palletizing")
+    rig.wait(4 * HASTE_S)
+    assert rig.plant.cells["sis_b"].state is CellState.HELD
+    assert rig.operate(Verb.RESUME, "sis_c") is None
+    assert rig.operate(Verb.HOLD, "sis_a") is None
+    rig.wait(2 * HASTE_S)
+    assert rig.plant.cells["sis_c"].state is CellState.HELD
+    assert str(rig.plant.cells["sis_b"].waiting_for()).startswith("sis_b is held (ra2: zone centre was not")
+    for name in ("sis_b", "sis_c", "sis_a"):
+        follow(rig, name)
+    assert rig.wait(120.0, until=lambda: at_rest(rig))
+    honest(witness)
+
+
+def hasty(model: PlantModel) -> PlantModel:
+    """The same, with no patience for zones."""
+    return replace(model, cells=tuple(replace(cell, zone_wait_s=HASTE_S) for cell in model.cells))
 
 
 @levels

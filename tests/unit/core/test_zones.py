@@ -181,3 +181,8 @@ def test_a_screen_sees_plain_data() -> None:
         {"zone": "y", "state": "held", "robot": C, "waiting": []},
         {"zone": "z", "state": "free", "robot": None, "waiting": []},
     ]
+
+
+def test_ahead_of_somebody_are_those_before_it_that_wait_for_one_of_the_same_zones() -> None:
+    plant = zones(("ra4", "x y z"), (A, "x"), (B, "y"), (C, "y z"))
+    assert [plant.ahead_of(robot) for robot in (A, B, C)] == [(), (), (B,)]

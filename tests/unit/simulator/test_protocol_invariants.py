@@ -745,6 +745,28 @@ def test_zone_requests_end(monkeypatch, bites):
     bites(watch)
 
 
+def test_zone_requests_end__of_a_recovery_where_who_has_the_zone_does_not_work(monkeypatch, bites):
+    watch = Watch(zoned())
+    assert watch.world.plant.zones.request("ra2", frozenset({"table"}))
+    monkeypatch.setattr(plant.Plant, "_watch_zones", lambda self: None)
+    monkeypatch.setattr(context.Context, "will_come_free", lambda self, robot: True)
+    watch.task("sis_a palletizing", wait_s=6.1)
+    assert watch.found == {}
+    watch.wait(1)
+    bites(watch)
+
+
+def test_zone_requests_end__of_a_recovery_unless_who_has_the_zone_works():
+    watch = Watch(slowed(zoned(), 5.0))
+    watch.task("sis_b palletizing", wait_s=1)
+    assert watch.world.plant.zones.holder("table") == "ra2"
+    watch.task("sis_a palletizing", wait_s=8)
+    assert [cell.name for cell in watch.record.waiting] == ["sis_a"]
+    assert watch.world.plant.cells["sis_a"].run.recovering
+    watch.wait(40)
+    assert watch.found == {} and watch.record.waiting == []
+
+
 def test_zone_requests_end__in_the_cells_own_time(monkeypatch):
     watch = Watch(zoned())
     assert watch.world.plant.zones.request("ra2", frozenset({"table"}))

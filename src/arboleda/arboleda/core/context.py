@@ -36,7 +36,14 @@ class Context:
     is when the tree is to be woken, s of the plant's time; None while held.
     """
 
-    def __init__(self, cell: Cell, dispatcher: Dispatcher, zones: Zones, clock: Callable[[], float]) -> None:
+    def __init__(
+        self,
+        cell: Cell,
+        dispatcher: Dispatcher,
+        zones: Zones,
+        clock: Callable[[], float],
+        at_work: Callable[[str], bool],
+    ) -> None:
         self.cell = cell
         self.timing: Timing = dispatcher.model.timing
         self.wakes: list[float] = []
@@ -52,6 +59,7 @@ class Context:
         self._dispatcher = dispatcher
         self._zones = zones
         self._clock = clock
+        self._at_work = at_work  # whether what a robot does comes to an end by itself
         self._paused_s = 0.0
         self._paused_at: float | None = None
 
@@ -276,6 +284,20 @@ class Context:
             return False
         self._keep_zones(robot)
         return True
+
+    def will_come_free(self, robot: str) -> bool:
+        """Whether all that a robot waits for comes free without anybody's help: who is before it is at work.
+
+        Whoever holds a zone and waits, for another arm of its cell, may wait for this one.
+        """
+        asked = dict(self._zones.waiting)
+        zones = asked.get(robot)
+        if zones is None or any(self._zones.is_quarantined(zone) for zone in zones):
+            return False
+        holders = self.awaited_zones(robot, zones).values()
+        cells = (self._dispatcher.model.cell_of[holder] for holder in holders)
+        waits = any(user in asked for cell in cells for user in cell.zone_users)
+        return not waits and all(map(self._at_work, (*holders, *self._zones.ahead_of(robot))))
 
     def awaited_zones(self, robot: str, zones: Iterable[str]) -> dict[str, str]:
         """Those of the zones that somebody else holds, and who."""

@@ -334,7 +334,8 @@ class Carry(Leaf):
 class TakeZones(Await):
     """Wait until a robot has all the zones that `needed()` names then; left early, it waits no longer.
 
-    `inside`: a robot that stands in a zone may go on with what it holds, to get out.
+    `recovers`: a robot that stands in a zone may go on with what it holds, to get out; one outside keeps its
+    place among the waiting as long as those before it are at work, for who asks anew asks as the last.
     """
 
     def __init__(
@@ -344,20 +345,26 @@ class TakeZones(Await):
         robot: str,
         needed: Callable[[], frozenset[str]],
         *,
-        inside: bool = False,
+        recovers: bool = False,
     ) -> None:
         super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
         self.robot = robot
         self.needed = needed
-        self.inside = inside
+        self.recovers = recovers
         self.zones: frozenset[str] = frozenset()
 
     def initialise(self) -> None:
         super().initialise()
         self.zones = self.needed()
 
+    def update(self) -> Status:
+        due = self.context.now >= self.until
+        if due and self.recovers and self.context.will_come_free(self.robot):
+            super().initialise()
+        return super().update()
+
     def _taken(self) -> bool:
-        return self.context.take_zones(self.robot, self.zones, inside=self.inside)
+        return self.context.take_zones(self.robot, self.zones, inside=self.recovers)
 
     def _not_free(self) -> Failure:
         zones = tuple(sorted(self.zones))

@@ -153,13 +153,18 @@ class Plant:
         return [name for name in asleep if name not in awake]
 
     def _run(self, cell: Cell) -> CellRun:
-        context = Context(cell, self.dispatcher, self.zones, lambda: self.now)
+        context = Context(cell, self.dispatcher, self.zones, lambda: self.now, self._at_work)
         run = CellRun(cell, context, self._task_changed, self._build, self._ways_out)
         if any(robot.name in self.dispatcher.latched for robot in cell.robots):
             run.start_in(CellState.ABORTED)
         elif any(robot.name in self.dispatcher.cleared for robot in cell.robots):
             run.start_in(CellState.STOPPED)
         return run
+
+    def _at_work(self, robot: str) -> bool:
+        """Whether what a robot does comes to an end by itself."""
+        run = self._runs[robot]
+        return run.state is CellState.EXECUTE or bool(self.dispatcher.ledger.of_robot(robot))
 
     def _ways_out(self, cell: str) -> tuple[Advice, ...]:
         return self._advisor.ways_out(cell)

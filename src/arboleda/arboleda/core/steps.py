@@ -123,7 +123,7 @@ def _way_home(context: Context, robot: str) -> list[Behaviour]:
     steps = _rise(context, robot)
     if space.zones:
         needed = partial(context.recovery_zones, robot)
-        steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, inside=True))
+        steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, recovers=True))
     if back is not None:
         context.back[robot] = back
         carry = sequence(CARRY_BACK(), *_at(context, robot, back, _effector(context, robot, on=False)))

@@ -67,6 +67,11 @@ class Zones:
         """Who is inside and may lack what an override took; each may look whether it can `regain` that."""
         return set(self._robbed)
 
+    def ahead_of(self, robot: str) -> tuple[str, ...]:
+        """Who waits before a waiting robot for one of its zones, the first one first."""
+        names, zones = list(self._waiting), self._waiting[robot]
+        return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
+
     def is_quarantined(self, zone: str) -> bool:
         return zone in self._quarantined
 

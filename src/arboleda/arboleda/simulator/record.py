@@ -210,6 +210,19 @@ class Record:
             faults, last = self.world.faults_active, self.world.last_fault_at
             self.acts.look(self.cells, last_fault_at=last, faults=faults)
 
+    def _is_behind_work(self, cell: KnownCell) -> bool:
+        """Whether those who have what its arm waits for, or are to get it before, were at work until now."""
+        zones, asked = self._plant.zones, dict(self._requests)
+        arms = list(asked)
+        wanted = asked[cell.cell.arm.name]
+        before = {arm for arm in arms[: arms.index(cell.cell.arm.name)] if wanted & asked[arm]}
+        before |= {holder for zone in wanted if (holder := zones.holder(zone)) is not None}
+        at_work = {
+            each.cell.arm.name for each in self._cells if CellState.EXECUTE in (each.state, each.run.state)
+        }
+        at_work |= {sent.robot for sent in self.commands.open.values()}
+        return before <= at_work and not any(map(zones.is_quarantined, wanted))
+
     def _has_work(self, cell: KnownCell) -> bool:
         return cell.tree is not None or cell.queued > 0
 
@@ -297,7 +310,7 @@ class Record:
             self._requests, robots = requests, dict(requests)
             self.waiting = [cell for cell in self._cells if cell.cell.arm.name in robots]
         for cell in self.waiting if not self.away else ():
-            cell.wait(plant.now - self.stepped_at)
+            cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
         moves: dict[str, list[SentCommand]] = {}
         for each in self.commands.new:
             if each.entry is not None and each.entry.cancelled_at is None:  # halted at once: the work's last

@@ -94,7 +94,9 @@ def _outside(look: Look, cell: KnownCell) -> bool:
 
 @invariant(When.WAITING)
 def zone_requests_end(look: Look) -> Iterable[str]:
-    """Who waits for a zone gets it, or is refused it, within zone_wait_s of the cell's own time."""
+    """Who waits for a zone gets it, or is refused it, within zone_wait_s of the cell's own time; a recovery
+    within as long since those before it were at work.
+    """
     return _overdue(look)
 
 

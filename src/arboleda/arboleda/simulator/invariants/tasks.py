@@ -266,20 +266,13 @@ def _cannot_be_done(look: Look, said: TaskChanged) -> bool:
     cell = look.world.model.cell(order.cell)
     mobile = look.truth.robot(cell.mobile.name)
     if said.reason is Reason.ZONE_UNAVAILABLE:
-        return _others_work_in_its_zones(look, order.cell)
+        return look.record.cells[order.cell].behind_work
     if said.reason in PIECES and cell.arm.evidence is not Evidence.IDS:
         return True
     led_there = cell.drive_to_start and cell.mobile.evidence is not Evidence.STATE
     if led_there or "path" not in order.values or not isinstance(mobile, MobileTruth):
         return False
     return mobile.node != order.values["path"].nodes[0]
-
-
-def _others_work_in_its_zones(look: Look, name: str) -> bool:
-    """Whether another arm has one of the zones that this cell waited for, and is heard in it."""
-    zones, cell = look.world.plant.zones, look.record.cells[name]
-    held = (zone for zone in cell.wanted if zones.holder(zone) not in (None, cell.cell.arm.name))
-    return any(not zones.is_quarantined(zone) for zone in held)
 
 
 @invariant(When.TOLD)

@@ -25,8 +25,9 @@ class KnownCell:
 
     `leaves` are those that run, `looked` whether they were looked up in this step; `sends` counts the
     commands of each leaf of the tree, `again` how often an operator had an interrupted step given anew;
-    `waited_s` is how long its arm has waited for its zones, in the cell's own time; `frozen_s` how much of
-    that time did not pass since the last news although it was not held.
+    `waited_s` is how long its arm has waited for its zones, in the cell's own time, a recovery since all
+    before it were at work, `behind_work` whether those were when it last waited; `frozen_s` how much of that
+    time did not pass since the last news although it was not held.
     """
 
     def __init__(self, cell: StorageCell) -> None:
@@ -49,6 +50,7 @@ class KnownCell:
         self.leaves: list[Any] = []
         self.looked = False
         self.waited_s = 0.0
+        self.behind_work = False
         self.frozen_s = 0.0
         self._lag_s = math.inf
         self._waiter: Behaviour | None = None
@@ -89,20 +91,20 @@ class KnownCell:
         now = self.context.now
         return any(at <= now for at in self.wakes)
 
-    def wait(self, seconds: float) -> None:
-        """Its arm waits for zones after this step; `seconds` passed since the one before."""
+    def wait(self, seconds: float, *, behind_work: bool) -> None:
+        """Its arm waits for zones after this step; `seconds` passed since the one before.
+
+        A recovery may go on waiting for those who work.
+        """
         tree, waiter = self.run.tree, self._waiter
         if waiter is None or not _runs(waiter, tree):
             waiter = next((leaf for leaf in _running(tree) if isinstance(leaf, TakeZones)), None)
-        if waiter is not self._waiter:
+        recovers = isinstance(waiter, TakeZones) and waiter.recovers
+        self.behind_work = behind_work
+        if waiter is not self._waiter or (recovers and behind_work):
             self._waiter, self.waited_s = waiter, 0.0
         elif self.state not in PAUSED:
             self.waited_s += seconds
-
-    @property
-    def wanted(self) -> frozenset[str]:
-        """The zones that its arm waits for, or waited for last."""
-        return self._waiter.zones if isinstance(self._waiter, TakeZones) else frozenset()
 
     def watch_time(self, now: float, *, away: bool = False) -> None:
         """Compare the cell's own time with the plant's: it may fall behind only while the cell is held.
