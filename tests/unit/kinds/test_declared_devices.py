@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.messages import Reason, TaskState, Verb
-from arboleda.core.model import Evidence
-from arboleda.kinds.declared import UseError
+from arboleda.core.model import Evidence, Link
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
+from arboleda.sim.machine import Machine
 from arboleda.views import view
 
-from .lab import EYE, OVEN, Bench, bake, careless, model
+from .lab import EYE, ON, OVEN, Bench, bake, careless, model
 
 
 @pytest.mark.parametrize("evidence", [Evidence.IDS, Evidence.JOINTS], ids=lambda level: level.value)
@@ -30,7 +33,7 @@ def test_a_task_of_a_recipe_of_ones_own_is_done(evidence: Evidence) -> None:
 def test_another_answer_takes_the_other_way() -> None:
     kinds = model()
     (cell,) = kinds.cells
-    bad = replace(EYE.verbs["look"], answers=("bad",))
+    bad = replace(EYE.verbs["look"], answers=("bad", "good"))
     eye = replace(cell.roles["eye"], kind=replace(EYE, verbs={"look": bad}))  # type: ignore[call-arg]
     here = Bench(replace(kinds, cells=(replace(cell, members=(cell.members[0], ("eye", eye))),)))
     here.submit("bench bake 5")
@@ -43,11 +46,14 @@ def test_an_answer_that_the_recipe_does_not_know_is_a_failure() -> None:
     @recipe("guess")
     def guess(cell: Kit):  # type: ignore[no-untyped-def]
         seen = cell.device("eye").look()
-        return work(seen, cell.choose(seen, {"red": [], "blue": []}))
+        return work(seen, cell.choose(seen, {"good": [], "bad": []}))
 
     here = Bench(model(guess))
+    eye = here.plant.model.robots["eye"]
+    odd = replace(EYE, verbs={"look": replace(EYE.verbs["look"], answers=("odd",))})
+    here.machines["eye"] = Machine(replace(eye, kind=odd), now=0.0, boot_id=7)  # type: ignore[call-arg]
     here.submit("bench guess")
-    assert str(here.outcome().sentence) == "eye look answered good; the recipe knows red, blue"
+    assert str(here.outcome().sentence) == "eye look answered odd; the recipe knows good, bad"
 
 
 def test_what_a_verb_needs_is_refused_where_it_is_not_so() -> None:
@@ -141,7 +147,7 @@ def test_a_recipe_waits_for_a_fact_and_checks_one() -> None:
 @pytest.mark.parametrize(
     ("verb", "values", "sentence"),
     [
-        ("opne", {}, "a oven has no verb 'opne'; there are open, close, clamp, bake"),
+        ("opne", {}, "a oven has no verb 'opne'; there are open, close, clamp, bake; did you mean open?"),
         ("bake", {}, "bake of a oven needs dose: 5, 10, 20"),
         ("bake", {"dose": 7}, "dose of bake is 7; a oven takes 5, 10, 20"),
         ("clamp", {"on": "yes"}, "on of clamp is 'yes'; a oven takes true or false"),
@@ -174,6 +180,59 @@ def test_only_a_step_of_a_device_has_an_answer_to_choose_by() -> None:
     here = Bench(model(wrong))
     here.submit("bench wrong")
     assert "choose looks at the answer of a device's step; wait has none" in str(here.outcome().sentence)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (
+            lambda cell: cell.device("ovne"),
+            "no device in the role 'ovne'; there are oven, eye; did you mean oven?",
+        ),
+        (
+            lambda cell: cell.device("oven").says(lit="open"),
+            "a oven has no fact 'lit'; there are lid, clamped, dose",
+        ),
+        (lambda cell: cell.device("oven").says(lid="ajar"), "lid is never 'ajar'; a oven says open, closed"),
+        (
+            lambda cell: cell.device("oven").becomes(dose=7, at_most_s=1),
+            "dose is never 7; a oven says 5, 10, 20",
+        ),
+        (
+            lambda cell: cell.choose(cell.device("eye").look(), {"good": []}),
+            "no way for 'bad', which eye look may",
+        ),
+        (
+            lambda cell: cell.choose(cell.device("eye").look(), {"good": [], "bad": [], "red": []}),
+            "eye look never answers 'red'; its answers: good, bad",
+        ),
+        (lambda cell: None, "wrong returns None; a recipe returns a step, e.g. work(...)"),
+    ],
+    ids=["role", "fact", "value", "awaited", "not all ways", "no such answer", "no step"],
+)
+def test_what_cannot_be_is_told_before_anything_moves(make: Callable[[Kit], Any], sentence: str) -> None:
+    @recipe("wrong")
+    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
+        return make(cell)
+
+    here = Bench(model(wrong))
+    here.submit("bench wrong")
+    assert sentence in str(here.outcome().sentence)
+    assert here.told == []
+
+
+def test_a_whole_number_is_a_number_too() -> None:
+    volume = FactType(type=float, first=0.0)
+    assert volume.takes(5) and volume.takes(0.5)
+    assert not volume.takes(True) and not volume.takes("5")
+
+
+def test_a_part_is_let_go_by_the_verb_that_does_so() -> None:
+    grip = DeviceVerb(name="grip", effect=Effect.SWITCH, sets=(("clamped", True),), at_most_s=2.0, holds=True)
+    open_ = replace(grip, name="open", sets=(("clamped", False),))
+    kind = DeviceKind(name="vise", facts={"clamped": ON}, verbs={"grip": grip, "open": open_})
+    vise = Device(name="v", mqtt="v", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=2.0, kind=kind)
+    assert vise.let_go(id="1") == kind.command(id="1", robot="v", verb="open", values={})
 
 
 def test_a_wait_names_the_fact_that_never_came() -> None:

@@ -7,6 +7,9 @@ hundred thousand of them. Such text is shown by one of these two functions, wher
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
+
 LINE = 200  # characters; a sentence with more is not read
 
 
@@ -33,6 +36,18 @@ def quoted(value: object, most: int = 40) -> str:
     if isinstance(value, bytes):
         return ascii(value if len(value) <= most else value[: most - 3] + b"...")
     return plain(ascii(value), most)
+
+
+def among(word: str, known: Iterable[str]) -> str:
+    """What there is instead of a wrong word, and the nearest of it.
+
+    >>> among("opne", ["open", "close"]), among("opne", [])
+    ('there are open, close; did you mean open?', 'there are none')
+    """
+    there = list(known)
+    near = get_close_matches(word.lower(), there, n=1)
+    hint = f"; did you mean {near[0]}?" if near else ""
+    return f"there are {', '.join(there) or 'none'}{hint}"
 
 
 def _escaped(letter: str) -> str:

@@ -17,7 +17,7 @@ from arboleda.core.errors import ArboledaError
 from arboleda.core.facts import Facts, Value, shown
 from arboleda.core.messages import Report
 from arboleda.core.model import Robot
-from arboleda.core.outside import quoted
+from arboleda.core.outside import among, quoted
 
 
 class UseError(ArboledaError):
@@ -49,7 +49,8 @@ class FactType:
     first: Value  # what a virtual device begins with
 
     def takes(self, value: object) -> bool:
-        return type(value) is self.type and (not self.words or value in self.words)
+        fits = type(value) is self.type or (self.type is float and type(value) is int)
+        return fits and (not self.words or value in self.words)
 
     def allowed(self) -> str:
         """In words, for who gave another value."""
@@ -90,10 +91,18 @@ class DeviceKind:
         """The command of a verb; UseError names what is wrong with it."""
         known = self.verbs.get(verb)
         if known is None:
-            raise UseError(f"a {self.name} has no verb {quoted(verb)}; there are {', '.join(self.verbs)}")
+            raise UseError(f"a {self.name} has no verb {quoted(verb)}; {among(verb, self.verbs)}")
         self._check(known, values)
         in_order = tuple((name, values[name]) for name, _ in known.parameters)
         return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known)
+
+    def check_fact(self, name: str, value: object) -> None:
+        """UseError where no device of this kind can say that."""
+        type = self.facts.get(name)
+        if type is None:
+            raise UseError(f"a {self.name} has no fact {quoted(name)}; {among(name, self.facts)}")
+        if not type.takes(value):
+            raise UseError(f"{name} is never {quoted(value)}; a {self.name} says {type.allowed()}")
 
     def _check(self, verb: DeviceVerb, values: Mapping[str, Value]) -> None:
         for name, type in verb.parameters:
@@ -176,7 +185,7 @@ class Device(Robot):
     def let_go(self, *, id: str) -> Command:
         """The verb that ends its holding a part."""
         for verb in self.kind.verbs.values():
-            if verb.holds:
+            if verb.holds and verb.sets[0][1] is not True:
                 off = {name: False for name, _ in verb.parameters}
                 return self.kind.command(id=id, robot=self.name, verb=verb.name, values=off)
         raise UseError(f"a {self.kind.name} has no verb that lets go of a part")

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import partial, wraps
 from typing import Any
 
 from py_trees import common, composites
@@ -24,10 +24,11 @@ from arboleda.core.facts import Value, shown
 from arboleda.core.leaves import Act, Await, Dwell, Require, Unless
 from arboleda.core.messages import Failure, Reason
 from arboleda.core.model import Cell
+from arboleda.core.outside import among, quoted
 from arboleda.core.recipe import Parameter, Recipe
 from arboleda.core.sentence import Phrase, as_sentence
 from arboleda.core.task import Order
-from arboleda.kinds.declared import Device
+from arboleda.kinds.declared import Device, ToldQuery
 
 Step = Behaviour
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
@@ -37,6 +38,10 @@ NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within
 
 class RecipeError(ArboledaError):
     """A recipe that cannot be built."""
+
+
+class RoleError(RecipeError):
+    """A recipe that needs a device in a role that its cell does not have."""
 
 
 class Choice:
@@ -70,8 +75,12 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], Recipe]:
         if unknown:
             raise RecipeError(f"{name}: {unknown[0]} needs an annotation, e.g. {unknown[0]}: Choice[1, 2]")
 
+        @wraps(function)
         def build(order: Order, context: Context) -> Behaviour:
-            return steps.task(name, [function(Kit(context), **order.values)], context)
+            step = function(Kit(context), **order.values)
+            if not isinstance(step, Behaviour):
+                raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
+            return steps.task(name, [step], context)
 
         parameters = tuple(notes[each].parameter(each) for each in names)
         return Recipe(name=name, build=build, parameters=parameters)
@@ -90,6 +99,22 @@ def parallel(*parts: Step) -> Step:
     return composites.Parallel("parallel", policy=policy, children=list(parts))
 
 
+class Ask(Act):
+    """A question to a device, and what it may answer."""
+
+    answers: tuple[Value, ...] = ()
+
+    def check(self, ways: Mapping[Value, object]) -> None:
+        """RecipeError where the ways are not those of all answers, and of no others."""
+        allowed = ", ".join(map(shown, self.answers))
+        for answer in ways:
+            if answer not in self.answers:
+                raise RecipeError(f"{self.name} never answers {quoted(answer)}; its answers: {allowed}")
+        for answer in self.answers:
+            if answer not in ways:
+                raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
+
+
 class Kit:
     """What a recipe may use of its cell."""
 
@@ -104,7 +129,7 @@ class Kit:
         known = self._context.cell.roles
         if role not in known:
             name = self._context.cell.name
-            raise RecipeError(f"{name} has no device in the role {role!r}; there are {', '.join(known)}")
+            raise RoleError(f"{name} has no device in the role {role!r}; {among(role, known)}")
         device = known[role]
         if not isinstance(device, Device):
             raise RecipeError(f"{device.name} is no device of a declared kind")
@@ -112,8 +137,9 @@ class Kit:
 
     def choose(self, asked: Step, ways: Mapping[Value, Step | Sequence[Step]]) -> Step:
         """What to do for each answer to a step that asks a device; another answer is a failure."""
-        if not isinstance(asked, Act):
-            raise RecipeError(f"choose looks at the answer of a device's step; {asked.name} has none")
+        if not isinstance(asked, Ask):
+            raise RecipeError(f"choose looks at the answer of a device's step; {_named(asked)} has none")
+        asked.check(ways)
 
         def answers(value: Value) -> bool:
             return asked.entry is not None and asked.entry.answer == value
@@ -153,22 +179,30 @@ class Handle:
     def __getattr__(self, verb: str) -> Callable[..., Act]:
         def step(**values: Value) -> Act:
             device, kind = self._device, self._device.kind
-            kind.command(id="", robot=device.name, verb=verb, values=values)  # wrong words are told at once
+            told = kind.command(
+                id="", robot=device.name, verb=verb, values=values
+            )  # wrong words are told at once
 
             def make(id: str) -> Any:
                 return kind.command(id=id, robot=device.name, verb=verb, values=values)
 
             words = " ".join([verb, *map(shown, values.values())])
-            return Act(f"{device.name} {words}", self._context, make, f"doing {words}")
+            if not isinstance(told, ToldQuery):
+                return Act(f"{device.name} {words}", self._context, make, f"doing {words}")
+            asked = Ask(f"{device.name} {words}", self._context, make, f"doing {words}")
+            asked.answers = told.told.answers
+            return asked
 
         return step
 
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
+        self._check(facts)
         return Require("says", self._context, partial(self._objection, facts))
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
+        self._check(facts)
 
         def late() -> Failure:
             name = self._unsaid(facts)[0]
@@ -178,6 +212,10 @@ class Handle:
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
         return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+
+    def _check(self, facts: Mapping[str, Value]) -> None:
+        for name, value in facts.items():
+            self._device.kind.check_fact(name, value)
 
     def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
         """Those of the facts that the device does not say."""
@@ -192,6 +230,10 @@ class Handle:
             sentence = NOT_SO(robot=self._device.name, told=told, fact=name, value=value)
             return Failure(reason=Reason.PRECONDITION, sentence=sentence)
         return None
+
+
+def _named(step: object) -> str:
+    return step.name if isinstance(step, Behaviour) else quoted(step)
 
 
 def _said(value: Value | None) -> str:

@@ -89,7 +89,7 @@ class Machine:
         self._deed = None
         self.facts.update(deed.command.sets)
         if deed.command.told.effect is Effect.QUERY:
-            self._answered = (deed.command.id, deed.command.told.answers[0])
+            self._answered = (deed.command.id, self.device.kind.verbs[deed.command.verb].answers[0])
         self._done = deed.command.id
 
     def _state(self) -> MotionState:
