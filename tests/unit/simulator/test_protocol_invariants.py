@@ -207,6 +207,14 @@ def test_no_move_after_its_halt(bites):
     bites(watch)
 
 
+def test_no_move_after_its_halt__by_the_numbers_that_the_plant_gave():
+    watch = Watch()
+    superseded = watch.world.plant.epoch - 1
+    other(watch, Stop(id=f"{superseded}-902", robot="ra1", mode=StopMode.HALT))
+    other(watch, MoveJoints(id=f"{superseded}-901", robot="ra1", q=(0.1, 0.0, 0.0)))
+    assert watch.found == {}
+
+
 @pytest.mark.parametrize("process", [PLANT, BRIDGE, "ra_1", "rm_sis_a"])
 @pytest.mark.parametrize("at_s", [0.1, 1.5, 4.2, 5.6])
 def test_nothing_is_found_with_crashes(process, at_s):

@@ -109,6 +109,16 @@ def test_stalls_that_overlap_last_as_long_as_the_longer_one(world):
     assert not world.is_stalled(PLANT)
 
 
+def test_where_everybody_stalls_time_goes_on(world):
+    began = world.now
+    for process in (PLANT, BRIDGE, *world.boards):
+        world.stall(process, 1.0)
+    world.advance(2.0)
+    assert world.now == began + 2.0
+    world.request_task(TASK)
+    assert world.advance(60.0, until=lambda: world.plant.cells["sis_a"].task is not None)
+
+
 def test_a_stall_can_end_early(world):
     world.stall("ra_1", 10.0)
     world.advance(1.0)

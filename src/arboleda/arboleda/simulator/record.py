@@ -119,7 +119,7 @@ class Record:
         if moment.bridged:
             self.bridges.look(moment.bridged)
         if moment.taken:
-            self.stops.look(moment.taken)
+            self.stops.look(moment.taken, plant.epoch)
         inbox, now = self.world.broker.clients[BRIDGE].inbox, self.world.now
         skipped = self.world.skipped_s != self._skipped_s
         if skipped or self.world.to_plant.troubles or (inbox and inbox[0].at < now):

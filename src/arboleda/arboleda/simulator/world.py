@@ -323,7 +323,7 @@ class World:
         due = self._agenda[0][0] if self._agenda else math.inf
         if not self._stalled:
             return min(due, *self._due.values())
-        return min(due, *(at for name, at in self._due.items() if name not in self._stalled))
+        return min((due, *(at for name, at in self._due.items() if name not in self._stalled)))
 
     def settle(self) -> None:
         """Step whoever has something to do now, until nobody has."""

@@ -11,18 +11,18 @@ Number = tuple[int, int]  # the plant's start, and the how-manieth command of it
 
 
 class EarlyStops:
-    """`overtaken` are sentences on the moves of this step."""
+    """`overtaken` are sentences on the moves of this step; what others say has no order."""
 
     def __init__(self) -> None:
         self.overtaken: list[str] = []
         self._last: dict[str, Number] = {}
 
-    def look(self, taken: Iterable[FromPlant]) -> None:
-        """Take in what the bridge took in, in its order."""
+    def look(self, taken: Iterable[FromPlant], epoch: int) -> None:
+        """Take in what the bridge took in, in its order; `epoch`: of the plant that runs."""
         self.overtaken.clear()
         for command in (each.message for each in taken):
             number = _number(getattr(command, "id", ""))
-            if number is None:
+            if number is None or number[0] != epoch:
                 continue
             if is_stop(command):
                 self._last[command.robot] = max(number, self._last.get(command.robot, number))
@@ -31,7 +31,7 @@ class EarlyStops:
 
     def _judge(self, command: Motion, number: Number) -> None:
         stopped = self._last.get(command.robot)
-        if stopped is not None and number < stopped and number[0] == stopped[0]:
+        if stopped is not None and number < stopped:
             what = f"{type(command).__name__} {command.id} reaches the bridge for {command.robot}"
             self.overtaken.append(f"{what} after its stop {stopped[0]}-{stopped[1]}")
 
