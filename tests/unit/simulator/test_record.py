@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, MoveJoints
+from arboleda.core.commands import FollowPath, MoveJoints, Stop, StopMode
 from arboleda.core.ledger import State
 from arboleda.core.messages import Report, TaskChanged, TaskState, Verb
 from arboleda.core.model import Evidence, MotionState
@@ -17,6 +17,7 @@ from arboleda.simulator.recorded.scopes import Scopes
 from arboleda.simulator.recorded.tasks import KEPT, Tasks
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.transport import Publication
 
 TASK = "sis_a 0B 7"
@@ -366,3 +367,20 @@ def test_what_was_said_before_the_record_began_is_known(world):
     assert known.obstacles(world.now, world.plant.epoch) == frozenset()
     assert record.boards.by_name["ra_1"].said(known.q, None, record.told_since(world.now))
     assert replace(said(), robot="ra1").robot == known.robot.name
+
+
+@pytest.mark.parametrize("refused_after_s", [0.01, 0.6])
+def test_a_refusal_that_is_heard_after_the_end_of_a_halted_move_is_not_held_against_a_robot(refused_after_s):
+    world = World(shipped("sis_a", evidence=Evidence.STATE, has_stop=False))
+    record = Record(world)
+    world.watchers.append(record.look)
+    stop = Stop(id="", robot="rm_sis_a", mode=StopMode.LATCH)
+    world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=stop, sender="/stranger"))
+    world.advance(0.5)
+    world.to_bridge.troubles.append(lambda each: (refused_after_s,))
+    world.request_task(TASK)
+    assert world.advance(5.0, until=lambda: any(each.robot == "rm_sis_a" for each in record.commands.new))
+    world.stall(PLANT, 3.0)
+    world.advance(3.5)
+    assert record.robots["rm_sis_a"].barred is world.plant.dispatcher.beliefs["rm_sis_a"].barred
+    assert record.robots["rm_sis_a"].barred is (refused_after_s < 0.1)

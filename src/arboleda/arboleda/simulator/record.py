@@ -257,6 +257,7 @@ class Record:
         if moved:
             self.proofs.follow(list(self.commands.open.values()))
             self._follow_homing()
+            self._follow_refusals(plant)
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
         asked = bool(self.world.moment.asked)
@@ -429,6 +430,12 @@ class Record:
         for sent, _ in self.commands.moved:
             if isinstance(sent.command, Home) and sent.state is State.DONE:
                 self.robots[sent.robot].displaced = False
+
+    def _follow_refusals(self, plant: Plant) -> None:
+        """A refusal is nothing to the plant where it heard the halted robot stand still just before."""
+        for sent, _ in self.commands.moved:
+            if sent.rejected and sent.state is State.CANCELLED:
+                self.robots[sent.robot].barred = plant.dispatcher.beliefs[sent.robot].barred
 
     def _homed(self, scope: str) -> None:
         asked = self.world.moment.asked
