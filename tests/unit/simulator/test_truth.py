@@ -171,6 +171,27 @@ def test_a_halted_arm_is_in_all_that_it_may_have_swept_until_it_stands_at_a_pose
     assert stage.arm.zones == set()
 
 
+def test_an_arm_that_is_halted_near_a_pose_on_its_way_is_where_the_way_is():
+    plant = shipped("sis_a")
+    cell = plant.cells[0]
+    arm = replace(cell.arm, tolerance=(0.35, *cell.arm.tolerances[1:]))
+    home, pickup = replace(cell.home, q=(0.0, 0.0, 0.0)), replace(cell.pickup, q=(1.0, 0.0, 0.0))
+    between = replace(cell.stations[4], q=(0.5, 0.0, 0.0), zones=frozenset({"rack"}))
+    stations = (*cell.stations[:4], between, *cell.stations[5:])
+    cell = replace(cell, arm=arm, home=home, pickup=pickup, stations=stations)
+    stage = Stage(replace(plant, zones=("rack",), cells=(cell,)))
+    stage.ask("sis_a 0B 7")
+    stage.until(lambda: stage.body.true_position[0] * arm.joints[0].step > 0.2)
+    stage.world.request_verb(Verb.HOLD, "sis_a")
+    stage.until(lambda: "station 4" in stage.arm.here)
+    assert stage.arm.zones == set()
+    for verb in (Verb.ABANDON, Verb.RESUME):
+        stage.world.request_verb(verb, "sis_a")
+        stage.world.advance(10.0)
+    stage.ask("sis_a 0B 4")
+    stage.until(lambda: stage.arm.zones == {"rack"})
+
+
 def test_a_part_goes_from_the_pick_up_to_its_station_and_the_customer_takes_it(stage):
     stage.ask("sis_a 0B 7")
     stage.until(lambda: bool(stage.truth.parts.stations))

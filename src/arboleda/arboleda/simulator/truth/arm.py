@@ -25,8 +25,9 @@ class ArmTruth(RobotTruth):
     `true` is where the axes are, `lost` how many steps each lost since it was last put right. Poses, zones
     and stations have no extent here, so an arm that lost steps counts as where it would be without that, and
     one within its tolerance of a pose as at it: `here` names the poses where it stands still in this sense,
-    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept; `opened`:
-    in this step somebody else than the plant opened its effector, `robbed_at` when that last ended a grip.
+    `stood` where it stood in this step if it has moved on, `zones` where it is or may have swept: halted on
+    its way, by what the plant file says of that way, not by poses that it happens to be near; `opened`: in
+    this step somebody else than the plant opened its effector, `robbed_at` when that last ended a grip.
     """
 
     SIGNS = ("next_change_us", "effector", "holding")
@@ -55,6 +56,7 @@ class ArmTruth(RobotTruth):
             within >= joint.step for joint, within in zip(robot.joints, robot.tolerances, strict=True)
         )
         self._between = NOWHERE
+        self._free = frozenset(pose.name for pose in cell.poses if not pose.zones)
         self._zones_between: dict[frozenset[str], frozenset[str]] = {}
         self._ramp_us = 1e6 * RAMP_SLACK * max(j.speed / j.acceleration for j in robot.joints) + 1e5
         self._speeds: tuple[float, ...] | None = None
@@ -149,6 +151,8 @@ class ArmTruth(RobotTruth):
         target = tuple(map(add, self.body.targets, self._shift)) if self.moving else place
         self.goal = self._found(self._names, target)
         spot = self._found(self._spots, target)
+        if not any(act.moves for act in self.acts):
+            spot &= self._between | self._free
         self._between = self._between | spot if self.moving or not spot else spot
         self.zones = self._zones_of(self._between)
 
