@@ -10,8 +10,11 @@ from collections.abc import Callable
 from itertools import count
 
 from arboleda.adapters.mqtt import Address, MqttClient
-from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
-from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot, StorageCell
+from arboleda.core.commands import Command
+from arboleda.core.model import MotionState, PlantModel, Robot
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.payloads import (
     EffectorGoal,
     Goal,

@@ -13,7 +13,8 @@ from std_msgs.msg import String
 
 from arboleda.app.config import load
 from arboleda.core.commands import Command
-from arboleda.core.model import PlantModel, StorageCell
+from arboleda.core.model import PlantModel
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.link import connect

@@ -13,8 +13,9 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
-from arboleda.core.commands import SetEffector
-from arboleda.core.model import Arm, PlantModel, StorageCell
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos
 

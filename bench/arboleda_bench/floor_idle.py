@@ -16,7 +16,7 @@ from rclpy.qos import QoSProfile
 from std_msgs.msg import String, UInt8
 
 from arboleda.app.config import load
-from arboleda.core.model import Arm
+from arboleda.kinds.arm import Arm
 
 DEPTH = QoSProfile(depth=10)  # reliable and volatile, as commands and reports are
 SPIN_S = 1.0

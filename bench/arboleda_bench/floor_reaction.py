@@ -13,8 +13,11 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints
-from arboleda.core.model import Arm, PlantModel, Robot, StorageCell
+from arboleda.core.commands import Command
+from arboleda.core.model import PlantModel, Robot
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import convert, qos
 
 from . import brain, steps

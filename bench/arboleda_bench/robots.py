@@ -9,9 +9,12 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints, Stop
+from arboleda.core.commands import Command, Stop
 from arboleda.core.messages import Report
-from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot, StorageCell
+from arboleda.core.model import MotionState, PlantModel, Robot
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos
 from arboleda_ros.voice import JointsMessage

@@ -11,7 +11,7 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import String, UInt32
 
 from arboleda.core.errors import ArboledaError
-from arboleda.core.model import StorageCell
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import qos
 from arboleda_ros.link import connect
 

@@ -26,9 +26,11 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.app.config import load
-from arboleda.core.commands import Command, FollowPath, MoveJoints
+from arboleda.core.commands import Command
 from arboleda.core.messages import Report
 from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.views import view
 
 from . import plants

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
-from arboleda.core.model import StorageCell
+from arboleda.core.commands import Command
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import StorageCell
 
 PATH, STATION = "0B", 1
 GOLDEN = 0.6180339887498949  # its multiples fall evenly into any interval

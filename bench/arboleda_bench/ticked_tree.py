@@ -17,8 +17,9 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.commands import SetEffector
-from arboleda.core.model import PlantModel, Robot, StorageCell
+from arboleda.core.model import PlantModel, Robot
+from arboleda.kinds.arm import SetEffector
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import convert, qos
 
 from . import brain, steps

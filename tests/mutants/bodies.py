@@ -6,8 +6,8 @@ from arboleda.core import evidence, steps
 from arboleda.core.cell import CellRun
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.model import Arm
 from arboleda.core.zones import Zones
+from arboleda.kinds.arm import Arm
 from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board

@@ -9,9 +9,11 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, Home, MoveJoints
+from arboleda.core.commands import Home
 from arboleda.core.messages import Absence, Reason, Verb
 from arboleda.core.model import Evidence
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig

@@ -22,7 +22,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
 from std_srvs.srv import Trigger
 
-from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Home, Stop, StopMode
 from arboleda.core.errors import StartError
 from arboleda.core.messages import (
     Heartbeat,
@@ -38,6 +38,8 @@ from arboleda.core.messages import (
     Verb,
 )
 from arboleda.core.model import Evidence, Link, MotionState, PlantModel
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.testing import shipped
 from arboleda.wire.status import STALE, to_status
 from arboleda_ros import statuses

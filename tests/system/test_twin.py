@@ -17,8 +17,10 @@ import yaml
 
 from arboleda.app import config
 from arboleda.app.urdf import robot_urdf, root_link
-from arboleda.core.model import Arm, Mobile, MotionState, PlantModel, Robot
+from arboleda.core.model import MotionState, PlantModel, Robot
 from arboleda.dashboard.page import assets
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
 from arboleda.testing import shipped
 from arboleda.wire import payloads, topics, units
 from arboleda.wire.topics import Channel

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.app.urdf import root_link
-from arboleda.core.model import Arm, Link, Mobile, PlantModel
+from arboleda.core.model import Link, PlantModel
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
 
 from .choice import Choice
 from .row import Row, Value

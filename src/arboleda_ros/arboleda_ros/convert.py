@@ -9,11 +9,13 @@ from dataclasses import replace
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
 
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.counting import counted
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
-from arboleda.core.model import Arm, Mobile, MotionState, Robot
+from arboleda.core.model import MotionState, Robot
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.wire.hop import PLAIN, loses_its_id
 from arboleda.wire.status import from_label, to_label
 

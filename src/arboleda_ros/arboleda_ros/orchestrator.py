@@ -30,8 +30,9 @@ from arboleda.core.messages import (
     TaskChanged,
     TaskRequest,
 )
-from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.core.model import Evidence, Link, PlantModel, Robot
 from arboleda.core.sentence import in_json
+from arboleda.kinds.arm import Arm
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN

@@ -15,7 +15,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
 from arboleda.core.messages import Report
-from arboleda.core.model import Arm, MotionState, Robot
+from arboleda.core.model import MotionState, Robot
+from arboleda.kinds.arm import Arm
 from arboleda.wire.status import to_status
 
 from . import convert

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import StorageCell
+from arboleda.recipes.storage_cell import StorageCell
 
 TEXT = """\
 name: p

@@ -9,7 +9,8 @@ import pytest
 
 from arboleda.app import config
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Crossing, PlantModel, Pose, Retry, StorageCell, Timing
+from arboleda.core.model import Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.recipes.storage_cell import StorageCell
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"
 PLANT = files("arboleda").joinpath("plants", "plant.yaml").read_text("utf-8")

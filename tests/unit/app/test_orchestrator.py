@@ -11,7 +11,7 @@ from arboleda.app.parts.bridge import BridgePart
 from arboleda.app.parts.broker import OtherBroker, address
 from arboleda.app.parts.orchestrator import Orchestrator
 from arboleda.app.parts.slices import PAUSE_S, SLICE_S
-from arboleda.core.commands import Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Home, Stop, StopMode
 from arboleda.core.errors import ArboledaError, StartError
 from arboleda.core.messages import (
     Absence,
@@ -27,6 +27,7 @@ from arboleda.core.messages import (
 )
 from arboleda.core.plant import Plant
 from arboleda.core.sentence import OWN
+from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.testing.plants import shipped
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")

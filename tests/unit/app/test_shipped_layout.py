@@ -11,10 +11,13 @@ import pytest
 
 from arboleda.app.urdf import robot_urdf
 from arboleda.core import text
-from arboleda.core.model import Arm, Joint, Mobile, Pose, StorageCell
+from arboleda.core.model import Pose
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.testing import shipped
 
 CELLS = {cell.name: cell for cell in shipped().cells}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import FollowPath, MoveJoints, SetEffector
 from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.testing import plants
 from arboleda_bench.obedient import Yard, command_in, is_over
 

@@ -13,7 +13,7 @@ from py_trees.composites import Sequence
 from arboleda.core import evidence
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, MoveJoints, Stop, StopMode
+from arboleda.core.commands import Stop, StopMode
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import Feed, Ledger
 from arboleda.core.messages import (
@@ -29,6 +29,8 @@ from arboleda.core.messages import (
 from arboleda.core.model import Evidence, MotionState
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 Make = Callable[[Evidence], Any]

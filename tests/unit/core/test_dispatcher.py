@@ -6,11 +6,12 @@ from functools import partial
 
 import pytest
 
-from arboleda.core.commands import Home, MoveJoints, SetEffector, Stop
+from arboleda.core.commands import Home, Stop
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.ledger import State
 from arboleda.core.messages import Reason, Report
 from arboleda.core.model import MotionState
+from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.testing import shipped
 
 EPOCH = 7

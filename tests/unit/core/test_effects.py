@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.core.belief import Belief
-from arboleda.core.commands import Command, Home, Motion, MoveJoints, Position, Stop, StopMode
+from arboleda.core.commands import Command, Home, Motion, Position, Stop, StopMode
 from arboleda.core.evidence import Before, judge
 from arboleda.core.ledger import Entry, Feed
 from arboleda.core.messages import Reason, Report
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints
 from arboleda.testing import shipped
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED

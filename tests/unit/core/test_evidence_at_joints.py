@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.core.belief import APART_S, Belief
-from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.evidence import QUIET_S, Before, judge
 from arboleda.core.ledger import Entry, Feed
 from arboleda.core.messages import Reason, Report
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.testing import shipped
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED

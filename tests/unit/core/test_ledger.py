@@ -4,10 +4,10 @@ import itertools
 
 import pytest
 
-from arboleda.core.commands import MoveJoints
 from arboleda.core.errors import IllegalTransition
 from arboleda.core.ledger import OPEN, TABLE, Entry, Feed, Ledger, State
 from arboleda.core.messages import Failure, Reason
+from arboleda.kinds.arm import MoveJoints
 
 LOST = Failure(reason=Reason.LINK_LOST, sentence="lost")
 

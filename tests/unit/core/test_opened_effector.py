@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.commands import MoveJoints, SetEffector
 from arboleda.core.messages import Reason
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints, SetEffector
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 

@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.core import leaves
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Stop, StopMode
 from arboleda.core.messages import (
     Heartbeat,
     Interference,
@@ -22,6 +22,8 @@ from arboleda.core.messages import (
 )
 from arboleda.core.model import Evidence, MotionState, Timing
 from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.testing import shipped
 from arboleda.views import view
 

@@ -11,10 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.core.belief import Belief
-from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.commands import Home
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.testing import shipped
 
 EPOCH = 7

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from arboleda.app.simulate.request import shared
-from arboleda.core.commands import MoveJoints
 from arboleda.core.messages import Report
 from arboleda.core.underway import PATIENCE_S, UnderWay
+from arboleda.kinds.arm import MoveJoints
 from arboleda.testing import shipped
 
 MODEL = shared()

@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Crossing, Palletizing, Pose, StorageCell
+from arboleda.core.model import Crossing, Pose
 from arboleda.core.zone_plan import Leg, plan
 from arboleda.recipes.storage import palletizing_way, plan_problems, storage_way
+from arboleda.recipes.storage_cell import Palletizing, StorageCell
 from arboleda.testing import shipped
 
 NONE = frozenset[str]()

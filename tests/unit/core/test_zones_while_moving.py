@@ -7,8 +7,8 @@ from importlib.resources import as_file, files
 import pytest
 
 from arboleda.app.config import load
-from arboleda.core.commands import MoveJoints
 from arboleda.core.messages import OperatorRequest, Verb
+from arboleda.kinds.arm import MoveJoints
 
 from .conftest import Hand
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from arboleda.core import evidence, steps
-from arboleda.core.commands import Home, MoveJoints, SetEffector
+from arboleda.core.commands import Home
 from arboleda.core.context import Context
 from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.evidence import Verdict
@@ -17,6 +17,7 @@ from arboleda.core.ledger import Feed
 from arboleda.core.messages import Verb
 from arboleda.core.model import Evidence, PlantModel
 from arboleda.core.zones import Zones
+from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.invariants.grip import GRIP

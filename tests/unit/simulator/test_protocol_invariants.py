@@ -22,11 +22,13 @@ from arboleda.core import (
     plant,
 )
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.ledger import TABLE, Feed, State
 from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
-from arboleda.core.model import Arm, Evidence, ForeignCommands, PlantModel, Retry
+from arboleda.core.model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.core.sentence import Phrase
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.books import BOOKS

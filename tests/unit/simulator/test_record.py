@@ -7,10 +7,12 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, MoveJoints, Stop, StopMode
+from arboleda.core.commands import Stop, StopMode
 from arboleda.core.ledger import State
 from arboleda.core.messages import Report, TaskChanged, TaskState, Verb
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.simulator.record import Record
 from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, Stopped
 from arboleda.simulator.recorded.scopes import Scopes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import SetEffector
+from arboleda.kinds.arm import SetEffector
 from arboleda.wire.payloads import EffectorGoal
 
 EPOCH = 1_000

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import MoveJoints
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK
 STALE_AFTER_S = 1.5

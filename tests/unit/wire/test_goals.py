@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import MoveJoints
+from arboleda.kinds.arm import MoveJoints
 from arboleda.testing import shipped
 from arboleda.wire.goals import refusal
 

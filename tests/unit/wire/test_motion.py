@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import MoveJoints
 from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import MoveJoints
 from arboleda.testing import shipped
 from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.commands import MoveJoints, SetEffector
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState
 from arboleda.core.sentence import OWN
+from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.testing import shipped
 from arboleda.wire import rejections
 from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status

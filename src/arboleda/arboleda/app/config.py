@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import ForeignCommands, MqttVersion, PlantModel, Retry, StorageCell, Timing
-from arboleda.core.model import Path as Route
+from arboleda.core.model import ForeignCommands, MqttVersion, PlantModel, Retry, Timing
 from arboleda.recipes.storage import RECIPES
+from arboleda.recipes.storage_cell import Path as Route
+from arboleda.recipes.storage_cell import StorageCell
 
 from . import user_file
 from .plant_file import rack

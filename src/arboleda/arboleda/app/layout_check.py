@@ -8,13 +8,17 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from arboleda.core.errors import ArboledaError
-from arboleda.core.model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell
+from arboleda.core.model import PlantModel, Pose
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.kinematics import Matrix, Point
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 
 from .urdf import robot_urdf
 

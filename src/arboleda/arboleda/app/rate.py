@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from arboleda.core.errors import StartError
-from arboleda.core.model import Arm, Joint, PlantModel, StorageCell
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.recipes.storage_cell import StorageCell
 
 
 def check_rate(rate: float) -> float:

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from xml.etree.ElementTree import SubElement, fromstring, indent, tostring
 
 from arboleda.core.errors import ConfigError, StartError
-from arboleda.core.model import Arm, Mobile, PlantModel
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
 from arboleda_description.urdf import Limits, render
 
 from .plant_file.document import nearest, shown

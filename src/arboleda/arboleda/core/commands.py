@@ -88,43 +88,6 @@ class Query(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
-class MoveJoints(Motion):
-    """Drive an arm to `q` (rad; m for a prismatic joint)."""
-
-    q: tuple[float, ...]
-
-    @property
-    def way(self) -> tuple[Position, ...]:
-        return (self.q,)
-
-
-@dataclass(frozen=True, kw_only=True)
-class FollowPath(Motion):
-    """Drive a mobile robot over grid nodes."""
-
-    nodes: tuple[int, ...]
-
-    @property
-    def way(self) -> tuple[Position, ...]:
-        return self.nodes
-
-
-@dataclass(frozen=True, kw_only=True)
-class SetEffector(Switch):
-    """Switch an arm's effector."""
-
-    on: bool
-
-    @property
-    def sets(self) -> Facts:
-        return (("effector", self.on),)
-
-    @property
-    def grips(self) -> bool:
-        return self.on
-
-
-@dataclass(frozen=True, kw_only=True)
 class Stop(Command):
     """Halt the running move, stop and latch, or clear the latch."""
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from .commands import Command, FollowPath, MoveJoints, Position, SetEffector
-from .counting import counted
+from .commands import Command, Position
 from .recipe import Recipe
 from .sentence import NOTHING, OWN, Sentence
 
@@ -64,95 +61,6 @@ class MotionState(int, Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Joint:
-    """One axis: position in rad (revolute) or m (prismatic); `step` is one motor step in that unit."""
-
-    name: str
-    lower: float
-    upper: float
-    speed: float
-    acceleration: float
-    step: float
-    pinion_radius_m: float | None = None  # None: revolute; else the rack pinion of a prismatic axis
-    up: int = -1  # which way a prismatic axis lifts: -1 towards smaller values, 1 greater ones, 0 neither
-
-    @property
-    def unit(self) -> str:
-        return "rad" if self.pinion_radius_m is None else "m"
-
-    def steps(self, value: float) -> int:
-        """The whole motor step nearest to `value`, halves away from zero."""
-        return math.floor(abs(value) / self.step + 0.5) * (1 if value >= 0 else -1)
-
-    def quantised(self, value: float) -> float:
-        """`value` as the motor can hold it."""
-        return self.steps(value) * self.step
-
-    def higher(self, value: float, *others: float) -> float:
-        """The highest of these values where the joint lifts, else `value`."""
-        if self.pinion_radius_m is None or self.up == 0:
-            return value
-        return min(value, *others) if self.up < 0 else max(value, *others)
-
-    def travel_s(self, distance: float) -> float:
-        """Time of a rest-to-rest move over `distance` with constant acceleration."""
-        distance = abs(distance)
-        ramp = self.speed**2 / self.acceleration
-        if distance < ramp:
-            return 2 * math.sqrt(distance / self.acceleration)
-        return distance / self.speed + self.speed / self.acceleration
-
-
-@dataclass(frozen=True, kw_only=True)
-class Placement:
-    """A pose on the floor of the `world` frame: m, m, rad."""
-
-    x: float
-    y: float
-    yaw: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Grid:
-    """A rows x columns grid of nodes, numbered row by row from 0; `pitch` m between neighbours."""
-
-    origin: Placement
-    pitch: float
-    rows: int = 3
-    columns: int = 3
-
-    @property
-    def size(self) -> int:
-        return self.rows * self.columns
-
-    def neighbours(self, node: int) -> tuple[int, ...]:
-        """The nodes one 4-neighbour edge away, ascending."""
-        row, column = divmod(node, self.columns)
-        around = ((row - 1, column), (row, column - 1), (row, column + 1), (row + 1, column))
-        return tuple(r * self.columns + c for r, c in around if 0 <= r < self.rows and 0 <= c < self.columns)
-
-    def route(self, start: int, goal: int) -> tuple[int, ...]:
-        """A shortest way over 4-neighbours, both ends included; ties go to the lower node."""
-        came_from = {start: start}
-        frontier = deque([start])
-        while goal not in came_from:
-            node = frontier.popleft()
-            for nearby in self.neighbours(node):
-                if nearby not in came_from:
-                    came_from[nearby] = node
-                    frontier.append(nearby)
-        way = [goal]
-        while way[-1] != start:
-            way.append(came_from[way[-1]])
-        return tuple(reversed(way))
-
-    def position(self, node: int) -> tuple[float, float]:
-        """x, y of a node in the grid frame, m."""
-        row, column = divmod(node, self.columns)
-        return (column * self.pitch, row * self.pitch)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Robot:
     """What every robot declares: its names, its link and what it can prove."""
 
@@ -195,8 +103,12 @@ class Robot:
         """The command that brings it along `way` to its last position."""
         raise NotImplementedError
 
+    def grip(self, *, id: str) -> Command:
+        """The command that takes hold of a part."""
+        raise NotImplementedError
+
     def let_go(self, *, id: str) -> Command:
-        """The command that opens its effector."""
+        """The command that lets go of what it holds."""
         raise NotImplementedError
 
     def stands_at(self, position: Position, goal: Position) -> bool:
@@ -226,122 +138,6 @@ class Robot:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Description:
-    """A model of the plant's own: its URDF without a prefix, and what was assumed of it."""
-
-    urdf: str
-    notes: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Arm(Robot):
-    """An arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
-
-    model: str
-    twin: str
-    base: Placement
-    joints: tuple[Joint, ...]
-    tolerance: tuple[float, ...] | None = None
-    queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
-    description: Description | None = None  # None: the model comes with arboleda_description
-    position_key: ClassVar[str | None] = "q"
-
-    @property
-    def held_fact(self) -> str:
-        return "effector"
-
-    @property
-    def units(self) -> list[str]:
-        return [joint.unit for joint in self.joints]
-
-    def objection(self, report: Report) -> str | None:
-        if report.node is not None:
-            return f"node is {report.node}; {self.name} is an arm and stands on no node"
-        if report.q is not None and len(report.q) != len(self.joints):
-            has = f"{self.name} has {counted(len(self.joints), 'joint')}"
-            return f"q has {counted(len(report.q), 'value')}; {has}"
-        return None
-
-    def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
-        goal = way[-1]
-        assert isinstance(goal, tuple)
-        return MoveJoints(id=id, robot=self.name, q=goal)
-
-    def let_go(self, *, id: str) -> SetEffector:
-        return SetEffector(id=id, robot=self.name, on=False)
-
-    @cached_property
-    def reference(self) -> tuple[float, ...]:
-        """Where the homing routine ends, and the counters begin."""
-        return (0.0,) * len(self.joints)
-
-    @cached_property
-    def tolerances(self) -> tuple[float, ...]:
-        return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
-
-    def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
-        return tuple(joint.quantised(value) for joint, value in zip(self.joints, q, strict=True))
-
-    def held_at(self, position: Position) -> Position:
-        assert isinstance(position, tuple)
-        return self.quantised(position)
-
-    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
-        """Only prismatic joints lift; how, each of them says."""
-        assert isinstance(position, tuple)
-        rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
-        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
-
-    def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
-        """Whether reported joints `q` lie within tolerance of a quantised target."""
-        rows = zip(q, target, self.tolerances, strict=True)
-        return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
-
-    def stands_at(self, position: Position, goal: Position) -> bool:
-        assert isinstance(position, tuple) and isinstance(goal, tuple)
-        return self.reached(position, self.quantised(goal))
-
-    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
-        """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
-        longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
-        if start is None:
-            return longest_s
-        assert isinstance(start, tuple) and isinstance(way[-1], tuple)
-        rows = zip(self.joints, start, way[-1], strict=True)
-        return min(longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
-
-    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
-        assert isinstance(before, tuple) and isinstance(after, tuple)
-        rows = zip(self.joints, before, after, strict=True)
-        return all(abs(now - then) <= joint.speed * elapsed_s + 2 * joint.step for joint, then, now in rows)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mobile(Robot):
-    """A mobile robot on a grid; `speed` in m/s."""
-
-    model: str
-    grid: Grid
-    speed: float
-    position_key: ClassVar[str | None] = "node"
-
-    def objection(self, report: Report) -> str | None:
-        for key in ("q", "effector", "piece"):
-            if getattr(report, key) is not None:
-                return f"{key} was said; {self.name} is a mobile robot and has none"
-        if report.node is not None and not 0 <= report.node < self.grid.size:
-            return f"node is {report.node}; {self.name} knows {self.grid.size} nodes"
-        return None
-
-    def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
-        return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
-
-    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
-        """Time of a path; one edge is added for a robot that starts elsewhere."""
-        return len(way) * self.grid.pitch / self.speed
-
-
-@dataclass(frozen=True, kw_only=True)
 class Pose:
     """A named arm pose; `above` the point over it where it has an approach height, `zones` where it lies."""
 
@@ -364,27 +160,6 @@ class Crossing:
     a: str  # names of poses
     b: str
     zones: frozenset[str]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Path:
-    """A coded way of the mobile over its grid, node by node."""
-
-    code: str
-    nodes: tuple[int, ...]
-
-    @property
-    def exit(self) -> str:
-        """What its code calls its last node: the second character."""
-        return self.code[1]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Palletizing:
-    """The fixed pick and place of a cell's palletizing recipe."""
-
-    pick: Pose
-    place: Pose
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -477,64 +252,6 @@ class Cell:
     def zone_users(self) -> tuple[str, ...]:
         """The robots that may get into shared zones."""
         return tuple(name for name, workspace in self.workspaces.items() if workspace.zones)
-
-
-@dataclass(frozen=True, kw_only=True)
-class StorageCell(Cell):
-    """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
-
-    arm: Arm
-    mobile: Mobile
-    home: Pose
-    pickup: Pose
-    paths: tuple[Path, ...]
-    palletizing: Palletizing
-    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
-    piece_check: bool = False
-    crossings: tuple[Crossing, ...] = ()
-    pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
-
-    def pickup_of(self, path: Path) -> Pose:
-        """Where the arm takes the part at the end of a path."""
-        return dict(self.pickups).get(path.exit, self.pickup)
-
-    def pickup_over(self, node: Position | None) -> Pose:
-        """Where the arm meets a mobile that stands on this node; None, or no exit: the one for all exits."""
-        return next((self.pickup_of(path) for path in self.paths if path.nodes[-1] == node), self.pickup)
-
-    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
-        own_cycle = "palletizing" in at_work
-        return self.arm.name if own_cycle and not self.arm.queue_triggers else None
-
-    def back(self, robot: str, positions: Positions) -> Pose:
-        return self.pickup_over(positions(self.mobile.name))
-
-    def path(self, code: str) -> Path:
-        return next(path for path in self.paths if path.code == code)
-
-    @cached_property
-    def roles(self) -> dict[str, Robot]:
-        return {"arm": self.arm, "mobile": self.mobile}
-
-    @cached_property
-    def workspaces(self) -> dict[str, Workspace]:
-        arm = Workspace(robot=self.arm, home=self.home, poses=self.poses, crossings=self.crossings)
-        return {self.arm.name: arm}
-
-    @cached_property
-    def zones(self) -> frozenset[str]:
-        """Every shared zone that the arm may get into."""
-        return self.workspaces[self.arm.name].zones
-
-    @cached_property
-    def poses(self) -> tuple[Pose, ...]:
-        """Every named pose of the arm; a palletizing pose is one of them."""
-        return (self.home, *self.every_pickup, *self.stations)
-
-    @cached_property
-    def every_pickup(self) -> tuple[Pose, ...]:
-        """The pick-ups of all exits, each once."""
-        return tuple({pose.name: pose for pose in (self.pickup, *dict(self.pickups).values())}.values())
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,7 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 
 from . import zone_plan
-from .commands import Command, SetEffector
+from .commands import Command
 from .context import Context
 from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, TakeZones, Unless, titled
 from .messages import Failure, Reason, SystemStart
@@ -179,7 +179,8 @@ def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> B
 
 
 def _effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
-    make = partial(SetEffector, robot=robot, on=on)
+    device = context.cell.workspaces[robot].robot
+    make = device.grip if on else device.let_go
     title, doing = (EFFECTOR_ON, SWITCHING_ON) if on else (EFFECTOR_OFF, SWITCHING_OFF)
     act = Act(SWITCH(), context, make, doing(), then=then)
     return sequence(title(), act, Dwell(DWELL(), context, context.timing.dwell_s))

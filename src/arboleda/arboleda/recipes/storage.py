@@ -7,14 +7,15 @@ from collections.abc import Sequence
 from py_trees.behaviour import Behaviour
 
 from arboleda.core import steps, zone_plan
-from arboleda.core.commands import FollowPath
 from arboleda.core.context import Context
 from arboleda.core.leaves import Act, Require
 from arboleda.core.messages import Failure, Reason
-from arboleda.core.model import Cell, Path, Pose, StorageCell
+from arboleda.core.model import Cell, Pose
 from arboleda.core.recipe import Parameter, Recipe
 from arboleda.core.sentence import Phrase, Sentence
 from arboleda.core.task import Order
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import Path, StorageCell
 
 STORING = Phrase("step.storage", "storage")
 CYCLE = Phrase("step.palletizing", "palletizing")

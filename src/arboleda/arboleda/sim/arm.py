@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.core.model import Arm, Joint
+from arboleda.kinds.arm import Arm, Joint
 from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel

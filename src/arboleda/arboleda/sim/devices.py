@@ -6,7 +6,10 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
-from arboleda.core.model import Arm, Link, Mobile, PlantModel, Robot, StorageCell
+from arboleda.core.model import Link, PlantModel, Robot
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .arm import ArmBody

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from arboleda.core.model import Mobile
+from arboleda.kinds.mobile import Mobile
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
 

@@ -14,7 +14,8 @@ from functools import partial
 
 from arboleda.core.belief import APART_S
 from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, Mobile, Robot
+from arboleda.core.model import Evidence, Robot
+from arboleda.kinds.mobile import Mobile
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 

@@ -6,7 +6,7 @@ from itertools import count
 
 from arboleda.core.advice import Advice, Hand
 from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.core.model import StorageCell
+from arboleda.recipes.storage_cell import StorageCell
 
 from .chance import Dice
 from .hands import do

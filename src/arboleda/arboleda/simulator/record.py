@@ -7,7 +7,7 @@ from copy import copy
 from typing import Any
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Motion, Stop, StopMode
 from arboleda.core.ledger import State
 from arboleda.core.messages import (
     Fact,
@@ -22,6 +22,8 @@ from arboleda.core.messages import (
     Verb,
 )
 from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 
 from .recorded.acts import Acts
 from .recorded.boards import Boards, KnownBoard

@@ -7,7 +7,9 @@ from functools import cache
 from typing import Any
 
 from arboleda.app.config import load
-from arboleda.core.model import Arm, PlantModel, StorageCell
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm
+from arboleda.recipes.storage_cell import StorageCell
 
 
 def shipped(*cells: str, **declared: Any) -> PlantModel:

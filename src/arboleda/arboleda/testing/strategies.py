@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from arboleda.core.model import PlantModel, StorageCell
+from arboleda.core.model import PlantModel
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.simulator.faults import KINDS, Fault
 
 WITHIN_S = 60.0

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.model import Arm, Mobile, Placement, PlantModel, Pose, StorageCell, Workspace
+from arboleda.core.model import PlantModel, Pose, Workspace
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 
 Row = dict[str, Any]
 

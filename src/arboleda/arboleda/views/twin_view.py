@@ -8,12 +8,13 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
-from arboleda.core.commands import FollowPath, MoveJoints, SetEffector
 from arboleda.core.grips import Grip
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import OPEN, Entry, State
-from arboleda.core.model import StorageCell
 from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import StorageCell
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})

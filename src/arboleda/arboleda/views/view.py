@@ -16,11 +16,12 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.leaves import title_of
 from arboleda.core.ledger import Entry
 from arboleda.core.messages import OperatorRequest, TaskChanged, Verb
-from arboleda.core.model import PlantModel, StorageCell
+from arboleda.core.model import PlantModel
 from arboleda.core.operator import OperatorAct
 from arboleda.core.plant import Plant
 from arboleda.core.sentence import BOTH, NOTHING, Phrase, Sentence
 from arboleda.core.task import Task
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 from . import places, tree_view, twin_view

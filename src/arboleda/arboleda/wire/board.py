@@ -8,8 +8,10 @@ from functools import lru_cache
 from arboleda.core.commands import Command, Motion, Stop, StopMode
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
-from arboleda.core.model import Arm, Evidence, Mobile, MotionState, Robot
+from arboleda.core.model import Evidence, MotionState, Robot
 from arboleda.core.sentence import NOTHING, Phrase, Sentence
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
 
 from . import goals, rejections
 from .copies import Copies

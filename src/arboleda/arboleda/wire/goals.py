@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
-from arboleda.core.model import Arm, Mobile, Robot
+from arboleda.core.commands import Command, Home, Motion, Stop, StopMode
+from arboleda.core.model import Robot
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Mobile
 
 from .payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from .topics import Channel

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.messages import Heartbeat
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 
 COMMAND = "command"
 HEARTBEAT = "plant/heartbeat"

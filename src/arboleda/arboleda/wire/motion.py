@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints
-from arboleda.core.model import Arm, Evidence, MotionState, Robot
+from arboleda.core.commands import Command
+from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath
 
 from .payloads import Telemetry
 

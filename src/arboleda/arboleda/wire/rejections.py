@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints
-from arboleda.core.model import Arm, Mobile, Robot
+from arboleda.core.commands import Command
+from arboleda.core.model import Robot
 from arboleda.core.sentence import OWN, Phrase, Sentence
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath, Mobile
 
 from .goals import FLOAT32_SLACK
 from .hop import shown

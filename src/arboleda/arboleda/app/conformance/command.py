@@ -10,7 +10,8 @@ from rich.text import Text
 
 from arboleda.adapters.mqtt import Credentials
 from arboleda.core.errors import StartError
-from arboleda.core.model import Arm, Evidence, PlantModel
+from arboleda.core.model import Evidence, PlantModel
+from arboleda.kinds.arm import Arm
 
 from .. import config
 from ..parts.broker import MQTT_PORT, address, login

@@ -10,7 +10,7 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import Address, Credentials, MqttClient, NotConnected
 from arboleda.core.errors import StartError
-from arboleda.core.model import Arm
+from arboleda.kinds.arm import Arm
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 

@@ -10,8 +10,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from arboleda.core.errors import StartError
-from arboleda.core.model import Arm, Evidence, Link, PlantModel
+from arboleda.core.model import Evidence, Link, PlantModel
 from arboleda.core.outside import plain, quoted
+from arboleda.kinds.arm import Arm
 from arboleda.wire.units import to_wire
 
 from .lookout import Lookout

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations, product
 
-from arboleda.core.model import Crossing, Pose, StorageCell
+from arboleda.core.model import Crossing, Pose
+from arboleda.recipes.storage_cell import StorageCell
 
 ROUNDING = 1e-9  # rad or m, far below a motor step
 WHY = "in every joint they are within twice the arm's tolerance of each other, so it cannot tell them apart"

@@ -6,7 +6,10 @@ from collections.abc import Iterable
 
 from arboleda.core.belief import APART_S
 from arboleda.core.evidence import QUIET_S
-from arboleda.core.model import Arm, Evidence, Mobile, Robot, StorageCell, Timing
+from arboleda.core.model import Evidence, Robot, Timing
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 
 from .document import Document, Place
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from arboleda.core.model import Joint
 from arboleda.dashboard.twin import bodies, kinematics, stand_in
+from arboleda.kinds.arm import Joint
 
 from .robot_models import millimetres
 from .shapes import OffsetShape

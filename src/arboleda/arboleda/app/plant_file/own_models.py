@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import Description, Joint
 from arboleda.core.outside import plain
+from arboleda.kinds.arm import Description, Joint
 from arboleda.wire.units import to_wire
 
 from .. import user_file

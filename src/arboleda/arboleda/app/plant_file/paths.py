@@ -7,7 +7,10 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 from arboleda.core.belief import APART_S
-from arboleda.core.model import Evidence, Grid, Mobile, Path, Placement
+from arboleda.core.model import Evidence
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Grid, Mobile
+from arboleda.recipes.storage_cell import Path
 
 from .document import Document, Place, choice
 from .shapes import MAPPING, NODES

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.core.model import Path, Pose
+from arboleda.core.model import Pose
+from arboleda.recipes.storage_cell import Path
 
 from .document import Document, Place, choice
 from .poses import PICKUP, PICKUP_AT, PoseReader

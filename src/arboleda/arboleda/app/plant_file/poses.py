@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from itertools import count, repeat
 
 from arboleda.core.counting import counted
-from arboleda.core.model import Joint, Pose
+from arboleda.core.model import Pose
 from arboleda.core.sentence import Phrase, Sentence
+from arboleda.kinds.arm import Joint
 
 from .document import Document, Place
 from .robot_models import TO_SI, millimetres

@@ -6,7 +6,8 @@ import re
 from itertools import product
 
 from arboleda.core.counting import counted
-from arboleda.core.model import Palletizing, Pose
+from arboleda.core.model import Pose
+from arboleda.recipes.storage_cell import Palletizing
 
 from .document import Place, shown
 from .pickups import Pickups, pickup_names

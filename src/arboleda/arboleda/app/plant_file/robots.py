@@ -6,7 +6,10 @@ import math
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile, Placement
+from arboleda.core.model import Evidence
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Grid, Mobile
 
 from .document import Document, Place, choice, closest, nearest, shown
 from .own_models import is_own, own_model

@@ -8,7 +8,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic_core import PydanticCustomError
 
-from arboleda.core.model import Evidence, Link, Retry, StorageCell, Timing
+from arboleda.core.model import Evidence, Link, Retry, Timing
+from arboleda.recipes.storage_cell import StorageCell
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
 

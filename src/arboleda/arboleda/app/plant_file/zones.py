@@ -6,8 +6,9 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from arboleda.core.model import Crossing, Pose, StorageCell
+from arboleda.core.model import Crossing, Pose
 from arboleda.recipes.storage import plan_problems
+from arboleda.recipes.storage_cell import StorageCell
 
 from .alike import confusions, with_alike_crossings
 from .document import Document, Place, nearest, shown

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
 
-from arboleda.core.model import Link, PlantModel, StorageCell
+from arboleda.core.model import Link, PlantModel
+from arboleda.recipes.storage_cell import StorageCell
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Arm, PlantModel
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm
 
 from ..network import keeps_its_place
 from ..world import World

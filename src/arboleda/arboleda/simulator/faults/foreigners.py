@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from arboleda.core.commands import StopMode
-from arboleda.core.model import Arm, PlantModel, Robot
+from arboleda.core.model import PlantModel, Robot
+from arboleda.kinds.arm import Arm
 from arboleda.wire.goals import goal as goal_of
 from arboleda.wire.payloads import Goal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic

@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 from arboleda.core.intake import HISTORY
 from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import PlantModel, StorageCell
+from arboleda.core.model import PlantModel
 from arboleda.core.task import Task
+from arboleda.recipes.storage_cell import StorageCell
 
 from ..chance import Dice
 from ..world import World

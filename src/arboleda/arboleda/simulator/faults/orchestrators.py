@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.messages import Heartbeat
-from arboleda.core.model import Arm, PlantModel
+from arboleda.core.model import PlantModel
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.epochs import AHEAD_S
 from arboleda.wire.hop import FromPlant

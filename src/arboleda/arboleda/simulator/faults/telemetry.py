@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from arboleda.core.model import Arm, Evidence, Joint, Mobile, MotionState, PlantModel
+from arboleda.core.model import Evidence, MotionState, PlantModel
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.mobile import Mobile
 from arboleda.wire.units import to_wire
 
 from ..chance import Dice

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import cast
 
-from arboleda.core.model import Arm, Evidence, Link, PlantModel, Robot
+from arboleda.core.model import Evidence, Link, PlantModel, Robot
+from arboleda.kinds.arm import Arm
 from arboleda.sim.arm import ArmBody
 
 from ..world import BRIDGE, PLANT, World

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.commands import Home, Motion, SetEffector, Stop, StopMode
+from arboleda.core.commands import Home, Motion, Stop, StopMode
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import TABLE, State
 from arboleda.core.messages import Reason, Verb
 from arboleda.core.model import MotionState, Robot, Timing
+from arboleda.kinds.arm import SetEffector
 
 from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.commands import Command, Home
 from arboleda.core.model import Evidence
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 
 from ..truth import Truth
 from ..truth.arm import ArmTruth

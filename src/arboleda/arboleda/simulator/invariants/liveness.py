@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.model import Arm, Evidence, MotionState
+from arboleda.core.model import Evidence, MotionState
+from arboleda.kinds.arm import Arm
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.commands import SetEffector, Stop, StopMode
+from arboleda.core.commands import Stop, StopMode
 from arboleda.core.messages import Fact, Remember
+from arboleda.kinds.arm import SetEffector
 
 from ..recorded.robots import Stopped
 from .invariant import Look, When, invariant

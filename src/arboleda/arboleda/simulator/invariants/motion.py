@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core.commands import FollowPath, MoveJoints
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
 from arboleda.wire.payloads import EffectorGoal, JointsGoal, PathGoal
 
 from ..truth.arm import ArmTruth

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.commands import SetEffector
 from arboleda.core.ledger import State
 from arboleda.core.messages import Reason
 from arboleda.core.model import Evidence
+from arboleda.kinds.arm import SetEffector
 
 from ..recorded.commands import SentCommand
 from ..recorded.proofs import Proof, told

@@ -11,11 +11,13 @@ from py_trees.common import Status
 
 from arboleda.core.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.core.cell import HELD, HELD_STRANDED
-from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.ledger import OPEN, State
 from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.core.model import Arm, MotionState, Robot, StorageCell
+from arboleda.core.model import MotionState, Robot
 from arboleda.core.sentence import Phrase, Sentence
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.views.view import IN_RECOVERY
 
 from ..recorded.cells import KnownCell

@@ -9,10 +9,10 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import FollowPath, MoveJoints
 from arboleda.core.errors import PayloadError
 from arboleda.core.ledger import OPEN, State
-from arboleda.core.model import Arm, Mobile
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.views import places, twin_view, view
 from arboleda.wire import status
 

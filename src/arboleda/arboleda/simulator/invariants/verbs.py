@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.ledger import State
 from arboleda.core.messages import Journal, OperatorAnswer, OperatorRequest, TaskState, Verb
-from arboleda.core.model import Arm, Evidence, Link
+from arboleda.core.model import Evidence, Link
+from arboleda.kinds.arm import Arm, SetEffector
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped

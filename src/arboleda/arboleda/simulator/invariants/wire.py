@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from arboleda.core.commands import Command, FollowPath, Home, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.messages import Heartbeat
-from arboleda.core.model import Arm, Evidence, Grid, Joint, Mobile
+from arboleda.core.model import Evidence
+from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Grid, Mobile
 
 from ..recorded.boards import fields, is_number, on_wire
 from ..world import BRIDGE

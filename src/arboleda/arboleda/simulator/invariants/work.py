@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import dropwhile
 
-from arboleda.core.commands import MoveJoints
 from arboleda.core.ledger import State
-from arboleda.core.model import Arm, Evidence, Pose, StorageCell
+from arboleda.core.model import Evidence, Pose
+from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.recipes.storage_cell import StorageCell
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand

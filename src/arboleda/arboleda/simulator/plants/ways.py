@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Grid, Placement
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Grid
 
 from ..chance import Dice
 from .poses import Section

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
-from arboleda.core.model import Arm, Joint, Robot
+from arboleda.core.model import Robot
+from arboleda.kinds.arm import Arm, Joint
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import Goal
 from arboleda.wire.topics import Channel, topic

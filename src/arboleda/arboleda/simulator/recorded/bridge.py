@@ -13,9 +13,11 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.core.belief import Belief
-from arboleda.core.commands import Command, FollowPath, Home, Motion, MoveJoints, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Home, Motion, Stop, StopMode
 from arboleda.core.messages import Heartbeat, Report
-from arboleda.core.model import Arm, Evidence, Link, Mobile, MotionState, PlantModel, Robot
+from arboleda.core.model import Evidence, Link, MotionState, PlantModel, Robot
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication

@@ -12,7 +12,7 @@ from py_trees.common import Status
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.leaves import Act, TakeZones
-from arboleda.core.model import StorageCell
+from arboleda.recipes.storage_cell import StorageCell
 
 from .commands import SentCommand
 

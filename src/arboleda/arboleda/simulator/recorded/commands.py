@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from arboleda.core.commands import Command, Motion, SetEffector, Stop, StopMode
+from arboleda.core.commands import Command, Motion, Stop, StopMode
 from arboleda.core.ledger import OPEN, Entry, Ledger, State
 from arboleda.core.messages import Report, Verb
+from arboleda.kinds.arm import SetEffector
 
 from .robots import KnownRobot, Obstacle
 

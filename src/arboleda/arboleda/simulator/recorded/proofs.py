@@ -9,9 +9,11 @@ import math
 from dataclasses import dataclass, field
 from itertools import starmap
 
-from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector
+from arboleda.core.commands import Home
 from arboleda.core.messages import Failure, Reason, Report
-from arboleda.core.model import Arm, Evidence, MotionState, Robot
+from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
 
 from .commands import SentCommand
 from .robots import KnownRobot

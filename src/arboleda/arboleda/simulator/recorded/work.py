@@ -6,10 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.commands import Command, FollowPath, MoveJoints, SetEffector
+from arboleda.core.commands import Command
 from arboleda.core.ledger import State
 from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import Pose, StorageCell
+from arboleda.core.model import Pose
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
+from arboleda.recipes.storage_cell import StorageCell
 
 from .commands import SentCommand
 from .robots import KnownRobot

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from operator import add, sub
 
-from arboleda.core.model import Arm, Pose, StorageCell
+from arboleda.core.model import Pose
+from arboleda.kinds.arm import Arm
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal

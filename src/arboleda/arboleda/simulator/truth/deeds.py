@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.model import Evidence, Pose, StorageCell
+from arboleda.core.model import Evidence, Pose
 from arboleda.core.task import Order
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
 from .arm import NOWHERE, ArmTruth

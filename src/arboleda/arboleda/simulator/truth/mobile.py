@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Mobile, StorageCell
+from arboleda.kinds.mobile import Mobile
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
 from arboleda.wire.payloads import PathGoal

@@ -9,7 +9,8 @@ from operator import attrgetter
 from typing import Any
 
 from arboleda.core.commands import StopMode
-from arboleda.core.model import Evidence, Robot, StorageCell
+from arboleda.core.model import Evidence, Robot
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel

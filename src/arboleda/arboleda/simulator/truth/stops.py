@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 
-from arboleda.core.commands import Command, Motion, SetEffector
+from arboleda.core.commands import Command, Motion
 from arboleda.core.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.core.model import PlantModel, Robot
+from arboleda.kinds.arm import SetEffector
 from arboleda.wire import goals
 from arboleda.wire.payloads import Goal, JointsGoal
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from arboleda.core import text
-from arboleda.core.commands import FollowPath, Home, MoveJoints, SetEffector, Stop
+from arboleda.core.commands import Home, Stop
 from arboleda.core.messages import Fact, OperatorAnswer, Remember, TaskChanged, TaskState, Verb
-from arboleda.core.model import Arm, Evidence, Mobile
+from arboleda.core.model import Evidence
 from arboleda.core.task import Order
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath, Mobile
 
 from ..world import BRIDGE, World
 from .arm import ArmTruth

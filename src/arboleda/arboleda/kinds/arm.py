@@ -1,0 +1,177 @@
+"""An arm: its joints, what it is told, and what it can prove."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+from arboleda.core.commands import Motion, Position, Switch
+from arboleda.core.counting import counted
+from arboleda.core.facts import Facts
+from arboleda.core.messages import Report
+from arboleda.core.model import Robot
+
+from .floor import Placement
+
+
+@dataclass(frozen=True, kw_only=True)
+class MoveJoints(Motion):
+    """Drive an arm to `q` (rad; m for a prismatic joint)."""
+
+    q: tuple[float, ...]
+
+    @property
+    def way(self) -> tuple[Position, ...]:
+        return (self.q,)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetEffector(Switch):
+    """Switch an arm's effector."""
+
+    on: bool
+
+    @property
+    def sets(self) -> Facts:
+        return (("effector", self.on),)
+
+    @property
+    def grips(self) -> bool:
+        return self.on
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """One axis: position in rad (revolute) or m (prismatic); `step` is one motor step in that unit."""
+
+    name: str
+    lower: float
+    upper: float
+    speed: float
+    acceleration: float
+    step: float
+    pinion_radius_m: float | None = None  # None: revolute; else the rack pinion of a prismatic axis
+    up: int = -1  # which way a prismatic axis lifts: -1 towards smaller values, 1 greater ones, 0 neither
+
+    @property
+    def unit(self) -> str:
+        return "rad" if self.pinion_radius_m is None else "m"
+
+    def steps(self, value: float) -> int:
+        """The whole motor step nearest to `value`, halves away from zero."""
+        return math.floor(abs(value) / self.step + 0.5) * (1 if value >= 0 else -1)
+
+    def quantised(self, value: float) -> float:
+        """`value` as the motor can hold it."""
+        return self.steps(value) * self.step
+
+    def higher(self, value: float, *others: float) -> float:
+        """The highest of these values where the joint lifts, else `value`."""
+        if self.pinion_radius_m is None or self.up == 0:
+            return value
+        return min(value, *others) if self.up < 0 else max(value, *others)
+
+    def travel_s(self, distance: float) -> float:
+        """Time of a rest-to-rest move over `distance` with constant acceleration."""
+        distance = abs(distance)
+        ramp = self.speed**2 / self.acceleration
+        if distance < ramp:
+            return 2 * math.sqrt(distance / self.acceleration)
+        return distance / self.speed + self.speed / self.acceleration
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """A model of the plant's own: its URDF without a prefix, and what was assumed of it."""
+
+    urdf: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm(Robot):
+    """An arm; `tolerance` per joint overrides the default of half a motor step + 1e-5."""
+
+    model: str
+    twin: str
+    base: Placement
+    joints: tuple[Joint, ...]
+    tolerance: tuple[float, ...] | None = None
+    queue_triggers: bool = True  # False: a start trigger during the arm's own cycle is refused
+    description: Description | None = None  # None: the model comes with arboleda_description
+    position_key: ClassVar[str | None] = "q"
+
+    @property
+    def held_fact(self) -> str:
+        return "effector"
+
+    @property
+    def units(self) -> list[str]:
+        return [joint.unit for joint in self.joints]
+
+    def objection(self, report: Report) -> str | None:
+        if report.node is not None:
+            return f"node is {report.node}; {self.name} is an arm and stands on no node"
+        if report.q is not None and len(report.q) != len(self.joints):
+            has = f"{self.name} has {counted(len(self.joints), 'joint')}"
+            return f"q has {counted(len(report.q), 'value')}; {has}"
+        return None
+
+    def go(self, *, id: str, way: Sequence[Position]) -> MoveJoints:
+        goal = way[-1]
+        assert isinstance(goal, tuple)
+        return MoveJoints(id=id, robot=self.name, q=goal)
+
+    def grip(self, *, id: str) -> SetEffector:
+        return SetEffector(id=id, robot=self.name, on=True)
+
+    def let_go(self, *, id: str) -> SetEffector:
+        return SetEffector(id=id, robot=self.name, on=False)
+
+    @cached_property
+    def reference(self) -> tuple[float, ...]:
+        """Where the homing routine ends, and the counters begin."""
+        return (0.0,) * len(self.joints)
+
+    @cached_property
+    def tolerances(self) -> tuple[float, ...]:
+        return self.tolerance or tuple(joint.step / 2 + 1e-5 for joint in self.joints)
+
+    def quantised(self, q: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(joint.quantised(value) for joint, value in zip(self.joints, q, strict=True))
+
+    def held_at(self, position: Position) -> Position:
+        assert isinstance(position, tuple)
+        return self.quantised(position)
+
+    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
+        """Only prismatic joints lift; how, each of them says."""
+        assert isinstance(position, tuple)
+        rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
+        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
+
+    def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
+        """Whether reported joints `q` lie within tolerance of a quantised target."""
+        rows = zip(q, target, self.tolerances, strict=True)
+        return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
+
+    def stands_at(self, position: Position, goal: Position) -> bool:
+        assert isinstance(position, tuple) and isinstance(goal, tuple)
+        return self.reached(position, self.quantised(goal))
+
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
+        """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""
+        longest_s = max(joint.travel_s(joint.upper - joint.lower) for joint in self.joints)
+        if start is None:
+            return longest_s
+        assert isinstance(start, tuple) and isinstance(way[-1], tuple)
+        rows = zip(self.joints, start, way[-1], strict=True)
+        return min(longest_s, max(joint.travel_s(there - here) for joint, here, there in rows))
+
+    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
+        assert isinstance(before, tuple) and isinstance(after, tuple)
+        rows = zip(self.joints, before, after, strict=True)
+        return all(abs(now - then) <= joint.speed * elapsed_s + 2 * joint.step for joint, then, now in rows)

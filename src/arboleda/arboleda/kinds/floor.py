@@ -1,0 +1,14 @@
+"""Where things stand on the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Placement:
+    """A pose on the floor of the `world` frame: m, m, rad."""
+
+    x: float
+    y: float
+    yaw: float = 0.0

@@ -1,0 +1,90 @@
+"""A mobile robot on a grid of nodes: the ways it can take, and what it is told."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from arboleda.core.commands import Motion, Position
+from arboleda.core.messages import Report
+from arboleda.core.model import Robot
+
+from .floor import Placement
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowPath(Motion):
+    """Drive a mobile robot over grid nodes."""
+
+    nodes: tuple[int, ...]
+
+    @property
+    def way(self) -> tuple[Position, ...]:
+        return self.nodes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """A rows x columns grid of nodes, numbered row by row from 0; `pitch` m between neighbours."""
+
+    origin: Placement
+    pitch: float
+    rows: int = 3
+    columns: int = 3
+
+    @property
+    def size(self) -> int:
+        return self.rows * self.columns
+
+    def neighbours(self, node: int) -> tuple[int, ...]:
+        """The nodes one 4-neighbour edge away, ascending."""
+        row, column = divmod(node, self.columns)
+        around = ((row - 1, column), (row, column - 1), (row, column + 1), (row + 1, column))
+        return tuple(r * self.columns + c for r, c in around if 0 <= r < self.rows and 0 <= c < self.columns)
+
+    def route(self, start: int, goal: int) -> tuple[int, ...]:
+        """A shortest way over 4-neighbours, both ends included; ties go to the lower node."""
+        came_from = {start: start}
+        frontier = deque([start])
+        while goal not in came_from:
+            node = frontier.popleft()
+            for nearby in self.neighbours(node):
+                if nearby not in came_from:
+                    came_from[nearby] = node
+                    frontier.append(nearby)
+        way = [goal]
+        while way[-1] != start:
+            way.append(came_from[way[-1]])
+        return tuple(reversed(way))
+
+    def position(self, node: int) -> tuple[float, float]:
+        """x, y of a node in the grid frame, m."""
+        row, column = divmod(node, self.columns)
+        return (column * self.pitch, row * self.pitch)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mobile(Robot):
+    """A mobile robot on a grid; `speed` in m/s."""
+
+    model: str
+    grid: Grid
+    speed: float
+    position_key: ClassVar[str | None] = "node"
+
+    def objection(self, report: Report) -> str | None:
+        for key in ("q", "effector", "piece"):
+            if getattr(report, key) is not None:
+                return f"{key} was said; {self.name} is a mobile robot and has none"
+        if report.node is not None and not 0 <= report.node < self.grid.size:
+            return f"node is {report.node}; {self.name} knows {self.grid.size} nodes"
+        return None
+
+    def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
+        return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
+
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
+        """Time of a path; one edge is added for a robot that starts elsewhere."""
+        return len(way) * self.grid.pitch / self.speed

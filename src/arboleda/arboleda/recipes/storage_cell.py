@@ -1,0 +1,91 @@
+"""The cell that the storage recipes work in: an arm, a mobile robot and a rack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from arboleda.core.commands import Position
+from arboleda.core.model import Cell, Crossing, Pose, Positions, Robot, Workspace
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.mobile import Mobile
+
+
+@dataclass(frozen=True, kw_only=True)
+class Path:
+    """A coded way of the mobile over its grid, node by node."""
+
+    code: str
+    nodes: tuple[int, ...]
+
+    @property
+    def exit(self) -> str:
+        """What its code calls its last node: the second character."""
+        return self.code[1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Palletizing:
+    """The fixed pick and place of a cell's palletizing recipe."""
+
+    pick: Pose
+    place: Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class StorageCell(Cell):
+    """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
+
+    arm: Arm
+    mobile: Mobile
+    home: Pose
+    pickup: Pose
+    paths: tuple[Path, ...]
+    palletizing: Palletizing
+    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
+    piece_check: bool = False
+    crossings: tuple[Crossing, ...] = ()
+    pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
+
+    def pickup_of(self, path: Path) -> Pose:
+        """Where the arm takes the part at the end of a path."""
+        return dict(self.pickups).get(path.exit, self.pickup)
+
+    def pickup_over(self, node: Position | None) -> Pose:
+        """Where the arm meets a mobile that stands on this node; None, or no exit: the one for all exits."""
+        return next((self.pickup_of(path) for path in self.paths if path.nodes[-1] == node), self.pickup)
+
+    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
+        own_cycle = "palletizing" in at_work
+        return self.arm.name if own_cycle and not self.arm.queue_triggers else None
+
+    def back(self, robot: str, positions: Positions) -> Pose:
+        return self.pickup_over(positions(self.mobile.name))
+
+    def path(self, code: str) -> Path:
+        return next(path for path in self.paths if path.code == code)
+
+    @cached_property
+    def roles(self) -> dict[str, Robot]:
+        return {"arm": self.arm, "mobile": self.mobile}
+
+    @cached_property
+    def workspaces(self) -> dict[str, Workspace]:
+        arm = Workspace(robot=self.arm, home=self.home, poses=self.poses, crossings=self.crossings)
+        return {self.arm.name: arm}
+
+    @cached_property
+    def zones(self) -> frozenset[str]:
+        """Every shared zone that the arm may get into."""
+        return self.workspaces[self.arm.name].zones
+
+    @cached_property
+    def poses(self) -> tuple[Pose, ...]:
+        """Every named pose of the arm; a palletizing pose is one of them."""
+        return (self.home, *self.every_pickup, *self.stations)
+
+    @cached_property
+    def every_pickup(self) -> tuple[Pose, ...]:
+        """The pick-ups of all exits, each once."""
+        return tuple({pose.name: pose for pose in (self.pickup, *dict(self.pickups).values())}.values())
