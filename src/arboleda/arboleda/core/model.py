@@ -99,6 +99,10 @@ class Robot:
         """Where its position is counted from; None where it counts nothing that a boot could lose."""
         return None
 
+    def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
+        """The positions by which it gets from `start`, where that is known, to `goal`, which is the last."""
+        return (goal,)
+
     def go(self, *, id: str, way: Sequence[Position]) -> Command:
         """The command that brings it along `way` to its last position."""
         raise NotImplementedError
@@ -139,11 +143,13 @@ class Robot:
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """A named arm pose; `above` the point over it where it has an approach height, `zones` where it lies."""
+    """A named position of a robot; `above` the point over it where it has an approach height, `zones` where
+    it lies.
+    """
 
     name: str
-    q: tuple[float, ...]
-    above: tuple[float, ...] | None = None
+    q: Position
+    above: Position | None = None
     zones: frozenset[str] = frozenset()
     title: Sentence = NOTHING
 
@@ -172,9 +178,10 @@ class Retry:
 
 @dataclass(frozen=True, kw_only=True)
 class Workspace:
-    """Where one robot goes in its cell, and which shared zones lie on its ways."""
+    """Where one robot goes in its cell, which shared zones lie on its ways, and what it takes parts with."""
 
     robot: Robot
+    tool: Robot | None = None  # a device of its own at the robot's end; None: what the robot itself has
     home: Pose  # where it waits, and where a recovery ends
     poses: tuple[Pose, ...]  # home is one of them
     crossings: tuple[Crossing, ...] = ()
@@ -184,6 +191,11 @@ class Workspace:
         """Every shared zone that it may get into."""
         places = (pose.zones for pose in self.poses)
         return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
+
+    @property
+    def hand(self) -> Robot:
+        """What holds the parts that it carries."""
+        return self.tool or self.robot
 
     @cached_property
     def free_spots(self) -> tuple[tuple[Position, Pose], ...]:

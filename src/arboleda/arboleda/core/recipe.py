@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from py_trees.behaviour import Behaviour
 
+from .facts import shown
 from .sentence import Phrase
 
 if TYPE_CHECKING:
@@ -21,22 +22,50 @@ Builders = Mapping[str, Build]
 """By the name of the recipe that they make the tree of."""
 
 
+def known(word: str, names: Iterable[str]) -> str | None:
+    """The name that `word` spells, whatever its case; only ASCII words spell names."""
+    return next((name for name in names if word.isascii() and name.lower() == word.lower()), None)
+
+
 def same_word(cell: Cell, word: str) -> object:
     """What a word means that means itself."""
     return word
 
 
 @dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Within which a number lies, both ends included."""
+
+    lower: float
+    upper: float
+    whole: bool = False
+
+    def reads(self, word: str) -> str | None:
+        """The number that a word spells, as `shown` writes it; None where it is none, or lies outside."""
+        try:
+            number = int(word) if self.whole else float(word)
+        except ValueError:
+            return None
+        return shown(number) if self.lower <= number <= self.upper else None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Parameter:
     """One word of a task: what it is called, what it can be in a cell, and what it means there.
 
-    `called`: its name in sentences, where they exist in several languages.
+    `words`: all that it can be; of a number, whose `limits` say that, only examples. `called`: its name in
+    sentences, where they exist in several languages.
     """
 
     name: str
     words: Callable[[Cell], Sequence[str]]
     value: Callable[[Cell, str], object] = same_word
     called: Phrase | None = None
+    limits: Limits | None = None
+
+    def reads(self, cell: Cell, word: str) -> str | None:
+        """The word as the cell has it, whatever its case; None where it is none of this parameter's."""
+        return self.limits.reads(word) if self.limits else known(word, self.words(cell))
 
 
 @dataclass(frozen=True, kw_only=True)

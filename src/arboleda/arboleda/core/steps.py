@@ -127,7 +127,8 @@ def _way_home(context: Context, robot: str) -> list[Behaviour]:
     if back is not None:
         context.back[robot] = back
         carry = sequence(CARRY_BACK(), *_at(context, robot, back, _effector(context, robot, on=False)))
-        empty = Unless(HOLDS_NOTHING(), lambda: robot not in context.holding)
+        hand = context.cell.workspaces[robot].hand.name
+        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
         steps.append(selector(PART_BACK(), empty, carry))
     steps.append(_move(context, robot, space.home))
     return [*steps, LeaveZones(LEAVE_ZONES(), context, robot)] if space.zones else steps
@@ -173,14 +174,18 @@ def _at(context: Context, robot: str, pose: Pose, *work: Behaviour) -> list[Beha
 
 def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> Behaviour:
     goal = pose.q if pose.above is None or not above else pose.above
-    make = partial(context.cell.workspaces[robot].robot.go, way=(goal,))
+    device = context.cell.workspaces[robot].robot
+
+    def make(id: str) -> Command:
+        return device.go(id=id, way=device.route(context.position(robot), goal))
+
     title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
     return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.part_lost)
 
 
 def _effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
-    device = context.cell.workspaces[robot].robot
-    make = device.grip if on else device.let_go
+    hand = context.cell.workspaces[robot].hand
+    make = hand.grip if on else hand.let_go
     title, doing = (EFFECTOR_ON, SWITCHING_ON) if on else (EFFECTOR_OFF, SWITCHING_OFF)
     act = Act(SWITCH(), context, make, doing(), then=then)
     return sequence(title(), act, Dwell(DWELL(), context, context.timing.dwell_s))

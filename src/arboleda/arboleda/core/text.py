@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from .errors import TextError
 from .model import Cell, Link, PlantModel
 from .outside import LINE, quoted
-from .recipe import Parameter, Recipe
+from .recipe import Parameter, Recipe, known
 from .sentence import Phrase, Sentence
 from .task import Order
 
@@ -37,6 +37,11 @@ UNKNOWN_BUT_NEAR = Phrase(
     "text.unknown_but_near",
     "{word} is not a {kind} of {where}; there are {there}; did you mean {near}?",
 )
+TWICE = Phrase("text.twice", "{name} is named twice; {form}")
+OUTSIDE = Phrase("text.outside", "{word} is no {kind}; it is a number from {lower:g} to {upper:g}")
+OUTSIDE_WHOLE = Phrase(
+    "text.outside_whole", "{word} is no {kind}; it is a whole number from {lower:g} to {upper:g}"
+)
 CELL = Phrase("text.cell", "cell")
 CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
 RECIPE = Phrase("text.recipe", "recipe")
@@ -54,9 +59,7 @@ def parse(text: str, plant: PlantModel) -> Order:
         raise TextError(EMPTY(form=_form(plant)))
     cell, recipe = _cell_and_recipe(words, plant)
     rest = words[1:] if recipe.is_default else words[2:]
-    if len(rest) != len(recipe.parameters):
-        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=_form(plant)))
-    read = {each.name: _read(cell, each, word) for each, word in zip(recipe.parameters, rest, strict=True)}
+    read = _by_parameter(rest, cell, recipe, _form(plant))
     _check_reached(cell, recipe)
     return _order(cell, recipe, read, task_id)
 
@@ -94,7 +97,7 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     """What the first two words name: the second a recipe, or it is a parameter of the cell's default."""
     second = words[1] if len(words) > 1 else ""
     asked = [each for each in _offered(plant) if not each.is_default]
-    name = _known(second, [each.name for each in asked])
+    name = known(second, [each.name for each in asked])
     meant = [each for each in asked if each.name == name]
     short = len(words) == 2 and any(each.alone and not each.parameters for each in asked)
     cell = _cell(words[0], plant, robots=any(each.alone for each in meant) if meant else short)
@@ -108,7 +111,7 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     if default is None or meant:
         raise TextError(_unknown(RECIPE(), second, [each.name for each in cell.recipes], cell.name))
     first = default.parameters[0] if default.parameters else None
-    if short and first is not None and _known(second, first.words(cell)) is None:
+    if short and first is not None and known(second, first.words(cell)) is None:
         others = tuple(f"'{each.name}'" for each in cell.recipes if not each.is_default)
         called = first.called() if first.called else first.name
         neither = NEITHER(word=quoted(second), first=called, cell=cell.name, others=others, form=_form(plant))
@@ -116,14 +119,38 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     return cell, default
 
 
+def _by_parameter(words: list[str], cell: Cell, recipe: Recipe, form: Sentence) -> dict[str, str]:
+    """Each parameter's word: those named `dose=5` wherever they stand, the others in their order."""
+    named: dict[str, str] = {}
+    in_order: list[str] = []
+    names = [each.name for each in recipe.parameters]
+    for word in words:
+        name, equals, value = word.partition("=")
+        if equals and name in names:
+            if name in named:
+                raise TextError(TWICE(name=name, form=form))
+            named[name] = value
+        else:
+            in_order.append(word)
+    unnamed = [name for name in names if name not in named]
+    if len(in_order) != len(unnamed):
+        number = len(words) + (1 if recipe.is_default else 2)
+        raise TextError((ONE_WORD if number == 1 else WORDS)(number=number, form=form))
+    named |= zip(unnamed, in_order, strict=True)
+    return {each.name: _read(cell, each, named[each.name]) for each in recipe.parameters}
+
+
 def _read(cell: Cell, parameter: Parameter, word: str) -> str:
     """The word as the cell has it."""
-    words = parameter.words(cell)
-    known = _known(word, words)
-    if known is None:
-        called = parameter.called() if parameter.called else parameter.name
-        raise TextError(_unknown(called, word, words, cell.name))
-    return known
+    read = parameter.reads(cell, word)
+    if read is not None:
+        return read
+    called = parameter.called() if parameter.called else parameter.name
+    limits = parameter.limits
+    if limits is None:
+        raise TextError(_unknown(called, word, parameter.words(cell), cell.name))
+    outside = OUTSIDE_WHOLE if limits.whole else OUTSIDE
+    raise TextError(outside(word=quoted(word), kind=called, lower=limits.lower, upper=limits.upper))
 
 
 def _check_reached(cell: Cell, recipe: Recipe) -> None:
@@ -150,7 +177,7 @@ def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
     roles = dict.fromkeys(each.alone for each in _offered(plant) if each.alone) if robots else {}
     for role in roles:
         by_name |= {cell.roles[role].name: cell for cell in plant.cells if role in cell.roles}
-    name = _known(word, by_name)
+    name = known(word, by_name)
     if name is None:
         raise TextError(_unknown(_cell_or_robot(roles), word, by_name, THIS_PLANT()))
     return by_name[name]
@@ -178,15 +205,10 @@ def _cell_or_robot(roles: Iterable[str]) -> Sentence:
     return CELL_OR_ROBOT(robot=robots) if robots else CELL()
 
 
-def _known(word: str, names: Iterable[str]) -> str | None:
-    """The name that `word` spells, whatever its case; only ASCII words spell names."""
-    return next((name for name in names if word.isascii() and name.lower() == word.lower()), None)
-
-
 def _unknown(kind: Sentence | str, word: str, names: Iterable[str], where: str | Sentence) -> Sentence:
     there = tuple(names)
     near = get_close_matches(word.lower(), [name.lower() for name in there], n=1)
-    hint = _known(near[0], there) if near else None
+    hint = known(near[0], there) if near else None
     if hint is None:
         return UNKNOWN(word=quoted(word), kind=kind, where=where, there=there)
     return UNKNOWN_BUT_NEAR(word=quoted(word), kind=kind, where=where, there=there, near=hint)

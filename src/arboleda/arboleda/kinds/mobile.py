@@ -82,6 +82,11 @@ class Mobile(Robot):
             return f"node is {report.node}; {self.name} knows {self.grid.size} nodes"
         return None
 
+    def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
+        """Along the edges of its grid."""
+        assert isinstance(goal, int)
+        return self.grid.route(start, goal) if isinstance(start, int) else (goal,)
+
     def go(self, *, id: str, way: Sequence[Position]) -> FollowPath:
         return FollowPath(id=id, robot=self.name, nodes=tuple(node for node in way if isinstance(node, int)))
 
