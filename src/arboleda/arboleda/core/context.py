@@ -53,6 +53,7 @@ class Context:
         self.carrier: str | None = None  # who is on its way with a part that was seen in its effector
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
         self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
+        self.brings_to: set[str] = set()  # the robots whose task says where a recovery brings what they hold
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
@@ -355,6 +356,10 @@ class Context:
     def notify(self, notice: Notice) -> None:
         """Tell the outside."""
         self._dispatcher.outbox.append(notice)
+
+    def forgive(self) -> None:
+        """A failure that the recipe has an answer to: the task goes on."""
+        self.failure = self.failed_leaf = None
 
     def fail(self, failure: Failure, leaf: Behaviour | None = None) -> None:
         """Name the cause of a failure; the first one named counts. What was carried is now for recovery."""

@@ -318,6 +318,18 @@ class Piece(Await):
         return self.context.piece(self.robot, self.since) is True
 
 
+class Note(Leaf):
+    """Book something of the task, once."""
+
+    def __init__(self, name: Sentence | str, note: Callable[[], None]) -> None:
+        super().__init__(name)
+        self.note = note
+
+    def update(self) -> Status:
+        self.note()
+        return Status.SUCCESS
+
+
 class Carry(Leaf):
     """Note which robot carries the checked part now; None: it has arrived."""
 

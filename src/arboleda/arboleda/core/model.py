@@ -224,6 +224,7 @@ class Cell:
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()
     stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
+    arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
 
     @cached_property
     def roles(self) -> dict[str, Robot]:
@@ -234,6 +235,16 @@ class Cell:
     def workspaces(self) -> dict[str, Workspace]:
         """By the name of each robot that goes from pose to pose."""
         return {space.robot.name: space for space in self.spaces}
+
+    @cached_property
+    def targets(self) -> tuple[str, ...]:
+        """The names of the places that one of its robots goes to; a place has one name for all of them."""
+        return tuple(dict.fromkeys(pose.name for space in self.workspaces.values() for pose in space.poses))
+
+    @cached_property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """Targets that are chosen from together, by the name of their group."""
+        return dict(self.arrays)
 
     def recipe(self, name: str) -> Recipe:
         return next(recipe for recipe in self.recipes if recipe.name == name)

@@ -15,7 +15,7 @@ from py_trees.behaviour import Behaviour
 from . import zone_plan
 from .commands import Command
 from .context import Context
-from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Piece, TakeZones, Unless, titled
+from .leaves import Act, Announce, Await, Carry, Dwell, LeaveZones, Note, Piece, TakeZones, Unless, titled
 from .messages import Failure, Reason, SystemStart
 from .model import Pose
 from .sentence import Phrase, Sentence
@@ -49,6 +49,13 @@ TRY = Phrase("step.try", "try {number}")
 ONLY_MISSED = Phrase("step.only_missed", "only missed")
 BACK_OFF = Phrase("step.back_off", "back-off")
 CARRY = Phrase("step.carry", "carry")
+NOTE_ORIGIN = Phrase("step.note_origin", "note where parts come from")
+OVER = Phrase("step.over", "over the place")
+NO_APPROACH = Phrase("step.no_approach", "no approach")
+GO_BACK = Phrase("step.go_back", "go back to where it was taken")
+GOING_BACK = Phrase("doing.go_back", "going back to where it was taken")
+GO_OVER = Phrase("step.go_over", "go over where it was taken")
+GOING_OVER = Phrase("doing.go_over", "going over where it was taken")
 ARRIVED = Phrase("step.arrived", "arrived")
 UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
 NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
@@ -96,9 +103,39 @@ def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Vi
     return steps
 
 
+def visit_from_anywhere(
+    context: Context, robot: str, pose: Pose, work: Sequence[Behaviour]
+) -> list[Behaviour]:
+    """Go to a pose and work there, planned when it begins, from where the robot stands then.
+
+    It begins and ends outside all zones: from a pose that lies in one the robot goes home. So nobody waits
+    for zones while it holds others, whatever comes before and after.
+    """
+    space = context.cell.workspaces[robot]
+    origin = Note(NOTE_ORIGIN(), partial(_note_origin, context, robot, pose))
+    steps = _at(context, robot, pose, origin, *work)
+    if not space.zones:
+        return steps
+
+    def needed() -> frozenset[str]:
+        way = (context.standing(robot), pose, *((space.home,) if pose.zones else ()))
+        legs = zone_plan.plan(space, way, context.way_back(robot))
+        return frozenset[str]().union(*(leg.zones for leg in legs))
+
+    out = [_move(context, robot, space.home)] if pose.zones else []
+    leave = LeaveZones(LEAVE_ZONES(), context, robot)
+    return [TakeZones(TAKE_ZONES(), context, robot, needed), *steps, *out, leave]
+
+
+def _note_origin(context: Context, robot: str, pose: Pose) -> None:
+    """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
+    if context.cell.workspaces[robot].hand.name not in context.holding and robot not in context.brings_to:
+        context.back[robot] = pose
+
+
 def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
     """Effector on; `check`: the piece sensor has to see the part before and after."""
-    on = _effector(context, robot, on=True)
+    on = effector(context, robot, on=True)
     if not check:
         return [on]
     retry, wait_s = context.cell.retry, context.timing.piece_wait_s
@@ -114,24 +151,57 @@ def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behav
 
 def let_go(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
     """Effector off; what it held stays at the pose."""
-    off = _effector(context, robot, on=False, then=partial(context.store, pose))
+    off = effector(context, robot, on=False, then=partial(context.store, pose))
     return [Carry(ARRIVED(), context, None), off] if check else [off]
 
 
 def _way_home(context: Context, robot: str) -> list[Behaviour]:
-    space, back = context.cell.workspaces[robot], context.way_back(robot)
+    space = context.cell.workspaces[robot]
     steps = _rise(context, robot)
     if space.zones:
         needed = partial(context.recovery_zones, robot)
         steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, recovers=True))
-    if back is not None:
-        context.back[robot] = back
-        carry = sequence(CARRY_BACK(), *_at(context, robot, back, _effector(context, robot, on=False)))
-        hand = context.cell.workspaces[robot].hand.name
-        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
-        steps.append(selector(PART_BACK(), empty, carry))
+    if space.hand.held_fact is not None:
+        steps += _part_back(context, robot)
     steps.append(_move(context, robot, space.home))
     return [*steps, LeaveZones(LEAVE_ZONES(), context, robot)] if space.zones else steps
+
+
+def _part_back(context: Context, robot: str) -> list[Behaviour]:
+    """Bring what the robot holds where it came from; where that is known only later, it is looked up then."""
+    hand, back = context.cell.workspaces[robot].hand.name, context.way_back(robot)
+    off = effector(context, robot, on=False)
+    if back is not None:
+        context.back[robot] = back
+        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
+        return [selector(PART_BACK(), empty, sequence(CARRY_BACK(), *_at(context, robot, back, off)))]
+
+    def origin() -> Pose | None:
+        return context.way_back(robot)
+
+    def flat() -> bool:
+        pose = origin()
+        return pose is None or pose.above is None
+
+    def over() -> Behaviour:
+        return selector(OVER(), Unless(NO_APPROACH(), flat), _go_where(context, robot, origin, above=True))
+
+    keeps = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding or origin() is None)
+    there = _go_where(context, robot, origin, above=False)
+    return [selector(PART_BACK(), keeps, sequence(CARRY_BACK(), over(), there, off, over()))]
+
+
+def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *, above: bool) -> Behaviour:
+    """Go to a pose that is known once the step begins."""
+    device = context.cell.workspaces[robot].robot
+
+    def make(id: str) -> Command:
+        pose = where() or context.cell.workspaces[robot].home
+        goal = pose.above if above and pose.above is not None else pose.q
+        return device.go(id=id, way=device.route(context.position(robot), goal))
+
+    title, doing = (GO_OVER, GOING_OVER) if above else (GO_BACK, GOING_BACK)
+    return Act(title(), context, make, doing())
 
 
 def _rise(context: Context, robot: str) -> list[Behaviour]:
@@ -183,7 +253,7 @@ def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> B
     return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.part_lost)
 
 
-def _effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
+def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
     hand = context.cell.workspaces[robot].hand
     make = hand.grip if on else hand.let_go
     title, doing = (EFFECTOR_ON, SWITCHING_ON) if on else (EFFECTOR_OFF, SWITCHING_OFF)
@@ -198,11 +268,11 @@ def _attempt(context: Context, robot: str, pose: Pose, number: int) -> Behaviour
     final = number == retry.times
     seen = Piece(PIECE_GRIPPED(), context, robot, context.timing.piece_wait_s, missed, final=final)
     again = _again(context, robot) if number else []
-    return sequence(TRY(number=number + 1), *again, _effector(context, robot, on=True), seen)
+    return sequence(TRY(number=number + 1), *again, effector(context, robot, on=True), seen)
 
 
 def _again(context: Context, robot: str) -> list[Behaviour]:
     """What a further attempt begins with; there is none after another failure than a missed grip."""
     only_missed = Unless(ONLY_MISSED(), lambda: context.failure is None)
     back_off = Dwell(BACK_OFF(), context, context.cell.retry.backoff_s)
-    return [only_missed, _effector(context, robot, on=False), back_off]
+    return [only_missed, effector(context, robot, on=False), back_off]

@@ -1,5 +1,7 @@
-"""What a recipe of one's own is written with."""
+"""What recipes of one's own are written with; `@recipe` makes one of a function."""
 
-from .authoring import Choice, Kit, RecipeError, parallel, recipe, work
+from .authoring import Kit, WrittenRecipe, parallel, recipe, work
+from .errors import RecipeError
+from .parameters import Choice, Number, Target
 
-__all__ = ["Choice", "Kit", "RecipeError", "parallel", "recipe", "work"]
+__all__ = ["Choice", "Kit", "Number", "RecipeError", "Target", "WrittenRecipe", "parallel", "recipe", "work"]

@@ -1,0 +1,131 @@
+"""Steps around steps: again after a failure, at most so long, instead of a failure.
+
+They are woken by the plant's events and times; the decorators of py_trees ask a clock of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from arboleda.core.context import Context
+from arboleda.core.messages import Failure, Reason
+from arboleda.core.sentence import Phrase
+
+TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
+NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
+
+
+class Again(Decorator):
+    """Does its step again, `times` more at most, after a pause: while it fails for one of `causes`."""
+
+    def __init__(
+        self, child: Behaviour, context: Context, *, times: int, pause_s: float, causes: Collection[Reason]
+    ) -> None:
+        super().__init__(f"retry {child.name}", child)
+        self.context = context
+        self.times = times
+        self.pause_s = pause_s
+        self.causes = causes
+        self.tries = 0
+        self.again_at: float | None = None
+
+    def initialise(self) -> None:
+        self.tries, self.again_at = 0, None
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status is Status.RUNNING and self.again_at is not None:
+            if self.context.now < self.again_at:
+                yield self
+                return
+            self.again_at = None
+        yield from super().tick()
+
+    def update(self) -> Status:
+        status, failure = self.decorated.status, self.context.failure
+        spent = self.tries >= self.times or failure is None or failure.reason not in self.causes
+        if status is not Status.FAILURE or spent:
+            return status
+        self.tries += 1
+        self.context.forgive()
+        self.again_at = self.context.now + self.pause_s
+        self.context.wake_at(self.again_at)
+        return Status.RUNNING
+
+
+class Times(Decorator):
+    """Does its step `times` times, one after the other."""
+
+    def __init__(self, child: Behaviour, context: Context, *, times: int) -> None:
+        super().__init__(f"repeat {child.name}", child)
+        self.context = context
+        self.times = times
+        self.done = 0
+
+    def initialise(self) -> None:
+        self.done = 0
+
+    def update(self) -> Status:
+        if self.decorated.status is not Status.SUCCESS:
+            return self.decorated.status
+        self.done += 1
+        if self.done >= self.times:
+            return Status.SUCCESS
+        self.context.wake_at(self.context.now)
+        return Status.RUNNING
+
+
+class AtMost(Decorator):
+    """Its step ends within `seconds`, or is left, and the task fails."""
+
+    def __init__(self, child: Behaviour, context: Context, *, seconds: float) -> None:
+        super().__init__(f"timeout {child.name}", child)
+        self.context = context
+        self.seconds = seconds
+        self.until = 0.0
+
+    def initialise(self) -> None:
+        self.until = self.context.now + self.seconds
+        self.context.wake_at(self.until)
+
+    def update(self) -> Status:
+        if self.decorated.status is not Status.RUNNING or self.context.now < self.until:
+            return self.decorated.status
+        self.decorated.stop(Status.INVALID)
+        sentence = TOO_LATE(step=self.decorated.name, seconds=self.seconds)
+        self.context.fail(Failure(reason=Reason.DEADLINE, sentence=sentence), self)
+        return Status.FAILURE
+
+
+class Forgiven(Decorator):
+    """Its step may fail, for another one is tried then."""
+
+    def __init__(self, child: Behaviour, context: Context) -> None:
+        super().__init__(f"try {child.name}", child)
+        self.context = context
+
+    def update(self) -> Status:
+        if self.decorated.status is Status.FAILURE:
+            self.context.forgive()
+        return self.decorated.status
+
+
+class Inverted(Decorator):
+    """Its step has to fail."""
+
+    def __init__(self, child: Behaviour, context: Context) -> None:
+        super().__init__(f"invert {child.name}", child)
+        self.context = context
+
+    def update(self) -> Status:
+        if self.decorated.status is Status.FAILURE:
+            self.context.forgive()
+            return Status.SUCCESS
+        if self.decorated.status is Status.SUCCESS:
+            sentence = NOT_FAILED(step=self.decorated.name)
+            self.context.fail(Failure(reason=Reason.REJECTED, sentence=sentence), self)
+            return Status.FAILURE
+        return self.decorated.status

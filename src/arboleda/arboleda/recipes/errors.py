@@ -1,0 +1,13 @@
+"""What is wrong with a recipe."""
+
+from __future__ import annotations
+
+from arboleda.core.errors import ArboledaError
+
+
+class RecipeError(ArboledaError):
+    """A recipe that cannot be built."""
+
+
+class RoleError(RecipeError):
+    """A recipe that needs a device in a role that its cell does not have."""

@@ -1,0 +1,157 @@
+"""The devices of a cell as a recipe tells them what to do: each call returns a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from difflib import get_close_matches
+from functools import partial
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.core import steps
+from arboleda.core.context import Context
+from arboleda.core.facts import Value, shown
+from arboleda.core.leaves import Act, Await, Require
+from arboleda.core.messages import Failure, Reason
+from arboleda.core.model import Pose, Robot
+from arboleda.core.sentence import Phrase
+from arboleda.kinds.declared import Device
+
+from .errors import RecipeError
+
+Step = Behaviour
+NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is needed")
+NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
+VISIT = Phrase("step.visit", "visit {pose}")
+HOME = Phrase("step.go_home", "go home")
+
+
+class Handle:
+    """A device of the cell, in whatever it can be asked; its kind adds what it can be told."""
+
+    def __init__(self, device: Robot, context: Context) -> None:
+        self._device = device
+        self._context = context
+
+    def says(self, **facts: Value) -> Step:
+        """A check: the device says so, else the task fails."""
+        return Require("says", self._context, partial(self._objection, facts))
+
+    def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
+        """Wait until the device says so, at most `at_most_s` s."""
+
+        def late() -> Failure:
+            name = self._unsaid(facts)[0]
+            sentence = NOT_YET(
+                robot=self._device.name, value=shown(facts[name]), fact=name, seconds=at_most_s
+            )
+            return Failure(reason=Reason.DEADLINE, sentence=sentence)
+
+        return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+
+    def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
+        """Those of the facts that the device does not say."""
+        return [name for name, value in facts.items() if self._told(name) != value]
+
+    def _told(self, fact: str) -> Value | None:
+        return self._context.fact(self._device.name, fact)
+
+    def _objection(self, facts: Mapping[str, Value]) -> Failure | None:
+        for name in self._unsaid(facts):
+            told, value = said(self._told(name)), shown(facts[name])
+            sentence = NOT_SO(robot=self._device.name, told=told, fact=name, value=value)
+            return Failure(reason=Reason.PRECONDITION, sentence=sentence)
+        return None
+
+
+class DeviceHandle(Handle):
+    """A device that is told the verbs of its kind: `mill.run(program=1001)`."""
+
+    _device: Device
+
+    def __getattr__(self, verb: str) -> Callable[..., Act]:
+        kind = self._device.kind
+        if verb not in kind.verbs:
+            raise RecipeError(unknown("verb", verb, kind.verbs, f"a {kind.name}"))
+
+        def step(*in_order: Value, **values: Value) -> Act:
+            names = [name for name, _ in kind.verbs[verb].parameters]
+            if len(in_order) > len(names):
+                raise RecipeError(f"{verb} of a {kind.name} takes {', '.join(names) or 'no values'}")
+            given = dict(zip(names, in_order, strict=False)) | values
+            kind.command(
+                id="", robot=self._device.name, verb=verb, values=given
+            )  # wrong words are told at once
+
+            def make(id: str) -> Any:
+                return kind.command(id=id, robot=self._device.name, verb=verb, values=given)
+
+            words = " ".join([verb, *map(shown, given.values())])
+            return Act(f"{self._device.name} {words}", self._context, make, f"doing {words}")
+
+        return step
+
+
+class RobotHandle(Handle):
+    """A robot that goes from target to target: an arm, or a mobile robot."""
+
+    def go(self, target: str) -> Step:
+        """Go to a target and stay there, unless it lies in a shared zone: from there it goes home."""
+        return self.visit(target)
+
+    def visit(self, target: str, *work: Step | Sequence[Step]) -> Step:
+        """Go to a target and do the work there."""
+        pose = self._pose(target)
+        parts = steps.visit_from_anywhere(self._context, self._device.name, pose, flat(work))
+        return steps.sequence(VISIT(pose=pose.said), *parts)
+
+    def home(self) -> Step:
+        """Go where it waits."""
+        home = self._context.cell.workspaces[self._device.name].home
+        parts = steps.visit_from_anywhere(self._context, self._device.name, home, [])
+        return steps.sequence(HOME(), *parts)
+
+    def grip(self) -> Step:
+        """Take hold of a part."""
+        return steps.effector(self._context, self._device.name, on=True)
+
+    def let_go(self) -> Step:
+        """Let go of what it holds."""
+        return steps.effector(self._context, self._device.name, on=False)
+
+    def brings_back_to(self, target: str) -> None:
+        """A recovery brings what it holds there; else it is where the part was taken."""
+        self._context.back[self._device.name] = self._pose(target)
+        self._context.brings_to.add(self._device.name)
+
+    def _pose(self, target: str) -> Pose:
+        space = self._context.cell.workspaces[self._device.name]
+        poses = {pose.name: pose for pose in space.poses}
+        if target not in poses:
+            raise RecipeError(unknown("target", target, poses, self._device.name))
+        return poses[target]
+
+
+def handle(device: Robot, context: Context) -> Any:
+    """What a recipe tells this device with."""
+    if device.name in context.cell.workspaces:
+        return RobotHandle(device, context)
+    if isinstance(device, Device):
+        return DeviceHandle(device, context)
+    raise RecipeError(f"{device.name} has no verbs, and no targets in {context.cell.name}")
+
+
+def unknown(kind: str, word: str, names: Any, where: str) -> str:
+    """That something has no such thing; which there are, and which of them may be meant."""
+    near = get_close_matches(word, names, n=1)
+    meant = f"; did you mean {near[0]}?" if near else ""
+    return f"{where} has no {kind} {word!r}; there are {', '.join(names) or 'none'}{meant}"
+
+
+def said(value: Value | None) -> str:
+    return "nothing" if value is None else shown(value)
+
+
+def flat(parts: Sequence[Step | Sequence[Step]]) -> list[Step]:
+    return [step for part in parts for step in ([part] if isinstance(part, Behaviour) else part)]

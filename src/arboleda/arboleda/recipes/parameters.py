@@ -1,0 +1,75 @@
+"""What the parameters of a recipe can be: one of some values, a number, a target of the cell.
+
+dose: Choice[5, 10], force: Number[1, 40], blank: Target["pallet"]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from arboleda.core.facts import Value, shown
+from arboleda.core.model import Cell
+from arboleda.core.recipe import Limits, Parameter
+
+from .errors import RecipeError
+
+
+class Choice:
+    """One of some values: `Choice[1001, 1002]`."""
+
+    def __init__(self, *values: Value) -> None:
+        self.values = values
+
+    def __class_getitem__(cls, values: Value | tuple[Value, ...]) -> Choice:
+        return cls(*values) if isinstance(values, tuple) else cls(values)
+
+    def parameter(self, name: str) -> Parameter:
+        by_word = {shown(value): value for value in self.values}
+        return Parameter(name=name, words=lambda cell: list(by_word), value=lambda cell, word: by_word[word])
+
+
+class Number:
+    """A number within two limits; a whole one where both are: `Number[1, 40]`, `Number[0.5, 2.0]`."""
+
+    def __init__(self, lower: float, upper: float) -> None:
+        whole = isinstance(lower, int) and isinstance(upper, int)
+        self.limits = Limits(lower=lower, upper=upper, whole=whole)
+
+    def __class_getitem__(cls, limits: tuple[float, float]) -> Number:
+        if not isinstance(limits, tuple) or len(limits) != 2 or limits[0] >= limits[1]:
+            raise RecipeError("a Number has two limits, the lower one first: Number[1, 40]")
+        return cls(*limits)
+
+    def parameter(self, name: str) -> Parameter:
+        ends = [shown(self.limits.lower), shown(self.limits.upper)]
+        read = int if self.limits.whole else float
+        return Parameter(
+            name=name, words=lambda cell: ends, value=lambda cell, word: read(word), limits=self.limits
+        )
+
+
+class Target:
+    """One of a group of targets, or that of this name: `Target["pallet"]`; `Target[...]` is any."""
+
+    def __init__(self, group: str | None) -> None:
+        self.group = group
+
+    def __class_getitem__(cls, group: object) -> Target:
+        if group is not ... and not isinstance(group, str):
+            raise RecipeError('a Target has the name of a group: Target["pallet"], or Target[...] for any')
+        return cls(group if isinstance(group, str) else None)
+
+    def parameter(self, name: str) -> Parameter:
+        return Parameter(name=name, words=self._names)
+
+    def _names(self, cell: Cell) -> Sequence[str]:
+        if self.group is None:
+            return cell.targets
+        return cell.groups.get(self.group) or [each for each in cell.targets if each == self.group]
+
+
+def parameter(name: str, note: object) -> Parameter | None:
+    """The parameter of that annotation; None where it is none."""
+    if note is Target:
+        note = Target(None)
+    return note.parameter(name) if isinstance(note, (Choice, Number, Target)) else None
