@@ -98,9 +98,9 @@ GRIP = (
         "effector_off_only_where_legal",
         "A recovery opens the effector where the arm is, instead of carrying the part back.",
         edit(
-            steps._way_home,
-            "*_at(context, robot, back, _effector(context, robot, on=False))",
-            "_effector(context, robot, on=False)",
+            steps._part_back,
+            "*_at(context, robot, back, off)",
+            "off",
         ),
     ),
     mutant(

@@ -84,7 +84,7 @@ PEOPLE = (
         "commands_follow_the_recipe",
         "After an effector nobody dwells.",
         edit(
-            steps._effector,
+            steps.effector,
             "Dwell(DWELL(), context, context.timing.dwell_s)",
             "Dwell(DWELL(), context, 0.0)",
         ),

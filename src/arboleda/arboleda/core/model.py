@@ -154,6 +154,12 @@ class Pose:
     title: Sentence = NOTHING
 
     @property
+    def joints(self) -> tuple[float, ...]:
+        """The position of an arm."""
+        assert isinstance(self.q, tuple)
+        return self.q
+
+    @property
     def said(self) -> Sentence:
         """Its name as sentences have it."""
         return self.title or OWN(text=self.name)

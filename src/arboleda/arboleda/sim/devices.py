@@ -106,8 +106,8 @@ def _body(model: PlantModel, robot: Robot) -> Body:
     """The body of an arm standing at its home pose, or of a mobile at the start of its first path."""
     cell = model.cell_of[robot.name]
     if isinstance(robot, Arm) and isinstance(cell, StorageCell):
-        pickups = [pose.q for pose in (*cell.every_pickup, cell.palletizing.pick)]
-        return ArmBody(robot, start=cell.home.q, pickups=pickups)
+        pickups = [pose.joints for pose in (*cell.every_pickup, cell.palletizing.pick)]
+        return ArmBody(robot, start=cell.home.joints, pickups=pickups)
     if isinstance(robot, Mobile) and isinstance(cell, StorageCell):
         return MobileBody(robot, start_node=cell.paths[0].nodes[0])
     raise TypeError(f"{robot.name} is neither an arm nor a mobile robot")

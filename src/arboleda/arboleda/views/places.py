@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.core.commands import Position
 from arboleda.core.model import PlantModel, Pose, Workspace
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
@@ -58,8 +59,8 @@ def _cell(cell: StorageCell) -> Row:
         "mobile": cell.mobile.name,
         "pitch": grid.pitch,
         "columns": grid.columns,
-        "pickups": [list(pickup.q) for pickup in cell.every_pickup],
-        "stations": [list(station.q) for station in cell.stations],
+        "pickups": [list(pickup.joints) for pickup in cell.every_pickup],
+        "stations": [list(station.joints) for station in cell.stations],
     }
 
 
@@ -74,11 +75,15 @@ def _in_space(space: Workspace, zone: str) -> list[Row]:
     poses = {pose.name: pose for pose in space.poses}
     inside = [_reach(pose) for pose in space.poses if zone in pose.zones]
     ways = [[poses[way.a].q, poses[way.b].q] for way in space.crossings if zone in way.zones]
-    return [{"robot": space.robot.name, "path": [list(q) for q in path]} for path in [*inside, *ways]]
+    return [{"robot": space.robot.name, "path": [_numbers(q) for q in path]} for path in [*inside, *ways]]
 
 
-def _reach(pose: Pose) -> list[tuple[float, ...]]:
+def _reach(pose: Pose) -> list[Position]:
     return [pose.q] if pose.above is None else [pose.q, pose.above]
+
+
+def _numbers(position: Position) -> list[float]:
+    return [position] if isinstance(position, int) else list(position)
 
 
 def _floor(placement: Placement) -> list[float]:

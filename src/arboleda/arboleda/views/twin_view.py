@@ -64,7 +64,7 @@ def part(cell: CellRun) -> Row | None:
 def _waiting(recipe: str, cell: StorageCell) -> Row:
     if recipe == "storage":
         return {"at": "mobile"}
-    return {"at": "pose", "q": list(cell.palletizing.pick.q)}
+    return {"at": "pose", "q": list(cell.palletizing.pick.joints)}
 
 
 def _put_down(sent: list[Entry], let_go: Entry, cell: StorageCell) -> Row | None:
