@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
@@ -15,8 +14,9 @@ from arboleda.core.facts import Value, shown
 from arboleda.core.leaves import Act, Await, Require
 from arboleda.core.messages import Failure, Reason
 from arboleda.core.model import Pose, Robot
+from arboleda.core.outside import among, quoted
 from arboleda.core.sentence import Phrase
-from arboleda.kinds.declared import Device
+from arboleda.kinds.declared import Device, ToldQuery, UseError
 
 from .errors import RecipeError
 
@@ -25,6 +25,22 @@ NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is need
 NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
 VISIT = Phrase("step.visit", "visit {pose}")
 HOME = Phrase("step.go_home", "go home")
+
+
+class Ask(Act):
+    """A question to a device, and what it may answer."""
+
+    answers: tuple[Value, ...] = ()
+
+    def check(self, ways: Mapping[Value, object]) -> None:
+        """RecipeError where the ways are not those of all answers, and of no others."""
+        allowed = ", ".join(map(shown, self.answers))
+        for answer in ways:
+            if answer not in self.answers:
+                raise RecipeError(f"{self.name} never answers {quoted(answer)}; its answers: {allowed}")
+        for answer in self.answers:
+            if answer not in ways:
+                raise RecipeError(f"choose has no way for {quoted(answer)}, which {self.name} may answer")
 
 
 class Handle:
@@ -36,10 +52,12 @@ class Handle:
 
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
+        self._check(facts)
         return Require("says", self._context, partial(self._objection, facts))
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
+        self._check(facts)
 
         def late() -> Failure:
             name = self._unsaid(facts)[0]
@@ -49,6 +67,9 @@ class Handle:
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
         return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+
+    def _check(self, facts: Mapping[str, Value]) -> None:
+        """UseError for what the device never says."""
 
     def _unsaid(self, facts: Mapping[str, Value]) -> list[str]:
         """Those of the facts that the device does not say."""
@@ -70,25 +91,32 @@ class DeviceHandle(Handle):
 
     _device: Device
 
+    def _check(self, facts: Mapping[str, Value]) -> None:
+        for name, value in facts.items():
+            self._device.kind.check_fact(name, value)
+
     def __getattr__(self, verb: str) -> Callable[..., Act]:
         kind = self._device.kind
         if verb not in kind.verbs:
-            raise RecipeError(unknown("verb", verb, kind.verbs, f"a {kind.name}"))
+            raise UseError(f"a {kind.name} has no verb {quoted(verb)}; {among(verb, kind.verbs)}")
 
         def step(*in_order: Value, **values: Value) -> Act:
             names = [name for name, _ in kind.verbs[verb].parameters]
             if len(in_order) > len(names):
                 raise RecipeError(f"{verb} of a {kind.name} takes {', '.join(names) or 'no values'}")
             given = dict(zip(names, in_order, strict=False)) | values
-            kind.command(
-                id="", robot=self._device.name, verb=verb, values=given
-            )  # wrong words are told at once
+            name = self._device.name
 
             def make(id: str) -> Any:
-                return kind.command(id=id, robot=self._device.name, verb=verb, values=given)
+                return kind.command(id=id, robot=name, verb=verb, values=given)
 
+            told = make("")  # wrong words are told at once
             words = " ".join([verb, *map(shown, given.values())])
-            return Act(f"{self._device.name} {words}", self._context, make, f"doing {words}")
+            if not isinstance(told, ToldQuery):
+                return Act(f"{name} {words}", self._context, make, f"doing {words}")
+            asked = Ask(f"{name} {words}", self._context, make, f"doing {words}")
+            asked.answers = told.told.answers
+            return asked
 
         return step
 
@@ -129,7 +157,7 @@ class RobotHandle(Handle):
         space = self._context.cell.workspaces[self._device.name]
         poses = {pose.name: pose for pose in space.poses}
         if target not in poses:
-            raise RecipeError(unknown("target", target, poses, self._device.name))
+            raise RecipeError(f"{self._device.name} has no target {quoted(target)}; {among(target, poses)}")
         return poses[target]
 
 
@@ -142,11 +170,8 @@ def handle(device: Robot, context: Context) -> Any:
     raise RecipeError(f"{device.name} has no verbs, and no targets in {context.cell.name}")
 
 
-def unknown(kind: str, word: str, names: Any, where: str) -> str:
-    """That something has no such thing; which there are, and which of them may be meant."""
-    near = get_close_matches(word, names, n=1)
-    meant = f"; did you mean {near[0]}?" if near else ""
-    return f"{where} has no {kind} {word!r}; there are {', '.join(names) or 'none'}{meant}"
+def named(step: object) -> str:
+    return step.name if isinstance(step, Behaviour) else quoted(step)
 
 
 def said(value: Value | None) -> str:
