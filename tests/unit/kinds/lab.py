@@ -74,8 +74,8 @@ def careless(cell: Kit):  # type: ignore[no-untyped-def]
 
 def model(*recipes: object, evidence: Evidence = Evidence.IDS) -> PlantModel:
     """A bench whose oven proves its work at this level; who looks names the question that it answers."""
-    oven = Device(name="oven", mqtt="oven", link=Link.MQTT, evidence=evidence, timeout_s=5.0, kind=OVEN)
-    eye = Device(name="eye", mqtt="eye", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=5.0, kind=EYE)
+    oven = Device(name="oven", mqtt="oven", link=Link.MQTT, evidence=evidence, timeout_s=30.0, kind=OVEN)
+    eye = Device(name="eye", mqtt="eye", link=Link.MQTT, evidence=Evidence.IDS, timeout_s=2.0, kind=EYE)
     bench = Cell(
         name="bench",
         queue_limit=5,

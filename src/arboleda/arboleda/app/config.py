@@ -2,48 +2,79 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from arboleda.core.errors import ConfigError
-from arboleda.core.model import ForeignCommands, MqttVersion, PlantModel, Retry, Timing
+from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
+from arboleda.core.recipe import Recipe
+from arboleda.kinds.declared import DeviceKind
 from arboleda.recipes.storage import RECIPES
 from arboleda.recipes.storage_cell import Path as Route
 from arboleda.recipes.storage_cell import StorageCell
 
 from . import user_file
-from .plant_file import rack
+from .plant_file import own_recipes, rack
 from .plant_file.deadlines import check_arrivals_show
+from .plant_file.devices import CELLS, device_cell, is_of_devices
 from .plant_file.document import Document, Place, shown
+from .plant_file.kinds import kinds
 from .plant_file.names import check_names
+from .plant_file.own_recipes import Watch
 from .plant_file.paths import check_nodes_show, paths
 from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
+from .plant_file.recipe_check import MOST, Trial, combinations
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
 from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, RetryShape, TimingShape
 from .plant_file.yaml_marks import LARGEST
 from .plant_file.zones import with_zones, zones
+from .recipe_trial import Verdict, offered
 
+Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
 SHARED = ("paths", "stations", "palletizing")
 
 
-def load(path: Path | None = None) -> PlantModel:
-    """The plant that the file describes, None for the shipped one; ConfigError with every problem."""
+def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
+    """The plant that the file describes, None for the shipped one; ConfigError with every problem.
+
+    Without `recipes` those of its own are not looked at: its cells of devices offer nothing.
+    """
     if path is None:
         return parse("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
-    return parse(str(path), user_file.read_bytes(path, LARGEST), path.parent)
+    return parse(str(path), user_file.read_bytes(path, LARGEST), path.parent, recipes=recipes)
 
 
-def parse(name: str, content: bytes, folder: Path | None = None) -> PlantModel:
-    """The same for the content of a file that problems call `name`; `folder` is where its models are."""
+def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
+    """The same for the content of a file that problems call `name`; `folder` is where those beside it are."""
     document = Document(name, content, folder)
-    plant = _plant(document)
+    plant = _plant(document, partial(offered, document, content) if recipes else _nothing)
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
     return plant
+
+
+def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdict:
+    """The problems of a plant file and of its recipes, which are built here for each task they could have.
+
+    Whatever its files of Python do, they do it to this process: `parse` has it in another one.
+    """
+    document, found = Document(name, content, folder), Verdict()
+
+    def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+        used = own_recipes.imported(document, own_recipes.listed(document), watch)
+        found.offers = Trial(document=document, used=used, watch=watch).run(cells)
+        return {}
+
+    _plant(document, tried)
+    found.here, found.elsewhere = document.kept
+    return found
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
@@ -59,9 +90,18 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 def notes(plant: PlantModel) -> tuple[str, ...]:
     """What was assumed of the models that the plant has of its own."""
     described = {
-        cell.arm.description: cell.arm.name for cell in reversed(plant.cells) if cell.arm.description
+        cell.arm.description: cell.arm.name
+        for cell in reversed(plant.cells)
+        if isinstance(cell, StorageCell) and cell.arm.description
     }
-    return tuple(f"{name}: {note}" for own, name in described.items() for note in own.notes)
+    own_models = [f"{name}: {note}" for own, name in described.items() for note in own.notes]
+    many = [(cell, each, combinations(cell, each)) for cell in plant.cells for each in cell.recipes]
+    sampled = [
+        f"{cell.name}: {recipe.name} has {number} combinations of parameters; {MOST} of them were tried"
+        for cell, recipe, number in many
+        if number > MOST and recipe not in RECIPES
+    ]
+    return (*own_models, *sampled)
 
 
 def broker_users(path: Path) -> dict[str, str]:
@@ -85,24 +125,33 @@ def broker_users(path: Path) -> dict[str, str]:
     return users
 
 
-def _plant(document: Document) -> PlantModel | None:
+def _nothing(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+    return {}
+
+
+def _plant(document: Document, recipes: Offers) -> PlantModel | None:
     shape = document.read(PlantShape)
-    cells = [_cell(document, name) for name in document.keys(("cells",))]
+    known = kinds(document)
+    cells = [_cell(document, name, known) for name in document.keys(("cells",))]
     timing = _timing(document)
     check_names(document)
     _check_sections(document)
-    whole = tuple(cell for cell in cells if cell)
-    regions = zones(document, whole)
-    zoned = tuple(with_zones(document, cell, regions) for cell in whole)
+    whole = [cell for cell in cells if cell is not None]
+    storage = [cell for cell in whole if isinstance(cell, StorageCell)]
+    regions = zones(document, storage)
+    zoned = {cell.name: with_zones(document, cell, regions) for cell in storage}
+    offers = recipes([cell for cell in whole if cell.name not in zoned])
     if timing is None:
         return None
     times = Timing(**timing.model_dump())
-    check_arrivals_show(document, whole, times)
+    check_arrivals_show(document, storage, times)
     if shape is None or len(whole) < len(cells):
         return None
     return PlantModel(
         name=shape.name,
-        cells=zoned,
+        cells=tuple(
+            zoned.get(cell.name) or replace(cell, recipes=offers.get(cell.name, ())) for cell in whole
+        ),
         timing=times,
         mqtt_version=MqttVersion(shape.mqtt_version),
         zones=tuple(region.name for region in regions),
@@ -124,8 +173,10 @@ def _timing(document: Document) -> TimingShape | None:
     return shape
 
 
-def _cell(document: Document, name: str) -> StorageCell | None:
+def _cell(document: Document, name: str, kinds: Mapping[str, DeviceKind]) -> Cell | None:
     place: Place = ("cells", name)
+    if is_of_devices(document, place):
+        return device_cell(document, place, kinds)
     shape = document.read(CellShape, place)
     kind = arm_model(document, (*place, "arm"))
     the_arm = arm(document, (*place, "arm"), kind)
@@ -186,8 +237,10 @@ def _section(document: Document, place: Place, key: str, *, needed: bool = True)
 
 
 def _check_sections(document: Document) -> None:
-    names = document.keys(("cells",))
+    cells = [(*CELLS, name) for name in document.keys(CELLS)]
+    names = [place[-1] for place in cells if not is_of_devices(document, place)]
     for key in SHARED:
         unused = all(document.has(("cells", name, key)) for name in names)
-        if names and unused and document.has((key,)):
-            document.problem((key,), "every cell has its own, so this section has no effect; delete it")
+        if cells and unused and document.has((key,)):
+            why = "every cell has its own" if names else "no cell has an arm and a mobile robot"
+            document.problem((key,), f"{why}, so this section has no effect; delete it")

@@ -31,7 +31,7 @@ Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shap
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """What cannot be as the file says it; also where that cannot be told."""
     try:
-        cells = [Stand.of(plant, cell) for cell in plant.cells]
+        cells = [Stand.of(plant, cell) for cell in plant.cells if isinstance(cell, StorageCell)]
     except ArboledaError as error:
         return (f"nobody has looked where things stand: {error}",)
     found = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]

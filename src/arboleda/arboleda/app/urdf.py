@@ -71,9 +71,12 @@ def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
 
 
 def _named(plant: PlantModel, name: str) -> Arm | Mobile:
-    for cell in plant.cells:
-        for robot in (cell.arm, cell.mobile):
-            if robot.name == name:
-                return robot
+    robot = plant.robots.get(name)
+    if isinstance(robot, Arm | Mobile):
+        return robot
+    if robot is not None:
+        raise ConfigError(
+            (f"{shown(name)} is neither an arm nor a mobile robot, so there is no drawing of it",)
+        )
     known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
     raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))

@@ -48,4 +48,4 @@ def located(plant: Path | None, state: Path | None) -> Path:
 
 def folder(plant: Path | None, state: Path | None) -> Path:
     """`state`, or where that plant file keeps its state."""
-    return state or default_state(config.load(plant).name)
+    return state or default_state(config.load(plant, recipes=False).name)

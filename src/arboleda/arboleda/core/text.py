@@ -58,8 +58,8 @@ def parse(text: str, plant: PlantModel) -> Order:
     if not words:
         raise TextError(EMPTY(form=_form(plant)))
     cell, recipe = _cell_and_recipe(words, plant)
-    rest = words[1:] if recipe.is_default else words[2:]
-    read = _by_parameter(rest, cell, recipe, _form(plant))
+    is_named = not recipe.is_default or _is_named(words, cell, recipe)
+    read = _by_parameter(words, 2 if is_named else 1, cell, recipe, _form(plant))
     _check_reached(cell, recipe)
     return _order(cell, recipe, read, task_id)
 
@@ -105,6 +105,8 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     named = next((each for each in meant if each in cell.recipes), None)
     if named is not None:
         return cell, named
+    if default is not None and _is_named(words, cell, default):
+        return cell, default
     if not second and default is None:
         there = tuple(each.name for each in cell.recipes)
         raise TextError(NO_RECIPE(cell=cell.name, there=there, form=_form(plant)))
@@ -119,12 +121,19 @@ def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]
     return cell, default
 
 
-def _by_parameter(words: list[str], cell: Cell, recipe: Recipe, form: Sentence) -> dict[str, str]:
-    """Each parameter's word: those named `dose=5` wherever they stand, the others in their order."""
+def _is_named(words: list[str], cell: Cell, recipe: Recipe) -> bool:
+    """Whether a task says the name of its cell's default recipe, which it need not."""
+    if len(words) < 2 or known(words[1], [recipe.name]) is None:
+        return False
+    return all(first.reads(cell, words[1]) is None for first in recipe.parameters[:1])
+
+
+def _by_parameter(words: list[str], start: int, cell: Cell, recipe: Recipe, form: Sentence) -> dict[str, str]:
+    """Each parameter's word, from `start` on: those named `dose=5` wherever they stand, others in order."""
     named: dict[str, str] = {}
     in_order: list[str] = []
     names = [each.name for each in recipe.parameters]
-    for word in words:
+    for word in words[start:]:
         name, equals, value = word.partition("=")
         if equals and name in names:
             if name in named:
@@ -134,8 +143,7 @@ def _by_parameter(words: list[str], cell: Cell, recipe: Recipe, form: Sentence) 
             in_order.append(word)
     unnamed = [name for name in names if name not in named]
     if len(in_order) != len(unnamed):
-        number = len(words) + (1 if recipe.is_default else 2)
-        raise TextError((ONE_WORD if number == 1 else WORDS)(number=number, form=form))
+        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=form))
     named |= zip(unnamed, in_order, strict=True)
     return {each.name: _read(cell, each, named[each.name]) for each in recipe.parameters}
 

@@ -23,9 +23,9 @@ PLAIN = {
 
 def plant(named: PlantModel | Path | str | None, folder: Path | None) -> PlantModel:
     """The plant, each of its robots with a virtual board; Misuse with every mistake of its file."""
-    if isinstance(named, PlantModel):
-        return Plant(declared=named).model
     try:
+        if isinstance(named, PlantModel):
+            return Plant(declared=named).model
         declared = config.load(_file(Path(named), folder) if named is not None else None)
         return Plant(declared=declared).model
     except ConfigError as error:

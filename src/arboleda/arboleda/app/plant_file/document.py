@@ -86,7 +86,8 @@ class Document(Problems):
 
     def read(self, shape: type[M], place: Place = ()) -> M | None:
         """A mapping of this shape; None, with its problems kept, where it does not fit or is absent."""
-        return self._read(shape.model_validate, place, tuple(shape.model_fields))
+        keys = tuple(field.alias or name for name, field in shape.model_fields.items())
+        return self._read(shape.model_validate, place, keys)
 
     def read_plain(self, shape: TypeAdapter[T], place: Place) -> T | None:
         """The same for a value that is not a mapping of known keys."""

@@ -13,36 +13,50 @@ def check_names(document: Document) -> None:
     cells: list[Place] = [("cells", name) for name in document.keys(("cells",))]
     arms = [(*cell, "arm") for cell in cells]
     robots = [place for cell in cells for place in ((*cell, "arm"), (*cell, "mobile"))]
-    names = [(str(cell[-1]), cell) for cell in cells] + _names(document, robots, "name")
+    devices = [(*cell, "devices", role) for cell in cells for role in document.keys((*cell, "devices"))]
+    own = _names(document, robots, "name") + _names(document, devices, "name")
+    names = [(str(cell[-1]), cell) for cell in cells] + own
     for name, place in names:
-        at = place if place in cells else None
-        if at and not is_name(name):
+        at = place if place in cells or place in devices else None
+        if place in cells and not is_name(name):
             document.problem(place, f"a cell's name must be {NAME_RULE}", at=at)
         if name in RESERVED:
             document.problem(place, f"the name {shown(name)} is taken by topics of the plant itself", at=at)
     _differ(document, names + [(name, ("zones", name)) for name in document.keys(("zones",))], "name")
-    _differ(document, _names(document, robots, "mqtt"), "MQTT name")
+    _differ(document, _names(document, [*robots, *devices], "mqtt"), "MQTT name")
     _differ(document, _names(document, arms, "twin"), "twin name")
     _check_twins(document, arms, names)
 
 
 def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str, Place]]:
-    """Each robot's name under `key`, which is its own name where the key is absent."""
+    """Each robot's name under `key`, else its own name, which for a device may be its role."""
     found = []
     for robot in robots:
-        place = (*robot, key) if document.has((*robot, key)) else (*robot, "name")
-        if isinstance(name := document.value(place), str):
-            found.append((name, place))
+        places = [(*robot, each) for each in (key, "name") if document.has((*robot, each))]
+        if places and isinstance(name := document.value(places[0]), str):
+            found.append((name, places[0]))
+        elif not places and _is_role(robot):
+            found.append((str(robot[-1]), robot))
     return found
+
+
+def _is_role(place: Place) -> bool:
+    """Whether a place is that of a device, which may have the name of its role."""
+    return len(place) == 4 and place[2] == "devices"
 
 
 def _differ(document: Document, names: list[tuple[str, Place]], what: str) -> None:
     first: dict[str, Place] = {}
     for name, place in names:
         other = first.setdefault(name, place)
-        by_default = what != "name" and place[-1] == other[-1] == "name"
+        by_default = what != "name" and not {place[-1], other[-1]} & {"mqtt", "twin"}
         if other != place and not by_default:
-            document.problem(place, f"the {what} {shown(name)} is already that of {dotted(other)}")
+            named_by_role = _is_role(place)
+            own = f'; give it another, as in "name: {name}_{place[1]}"' if named_by_role else ""
+            at = place if named_by_role else None
+            document.problem(
+                place, f"the {what} {shown(name)} is already that of {dotted(other)}{own}", at=at
+            )
 
 
 def _check_twins(document: Document, arms: list[Place], names: list[tuple[str, Place]]) -> None:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from arboleda.core.errors import ConfigError
 
 from .yaml_marks import Mark
+
+Kept = Sequence[object]  # line, column and sentence
 
 
 class Problems:
@@ -21,6 +25,17 @@ class Problems:
     def keep_those_of(self, error: ConfigError) -> None:
         """The problems of another file that this one names; each is kept once."""
         self._elsewhere |= dict.fromkeys(error.problems)
+
+    @property
+    def kept(self) -> tuple[list[Kept], list[str]]:
+        """The problems of this file, and those of others."""
+        return list(self._problems), list(self._elsewhere)
+
+    def keep_all(self, here: Iterable[Kept], elsewhere: Iterable[str]) -> None:
+        """What another reading of the same file has `kept`."""
+        for line, column, sentence in here:
+            self._problems[(int(str(line)), int(str(column)), str(sentence))] = None
+        self._elsewhere |= dict.fromkeys(elsewhere)
 
     def finish(self) -> None:
         """ConfigError with every problem in the order of the file, those of other files last."""

@@ -8,7 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic_core import PydanticCustomError
 
+from arboleda.core.commands import OnStop
 from arboleda.core.model import Evidence, Link, Retry, Timing
+from arboleda.kinds.declared import Effect
 from arboleda.recipes.storage_cell import StorageCell
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
@@ -46,6 +48,8 @@ Name = Annotated[str, AfterValidator(_name)]
 Duration = Annotated[float, Field(gt=0, le=DAY_S, allow_inf_nan=False)]
 Wait = Annotated[float, Field(ge=0, le=DAY_S, allow_inf_nan=False)]
 Speed = Annotated[float, Field(ge=0.1, allow_inf_nan=False)]
+QUEUE_LIMIT = 100
+QueueLimit = Annotated[int, Field(ge=1, le=10_000)]
 Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
 
 
@@ -53,6 +57,8 @@ class PlantShape(Shape):
     """The file itself; `paths`, `stations` and `palletizing` here serve every cell without its own."""
 
     name: Annotated[str, AfterValidator(_plant_name)]
+    uses: Any = None
+    kinds: Any = None
     cells: Annotated[dict[str, Any], Field(min_length=1)]
     timing: Any = None
     mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
@@ -88,11 +94,52 @@ class CellShape(Shape):
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
-    queue_limit: Annotated[int, Field(ge=1, le=10_000)] = 100
+    queue_limit: QueueLimit = QUEUE_LIMIT
     drive_to_start: bool = True
     retry: Any = None
     piece_check: bool = False
     zone_wait_s: Duration = StorageCell.zone_wait_s
+
+
+class DeviceCellShape(Shape):
+    """One cell of devices by role; without `recipes` it offers all that fit."""
+
+    devices: Annotated[dict[str, Any], Field(min_length=1)]
+    recipes: Annotated[list[str], Field(min_length=1)] = Field(default_factory=list)
+    default_recipe: str = ""
+    queue_limit: QueueLimit = QUEUE_LIMIT
+    retry: Any = None
+
+
+class KindShape(Shape):
+    """One kind of devices; its name is its key under `kinds:`."""
+
+    facts: Any = None
+    verbs: Annotated[dict[str, Any], Field(min_length=1)]
+
+
+class VerbShape(Shape):
+    """One verb of a kind; an `at_most_s` of 0 is one by `takes_s`."""
+
+    effect: Annotated[Effect, Field(strict=False)]
+    with_: Any = Field(default=None, alias="with")
+    sets: Any = None
+    needs: Any = None
+    takes_s: Wait = 0.0
+    at_most_s: Duration = 0.0
+    on_stop: Annotated[OnStop, Field(strict=False)] = OnStop.HALT
+    holds: Literal["part"] = "part"
+    answers: Any = None
+
+
+class DeviceShape(Shape):
+    """One device of a cell, in the role that is its key; an empty `name` is the role, `mqtt` the name."""
+
+    kind: str
+    name: Name = ""
+    mqtt: Name = ""
+    evidence: Literal["ids", "facts", "joints", "state"] = "ids"
+    stop: Literal["supported", "none"] = "supported"
 
 
 class RetryShape(Shape):
@@ -206,6 +253,7 @@ class ZoneShape(Shape):
 
 
 STRICT = ConfigDict(strict=True)
+USES: TypeAdapter[list[str]] = TypeAdapter(Annotated[list[str], Field(min_length=1)], config=STRICT)
 NODES: TypeAdapter[list[int]] = TypeAdapter(
     Annotated[list[int], Field(min_length=1, max_length=64)], config=STRICT
 )

@@ -120,6 +120,8 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[StorageCe
         document.problem(place, f"{example}, is {shown(text)}; there is no cell {shown(name)}{hint}")
         return None
     cell = next((cell for cell in cells if cell.name == name), None)
+    if document.has(("cells", name, "devices")):
+        document.problem(place, f"{name} is a cell of devices; zones are not possible for it yet")
     if cell is None:
         return None
     poses, pose = _poses(cell), " ".join(words)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
 
-from arboleda.core.model import Link, PlantModel
+from arboleda.core.errors import ConfigError
+from arboleda.core.model import Cell, Link, PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 
 
@@ -24,7 +25,10 @@ class Plant:
 
     @cached_property
     def model(self) -> PlantModel:
-        """As it is simulated, every robot on MQTT, where the simulator has boards for them."""
+        """As it is simulated, every robot on MQTT, where the simulator has boards for them.
+
+        ConfigError where it has cells that cannot be simulated.
+        """
         cells = tuple(_on_boards(cell) for cell in self.declared.cells)
         return replace(self.declared, cells=cells)
 
@@ -54,5 +58,8 @@ def notes(plants: Iterable[Plant]) -> list[str]:
     return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
 
 
-def _on_boards(cell: StorageCell) -> StorageCell:
+def _on_boards(cell: Cell) -> StorageCell:
+    if not isinstance(cell, StorageCell):
+        what = "is a cell of devices, which the simulator has no boards for yet"
+        raise ConfigError((f"{cell.name} {what}; `arboleda check` and `arboleda tree` look at it",))
     return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .draw import draw
+from .draw import NOT_DRAWN, draw
 from .smaller import smaller
 
-__all__ = ["draw", "smaller"]
+__all__ = ["NOT_DRAWN", "draw", "smaller"]

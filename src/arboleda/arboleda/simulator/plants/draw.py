@@ -14,6 +14,7 @@ from .ways import draw_paths
 from .zones import draw_zones
 
 CELLS = (1, 1, 1, 1, 1, 2, 2, 2, 3, 4)  # how many; many are simulated slower and find little more
+NOT_DRAWN = ("uses", "kinds")  # of cells of devices, for which the simulator has no boards yet
 SHARED = 0.25  # how often cells share a section at the top of the file
 
 

@@ -1,0 +1,189 @@
+"""Recipes built in every cell for every combination of their parameters, before anything can move."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from py_trees import behaviours, decorators, timers
+from py_trees.behaviour import Behaviour
+
+from arboleda.core.context import Context
+from arboleda.core.errors import ConfigError
+from arboleda.core.model import Cell, PlantModel
+from arboleda.core.plant import Plant
+from arboleda.core.recipe import Recipe
+from arboleda.core.task import Order
+from arboleda.recipes.errors import RoleError
+
+from .document import Document, Place, choice, nearest, shown
+from .own_recipes import Used, Watch, said
+
+SPELLABLE = re.compile(r"(?!#)[!-~]+", re.ASCII)
+MOST = 200  # combinations of parameters that are tried
+WAIT = "cell.wait(seconds)"
+AT_MOST = "becomes(..., at_most_s=...) of a device"
+NOT_WOKEN: Mapping[type[Behaviour], str] = {
+    timers.Timer: WAIT,
+    behaviours.Periodic: WAIT,
+    behaviours.Running: AT_MOST,
+    behaviours.StatusQueue: WAIT,
+    behaviours.SuccessEveryN: WAIT,
+    behaviours.TickCounter: WAIT,
+    behaviours.WaitForBlackboardVariable: AT_MOST,
+    behaviours.WaitForBlackboardVariableValue: AT_MOST,
+    decorators.Repeat: "cell.repeat(step, times)",
+    decorators.Retry: "cell.retry(step, times=2)",
+    decorators.Timeout: "cell.timeout(step, seconds)",
+}
+"""What asks a clock or waits to be ticked, in an engine that ticks when something happens: what to take."""
+
+
+@dataclass
+class Trial:
+    """The recipes of a plant in its cells: what each offers, and the problems, kept in the document."""
+
+    document: Document
+    used: Used
+    watch: Watch
+    offers: dict[str, list[str]] = field(default_factory=dict)
+    misfits: dict[str, list[str]] = field(default_factory=dict)  # by recipe: why not
+
+    def run(self, cells: Sequence[Cell]) -> dict[str, list[str]]:
+        """The names of the recipes that each cell offers, in their order."""
+        for cell in cells:
+            named = self._named(cell)
+            asked = list(self.used.recipes) if named is None else named
+            fitting = [name for name in asked if self._fits(cell, self.used.recipes[name], named is not None)]
+            self.offers[cell.name] = fitting
+            self._check_default(cell, fitting)
+        offered = {name for names in self.offers.values() for name in names}
+        for name, problems in self.misfits.items():
+            if name not in offered:
+                self._keep(problems)
+        for cell in cells:
+            if not self.offers[cell.name] and self.used.recipes and offered:
+                place = ("cells", cell.name)
+                self.document.problem(
+                    place, 'offers no recipe: none that "uses" brings fits its devices', at=place
+                )
+        return self.offers
+
+    def _named(self, cell: Cell) -> list[str] | None:
+        """The recipes that the cell names and that there are; None where it names none."""
+        place: Place = ("cells", cell.name, "recipes")
+        names, known = self.document.value(place), self.used.recipes
+        if names is None:
+            return None
+        for index, name in enumerate(names):
+            if name in names[:index]:
+                self.document.problem((*place, index), f"{shown(name)} is there twice")
+            elif name not in known and known:
+                there = f"must be {choice(known)}"
+                self.document.problem((*place, index), f"{there}, is {shown(name)}{nearest(name, known)}")
+        return [name for name in dict.fromkeys(names) if name in known]
+
+    def _check_default(self, cell: Cell, offered: Sequence[str]) -> None:
+        place: Place = ("cells", cell.name, "default_recipe")
+        name = self.document.value(place)
+        if name is not None and name not in offered and offered:
+            there = f"must be one that the cell offers: {choice(offered)}"
+            self.document.problem(place, f"{there}; is {shown(name)}{nearest(name, offered)}")
+
+    def _fits(self, cell: Cell, recipe: Recipe, named: bool) -> bool:
+        """Whether the cell has what a recipe needs, or says so; what is wrong with its builds is kept."""
+        spot = self.used.spot(recipe)
+        if unfit := _unspellable(cell, recipe):
+            self._keep([spot.problem(unfit)])
+            return True
+        plant = Plant(PlantModel(name="trial", cells=(replace(cell, recipes=(recipe,)),)), epoch=0, now=0.0)
+        context = plant.cells[cell.name].context
+        problems: dict[str, None] = {}
+        for number, order in enumerate(_orders(cell, recipe)):
+            self.watch(spot, f"building {recipe.name} for {cell.name}")
+            try:
+                problem = self._look(recipe, order, context)
+            except RoleError as error:
+                problem = self.used.where(error, spot).problem(f"{recipe.name}: {error}")
+                if number == 0 and not named:
+                    self.misfits.setdefault(recipe.name, []).append(problem)
+                    return False
+            if problem is not None:
+                problems[problem] = None
+        self._keep(list(problems))
+        return True
+
+    def _look(self, recipe: Recipe, order: Order, context: Context) -> str | None:
+        """What is wrong with the tree of an order, with its place; RoleError where a device is missing."""
+        spot = self.used.spot(recipe)
+        try:
+            tree = recipe.build(order, context)
+        except RoleError:
+            raise
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            return self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")
+        for node in tree.iterate():
+            for kind, instead in NOT_WOKEN.items():
+                if isinstance(node, kind):
+                    what = f"{recipe.name} has a py_trees {kind.__name__} ({node.name}), which nothing wakes"
+                    return spot.problem(f"{what}; take {instead}")
+        return None
+
+    def _keep(self, problems: Sequence[str]) -> None:
+        self.document.keep_those_of(ConfigError(tuple(problems)))
+
+
+def combinations(cell: Cell, recipe: Recipe) -> int:
+    """How many tasks a recipe has in a cell."""
+    return math.prod(len(each.words(cell)) for each in recipe.parameters)
+
+
+def _orders(cell: Cell, recipe: Recipe) -> Iterator[Order]:
+    """Every task of a recipe; of more than MOST so many, with each value of each parameter where possible."""
+    words = [each.words(cell) for each in recipe.parameters]
+    total = combinations(cell, recipe)
+    for number in range(min(total, MOST)):
+        chosen = _sampled(words, number) if total > MOST else _nth(words, number)
+        rows = list(zip(recipe.parameters, chosen, strict=True))
+        yield Order(
+            text=" ".join([cell.name, recipe.name, *chosen]),
+            cell=cell.name,
+            recipe=recipe.name,
+            values={each.name: each.value(cell, word) for each, word in rows},
+        )
+
+
+def _nth(words: Sequence[Sequence[str]], number: int) -> list[str]:
+    """One combination; each number below that of all combinations has another one."""
+    chosen = []
+    for each in words:
+        number, index = divmod(number, len(each))
+        chosen.append(each[index])
+    return chosen
+
+
+def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
+    """One combination of MOST: each parameter goes through its values, those after the first ever shifted."""
+    chosen = []
+    for column, each in enumerate(words):
+        many = len(each)
+        index = number * many // MOST if many > MOST else (number + column * (number // many)) % many
+        chosen.append(each[index])
+    return chosen
+
+
+def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
+    """Why no task text can name a value of a parameter."""
+    for each in recipe.parameters:
+        words = each.words(cell)
+        if not words:
+            return f"{each.name} of {recipe.name} has no value to choose"
+        for word in words:
+            if not SPELLABLE.fullmatch(word):
+                rule = "one word of ASCII letters, digits and signs, not beginning with #"
+                return f"{each.name} of {recipe.name} can be {shown(word)}; in a task it must be {rule}"
+        if len({word.lower() for word in words}) < len(words):
+            return f"{each.name} of {recipe.name} has two values that differ in nothing but their case"
+    return None

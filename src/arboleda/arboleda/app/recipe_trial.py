@@ -1,0 +1,154 @@
+"""Recipes tried in a process of their own: one that never ends, or ends Python, is a problem like others."""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from arboleda.core.model import Cell
+from arboleda.core.recipe import Recipe
+
+from .plant_file import own_recipes
+from .plant_file.devices import CELLS, is_of_devices
+from .plant_file.document import Document
+from .plant_file.own_recipes import Spot
+from .plant_file.problems import Kept
+
+LONGEST_S = 3.0  # for the import of a file, and for each build of a recipe
+STUCK_S = 30.0  # after which not even the watch in the other process has done its work
+BEGIN = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); from arboleda.app import recipe_trial; "
+START = BEGIN + "recipe_trial.main(sys.argv[2])"
+FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
+PLANT, REQUEST, RESULT, PHASE, STACK = "plant", "request.json", "result.json", "phase.json", "stack.txt"
+
+
+@dataclass
+class Verdict:
+    """What came of it: problems of the plant file with their marks, those of other files, and offers."""
+
+    here: list[Kept] = field(default_factory=list)
+    elsewhere: list[str] = field(default_factory=list)
+    offers: dict[str, list[str]] = field(default_factory=dict)
+
+
+def offered(document: Document, content: bytes, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+    """The recipes of one's own of each of these cells; none, with the problems kept, where one is wrong."""
+    names = [(*CELLS, name) for name in document.keys(CELLS)]
+    of_devices = [place for place in names if is_of_devices(document, place)]
+    if not document.has(own_recipes.SECTION):
+        for place in of_devices:
+            how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
+            document.problem(place, f"offers no recipe; {how}", at=place)
+        return {}
+    words = own_recipes.listed(document)
+    if not of_devices:
+        document.problem(own_recipes.SECTION, "no cell has devices, so this has no effect; delete it")
+    if not words or not of_devices:
+        return {}
+    found = verdict(document.name, document.folder, content)
+    document.keep_all(found.here, found.elsewhere)
+    if any(document.kept):
+        return {}
+    recipes = own_recipes.imported(document, words, lambda spot, doing: None).recipes
+    of_cell = {cell.name: [recipes[each] for each in found.offers[cell.name]] for cell in cells}
+    return {name: _marked(document, name, each) for name, each in of_cell.items()}
+
+
+def _marked(document: Document, cell: str, recipes: Sequence[Recipe]) -> tuple[Recipe, ...]:
+    """The recipes of a cell, with the one that a task means which names none: as it says, or the only one."""
+    default = document.value((*CELLS, cell, "default_recipe"))
+    return tuple(replace(each, is_default=each.name == default or len(recipes) == 1) for each in recipes)
+
+
+def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
+    """What the recipes that a plant file uses come to, in a process of its own."""
+    with TemporaryDirectory(prefix="arboleda-") as made:
+        folder = Path(made)
+        (folder / PLANT).write_bytes(content)
+        request = {"name": name, "folder": None if beside is None else str(beside), "longest_s": LONGEST_S}
+        (folder / REQUEST).write_text(json.dumps(request), "utf-8")
+        status = _run(folder)
+        if (folder / RESULT).exists():
+            found = json.loads((folder / RESULT).read_text("utf-8"))
+            return Verdict(**found)
+        return Verdict(elsewhere=[_broken_off(folder, status)])
+
+
+def main(name: str) -> None:
+    """The other process: import, build, write down what came of it, end."""
+    from . import config  # which imports this module
+
+    folder = Path(name)
+    request = json.loads((folder / REQUEST).read_text("utf-8"))
+    beside = None if request["folder"] is None else Path(request["folder"])
+    with _watching(folder, request["longest_s"]) as watch:
+        found = config.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
+    half = folder / f"{RESULT}.half"
+    half.write_text(json.dumps(vars(found)), "utf-8")
+    half.replace(folder / RESULT)
+    os._exit(0)  # whatever threads the files have started
+
+
+@contextmanager
+def _watching(folder: Path, longest_s: float) -> Iterator[Any]:
+    """A watch that ends this process, with the line that it was at, where something takes too long."""
+    with open(folder / STACK, "w", encoding="utf-8") as stack:
+
+        def watch(spot: Spot, doing: str) -> None:
+            (folder / PHASE).write_text(json.dumps({**vars(spot), "doing": doing}), "utf-8")
+            faulthandler.dump_traceback_later(longest_s, exit=True, file=stack)
+
+        try:
+            yield watch
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+
+
+def _run(folder: Path) -> int:
+    command = [sys.executable, "-I", "-c", START, json.dumps(sys.path), str(folder)]
+    null = subprocess.DEVNULL
+    with subprocess.Popen(command, stdin=null, stdout=null, stderr=null) as process:
+        try:
+            return _ended(process, folder / PHASE)
+        finally:
+            process.kill()
+
+
+def _ended(process: subprocess.Popen[bytes], phase: Path) -> int:
+    """Wait for its end; one that neither ends nor begins anything is ended."""
+    before: float | None = None
+    while True:
+        try:
+            return process.wait(STUCK_S)
+        except subprocess.TimeoutExpired:
+            now = phase.stat().st_mtime if phase.exists() else None
+            if now == before:
+                return -1
+            before = now
+
+
+def _broken_off(folder: Path, status: int) -> str:
+    """Why the other process told nothing, with the line that it was at."""
+    if not (folder / PHASE).exists():
+        return f"the recipes could not be tried: Python ended with status {status}"
+    phase = json.loads((folder / PHASE).read_text("utf-8"))
+    spot = Spot(file=phase["file"], line=phase["line"])
+    stack = (folder / STACK).read_text("utf-8", "replace")
+    if not stack:
+        return spot.problem(f"{phase['doing']} ends Python, with status {status}")
+    beside = Path(spot.file).absolute().parent
+    for file, line in FRAME.findall(stack):
+        if Path(file).parent == beside:  # the innermost comes first
+            spot = Spot(file=str(Path(spot.file).parent / Path(file).name), line=int(line))
+            break
+    return spot.problem(f"{phase['doing']} takes more than {LONGEST_S:g} s; this is where it was then")
