@@ -19,7 +19,7 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.core.errors import ArboledaError
 from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.views.view import Diagnostic
+from arboleda.views.diagnostics import Diagnostic
 
 from .played import Crew
 from .processes import own_memory

@@ -18,11 +18,16 @@ from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
 from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.core.text import spelled
+from arboleda.testing import shipped
 
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 TASK = QUEUED | {"reason": None, "elapsed_s": None}
 VIEW = {"plant": "demo", "epoch": 7, "at": 1.0, "ending": False, "cells": [], "robots": [], "zones": []}
 VIEW |= {"tasks": [TASK]}
+WIDTH = {"name": "width", "called": "width", "type": "choice", "choices": ["5"]}
+OFFER = {"name": "cut", "default": False, "form": "<cell> cut <width>", "example": "saw cut 5"}
+OFFERS = [{"cell": "saw", "recipes": [OFFER | {"parameters": [WIDTH]}]}]
 TOKENS = {Role.VIEWER: "v" * 32, Role.OPERATOR: "o" * 32}
 
 
@@ -31,6 +36,7 @@ class Plant:
 
     def __init__(self) -> None:
         self.texts: list[str] = []
+        self.forms: list[tuple] = []
         self.answer: dict | Exception | None = QUEUED
         self.view: dict | Exception = VIEW
         self.acts: list[tuple[Verb, str, bool]] = []
@@ -42,6 +48,13 @@ class Plant:
         if isinstance(self.view, Exception):
             raise self.view
         return self.view
+
+    def offers(self) -> list[dict]:
+        return OFFERS
+
+    def spelled(self, *, cell: str, recipe: str, values: dict, id: str) -> str:
+        self.forms.append((cell, recipe, values, id))
+        return spelled(shipped(), cell=cell, recipe=recipe, values=values, id=id)
 
     def find(self, task: str) -> dict | None:
         return QUEUED if task == QUEUED["id"] else None

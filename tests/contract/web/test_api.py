@@ -8,7 +8,7 @@ from arboleda.core.errors import ArboledaError, QueueFull, TextError
 from arboleda.core.messages import OperatorAnswer, Verb
 from arboleda.core.sentence import Phrase
 
-from .conftest import QUEUED, TASK, VIEW
+from .conftest import OFFERS, QUEUED, TASK, VIEW
 
 
 def test_the_view_is_the_plant(web):
@@ -20,6 +20,32 @@ def test_a_good_text_is_queued(web, plant):
     answer = web.post("/api/tasks", json={"text": "sis_a 0B 7"})
     assert (answer.status_code, answer.json()) == (202, QUEUED)
     assert plant.texts == ["sis_a 0B 7"]
+
+
+def test_what_cells_offer_is_told_as_forms(web):
+    assert web.get("/api/recipes").json() == OFFERS
+
+
+def test_a_form_is_queued_as_the_text_that_it_spells(web, plant):
+    form = {"cell": "sis_a", "values": {"station": 7, "path": "0b"}, "id": "lot1"}
+    assert web.post("/api/tasks", json=form).status_code == 202
+    assert web.post("/api/tasks", json={"cell": "sis_a", "recipe": "palletizing"}).status_code == 202
+    assert plant.texts == ["sis_a 0B 7 #lot1", "sis_a palletizing"]
+
+
+@pytest.mark.parametrize(
+    ("form", "sentence"),
+    [
+        ({"cell": "sis_z"}, "'sis_z' is not a cell of this plant"),
+        ({"cell": "sis_a", "recipe": "palet"}, "'palet' is not a recipe of sis_a"),
+        ({"cell": "sis_a", "values": {"path": "0B"}}, "storage of sis_a needs a value for station"),
+        ({"cell": "sis_a", "values": {"path": "0B 7", "station": 7}}, "'0B 7' is not a path of sis_a"),
+    ],
+)
+def test_a_wrong_form_is_refused_with_what_is_wrong(web, plant, form, sentence):
+    answer = web.post("/api/tasks", json=form)
+    assert answer.status_code == 422 and answer.json()["sentence"].startswith(sentence)
+    assert answer.json()["key"] and plant.texts == []
 
 
 @pytest.mark.parametrize(
@@ -58,6 +84,9 @@ def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
         b'{"text": null}',
         b'{"text": "a", "more": 1}',
         b'{"task": "a"}',
+        b'{"cell": "a", "text": "b"}',
+        b'{"cell": "a", "values": {"path": null}}',
+        b'{"cell": "a", "values": {"path": ["0B"]}}',
         b'{"text": "\\ud800"}',
         b"\xff\xfe",
         b"[" * 4000,

@@ -14,6 +14,7 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
     api = web.get("/api/openapi.json").json()
     assert set(api["paths"]) == {
         "/api/plant",
+        "/api/recipes",
         "/api/tasks",
         "/api/tasks/{task_id}",
         "/api/plant/{verb}",
@@ -21,7 +22,8 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/events",
     }
     posted = api["paths"]["/api/tasks"]["post"]
-    assert posted["requestBody"]["content"]["application/json"]["schema"]["required"] == ["text"]
+    written, form = posted["requestBody"]["content"]["application/json"]["schema"]["anyOf"]
+    assert (written["required"], form["required"]) == (["text"], ["cell"])
     assert {"202", "403", "422", "503", "default"} <= set(posted["responses"])
     assert {"Snapshot", "Cell", "Robot", "Task", "Done", "Sentence"} <= set(api["components"]["schemas"])
     assert not [name for name in api["components"]["schemas"] if "Validation" in name]

@@ -229,7 +229,7 @@ def test_topics_on_which_nobody_listens_are_told_changes_only(
     plant.watchers.clear()
     topics = Topics(store, watched=watched, diagnosed=diagnosed)
     plant.connect_ros(topics)
-    monkeypatch.setattr(orchestrator.view, "diagnostics", lambda snapshot: [])
+    monkeypatch.setattr(orchestrator.diagnostics, "diagnostics", lambda snapshot: [])
     for told in (changed, unchanged):
         now[0] += orchestrator.VIEW_S
         turn(plant)

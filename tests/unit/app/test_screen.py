@@ -16,6 +16,9 @@ from arboleda.app.screen import Screen, joints, logged, parting, table
 from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.core.model import MotionState
 from arboleda.testing import Rig, shipped
+from arboleda.views import view
+
+from ..kinds.lab import Bench, model
 
 
 @pytest.fixture
@@ -51,7 +54,6 @@ def test_the_table_fits_eighty_columns(rig: Rig) -> None:
 def test_joints_are_shown_in_degrees_then_millimetres() -> None:
     assert joints({"q": (0.7854, 0.1745, 0.05), "units": ["rad", "rad", "m"]}) == "45 10° 50 mm"
     assert joints({"q": (0.05, -0.2), "units": ["m", "m"]}) == "50 mm -200 mm"
-    assert joints({"q": None, "units": None}) == "?"
 
 
 def test_a_held_cell_says_why_and_what_to_do(rig: Rig) -> None:
@@ -177,3 +179,15 @@ def test_an_idle_cell_that_cannot_work_says_so(rig: Rig) -> None:
     assert "blocked" in text
     assert text.count("rm_sis_a is offline") == 1, "once is enough"
     assert "bring rm_sis_a back, then resume sis_a" in " ".join(text.split())
+
+
+def test_devices_that_go_nowhere_are_told_with_their_facts() -> None:
+    bench = Bench(model())
+    bench.submit("bench bake 10")
+    assert bench.wait(30.0, lambda: bench.told[-1:] == ["oven bake"])
+    bench.wait(1.0)
+    bench.plant.dispatcher.beliefs["oven"].facts.pop("dose")
+    rows = [" ".join(line.split()) for line in drawn(view.snapshot(bench.plant), 120).splitlines()]
+    assert "bench execute bake 10 oven bake 10 2.7 s" in rows
+    assert "bench oven oven at work lid closed, clamped yes, dose ? doing bake 10: running" in rows
+    assert "bench eye eye still doing look: done, good" in rows

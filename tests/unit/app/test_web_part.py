@@ -19,6 +19,12 @@ class Plant:
     def snapshot(self) -> dict:
         return {}
 
+    def offers(self) -> list[dict]:
+        return []
+
+    def spelled(self, **_asked: object) -> str:
+        return ""
+
     def find(self, task: str) -> None:
         return None
 

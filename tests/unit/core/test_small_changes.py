@@ -8,7 +8,7 @@ from typing import Any
 from arboleda.core.messages import OperatorRequest, Verb
 from arboleda.core.model import Evidence
 from arboleda.kinds.arm import MoveJoints
-from arboleda.views import view
+from arboleda.views import diagnostics, view
 
 
 def test_a_screen_is_told_that_a_step_is_over(hand: Callable[[Evidence], Any]) -> None:
@@ -34,7 +34,7 @@ def test_a_cell_is_diagnosed_with_its_state_its_queue_and_its_step(hand: Callabl
     plant.awake()
     plant.submit("sis_a palletizing")
     plant.submit("sis_a palletizing")
-    rows = {name: values for name, _, _, _, values in view.diagnostics(view.snapshot(plant.plant))}
+    rows = {name: values for name, _, _, _, values in diagnostics.diagnostics(view.snapshot(plant.plant))}
     shown = {"state": "execute", "queued": "1", "step": "system start"}
     assert rows["arboleda: sis_a"] == {**shown, "waiting_for": "sis_a is busy", "advice": ""}
     assert rows["arboleda: sis_b"] == {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from py_trees.behaviours import Success
@@ -11,7 +12,7 @@ from py_trees.behaviours import Success
 from arboleda.core.errors import TextError
 from arboleda.core.model import Cell, PlantModel
 from arboleda.core.recipe import Parameter, Recipe
-from arboleda.core.text import example, parse
+from arboleda.core.text import example, parse, spelled
 from arboleda.testing import shipped
 
 
@@ -110,3 +111,38 @@ def test_a_recipe_that_another_cell_offers_is_refused() -> None:
     split = replace(model, cells=(replace(first, recipes=(PAINT,)), replace(second, recipes=(REST,))))
     with pytest.raises(TextError, match="'paint' is not a recipe of sis_b; there are rest"):
         parse("sis_b paint red 1001", split)
+
+
+def test_named_values_are_spelled_in_their_order() -> None:
+    here = plant(PAINT, REST)
+    values = {"program": 1002, "colour": "RED"}
+    assert spelled(here, cell="SIS_A", recipe="Paint", values=values) == "sis_a paint red 1002"
+    assert spelled(here, cell="sis_a", recipe="rest", id="#lot7") == "sis_a rest #lot7"
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"recipe": "pait"}, "'pait' is not a recipe of sis_a; there are paint, rest; did you mean paint?"),
+        ({}, "the task names no recipe of sis_a; there are paint, rest; write <cell> paint"),
+        ({"recipe": "paint"}, "paint of sis_a needs a value for colour, program"),
+        (
+            {"recipe": "paint", "values": {"color": "red"}},
+            "'color' is not a parameter of paint; there are colour, program; did you mean colour?",
+        ),
+        (
+            {"recipe": "rest", "values": {"colour": 1}},
+            "rest of sis_a takes no values, and 'colour' was given",
+        ),
+        (
+            {"recipe": "paint", "values": {"colour": "red green", "program": 1001}},
+            "'red green' is not a colour of sis_a; there are red, green",
+        ),
+        ({"recipe": "rest", "id": "a b"}, "'#a b' is not a task id"),
+        ({"recipe": "rest", "id": "t-1"}, "'#t-1' is not a task id; ids that start with t- are made by"),
+    ],
+)
+def test_a_wrong_form_is_refused_with_the_word_that_is_wrong(asked: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(TextError) as refused:
+        spelled(plant(PAINT, REST), cell="sis_a", **asked)
+    assert str(refused.value).startswith(sentence)

@@ -12,7 +12,8 @@ from arboleda.testing import Rig, shipped
 
 
 def row(path: str, status: str, *, kind: str = "command", failure: str | None = None) -> dict[str, Any]:
-    return {"path": path, "name": path, "phase": None, "status": status, "kind": kind, "failure": failure}
+    plain = {"path": path, "name": path, "phase": None, "frame": False}
+    return {**plain, "status": status, "kind": kind, "failure": failure}
 
 
 def test_a_done_task_leaves_a_tree_that_succeeded(told: Callable[..., Any]) -> None:

@@ -16,8 +16,7 @@ from arboleda.core.plant import Plant
 from arboleda.core.sentence import Sentence
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, flat, tree_of, words
 from arboleda.recipes import storage
-from arboleda.views.tree_view import KINDS
-from arboleda.views.view import IN_RECOVERY
+from arboleda.views.tree_view import IN_RECOVERY, KINDS
 
 ENGLISH = LANGUAGES[0]
 

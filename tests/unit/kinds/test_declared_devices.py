@@ -14,7 +14,6 @@ from arboleda.core.model import Evidence, Link
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
 from arboleda.sim.machine import Machine
-from arboleda.views import view
 
 from .lab import EYE, ON, OVEN, Bench, bake, careless, model
 
@@ -264,12 +263,3 @@ def test_a_device_cannot_say_what_its_kind_does_not_have() -> None:
     here.wait(1.0)
     assert here.plant.dispatcher.ledger.ignored["report"] > before
     assert here.plant.dispatcher.beliefs["oven"].fact("lid") == "open"
-
-
-def test_screens_show_a_cell_of_any_devices() -> None:
-    here = Bench(model())
-    here.submit("bench bake 10")
-    here.wait(3.0)
-    (cell,) = view.snapshot(here.plant)["cells"]
-    assert (cell["oven"], cell["eye"], cell["state"]) == ("oven", "eye", "execute")
-    assert [str(row["name"]) for row in cell["tree"]][:3] == ["bake", "main", "system start"]

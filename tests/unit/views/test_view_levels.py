@@ -11,7 +11,7 @@ from py_trees.composites import Selector, Sequence
 from arboleda.core.messages import TaskState, Verb
 from arboleda.core.model import MotionState
 from arboleda.testing import Rig, shipped
-from arboleda.views import view
+from arboleda.views import diagnostics, tree_view, view
 from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 TASK = "sis_a 0B 7"
@@ -37,14 +37,14 @@ def recipe(*work: Any) -> Selector:
     ids=["first step", "second of four", "recovering", "done"],
 )
 def test_progress_is_the_share_of_the_steps_that_are_done(work: list[Any], share: float) -> None:
-    assert view.progress_of(recipe(*work)) == share
+    assert tree_view.progress_of(recipe(*work)) == share
 
 
 @pytest.mark.parametrize(
     "tree", [None, Success("alone"), Sequence("recovery", memory=True)], ids=["none", "leaf", "recovery"]
 )
 def test_without_work_there_is_no_progress(tree: Any) -> None:
-    assert view.progress_of(tree) is None
+    assert tree_view.progress_of(tree) is None
 
 
 def test_progress_only_grows_while_a_task_is_carried_out() -> None:
@@ -63,7 +63,7 @@ def test_progress_only_grows_while_a_task_is_carried_out() -> None:
 
 
 def levels(rig: Rig) -> dict[str, int]:
-    told = view.diagnostics(rig.snapshot())
+    told = diagnostics.diagnostics(rig.snapshot())
     return {name.removeprefix("arboleda: "): level for name, _, level, _, _ in told}
 
 
@@ -109,7 +109,7 @@ def test_an_idle_cell_that_cannot_work_is_told_with_what_leads_out() -> None:
             "refusal": None,
         }
     ]
-    *_, (_, _, level, message, values) = view.diagnostics(snapshot)
+    *_, (_, _, level, message, values) = diagnostics.diagnostics(snapshot)
     assert (level, message, values["waiting_for"]) == (WARN, str(cell["not_ready"]), str(cell["not_ready"]))
     assert values["advice"] == "bring ra1 back"
 

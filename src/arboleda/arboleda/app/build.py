@@ -7,7 +7,7 @@ import json
 import logging
 import threading
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +17,7 @@ from arboleda.adapters import clock, descriptors
 from arboleda.adapters.mqtt import Credentials
 from arboleda.adapters.store import JournalEntry, Store
 from arboleda.core.errors import ArboledaError, StartError
+from arboleda.core.facts import Value
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.core.model import Link, MqttVersion, PlantModel
 from arboleda.core.operator import ACTS_TOLD
@@ -170,6 +171,12 @@ class App:
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)
+
+    def offers(self) -> list[dict[str, Any]]:
+        return self._plant.offers()
+
+    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
+        return self._plant.spelled(cell=cell, recipe=recipe, values=values, id=id)
 
     def links(self) -> dict[str, Any]:
         """Broker, ROS 2 and refused messages, as the page's `PlantSide` has them; from any thread."""

@@ -18,6 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.facts import Value, shown
 from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.core.model import MotionState
 from arboleda.core.outside import plain
@@ -27,7 +28,18 @@ from arboleda.views import view
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
 OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
-LONG = ("step", "arm, effector")  # columns that may take two lines where the terminal is narrow
+EFFECTOR = "effector"  # is on or off, where other facts are so or not
+ROLES = 3  # so many columns of robots a row of a cell may have; more are told below, a row for each
+SHORT = ("cell", "state", "task", "time")  # columns that take one line, however narrow the terminal is
+STATES = {
+    None: "?",
+    MotionState.STOPPED: "still",
+    MotionState.MOVING: "at work",
+    MotionState.FAULT: "fault",
+    MotionState.NOT_HOMED: "not homed",
+    MotionState.STOP_LATCHED: "latched",
+    MotionState.NO_LINK: "no link",
+}
 STATE_WIDTH = 9  # letters of a task's state at the beginning of its line
 STYLES = {
     TaskState.QUEUED: "dim",
@@ -102,20 +114,85 @@ def logged(line: logging.LogRecord) -> Text:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """A row per cell: state, task, step, arm, mobile, time; then the zones and what is in the way."""
+    """A row per cell: state, task, step, robots, time; then other devices, zones, and what is in the way."""
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
-    drawn = Table(
-        title=_words(f"plant {snapshot['plant']}", "italic"),
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
-    for heading in ("cell", "state", "task", "step", "arm, effector", "mobile", "time"):
-        drawn.add_column(heading, no_wrap=heading not in LONG)
+    columns = _columns(snapshot["cells"])
+    headings = ["cell", "state", "task", "step", *columns, "time"]
+    title = _words(f"plant {snapshot['plant']}", "italic")
+    drawn = _table(headings, title=title, title_justify="left")
     for cell in snapshot["cells"]:
-        drawn.add_row(*_row(cell, robots[cell["arm"]], robots[cell["mobile"]]))
+        drawn.add_row(*_row(cell, robots, told=bool(columns)))
+    others = [] if columns else [_devices(snapshot["cells"], robots)]
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
-    return Group(drawn, *zones, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
+    return Group(drawn, *others, *zones, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
+
+
+def _table(headings: list[str], **settings: Any) -> Table:
+    drawn = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), **settings)
+    for heading in headings:
+        drawn.add_column(heading, no_wrap=heading in SHORT)
+    return drawn
+
+
+def _columns(cells: list[dict[str, Any]]) -> list[str]:
+    """A heading for each role, where every cell has the same few roles for robots that go somewhere."""
+    told = {tuple(_heading(device) for device in cell["devices"]) for cell in cells}
+    moving = all(device["position"] for cell in cells for device in cell["devices"])
+    return list(*told) if len(told) == 1 and moving and len(*told) <= ROLES else []
+
+
+def _heading(device: dict[str, Any]) -> str:
+    return ", ".join(filter(None, (device["role"], device["holds"])))
+
+
+def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:
+    """How each device stands, what it says and what it was told last."""
+    drawn = _table(["cell", "device", "kind", "state", "says", "last command"])
+    for cell in cells:
+        for device in cell["devices"]:
+            robot = robots[device["name"]]
+            state = STATES[robot["state"]] if robot["online"] else "offline"
+            words = (
+                cell["name"],
+                device["name"],
+                device["kind"],
+                state,
+                says(robot),
+                _told(robot),
+            )
+            drawn.add_row(*(_words(word, "" if robot["online"] else "dim") for word in words))
+    return drawn
+
+
+def _told(robot: dict[str, Any]) -> str:
+    command, answer = robot["command"], robot["answer"]
+    if command is None:
+        return ""
+    said = f"{command['what']}: {command['state']}"
+    return said if answer is None else f"{said}, {fact(answer)}"
+
+
+def says(robot: dict[str, Any]) -> str:
+    """Where it is, and each of its facts by name."""
+    facts = [
+        f"{name} {switched(value) if name == EFFECTOR else fact(value)}"
+        for name, value in robot["facts"].items()
+    ]
+    return ", ".join([*place(robot), *facts])
+
+
+def place(robot: dict[str, Any]) -> list[str]:
+    """Where it says that it is; nothing of what says no place."""
+    if robot["q"] is not None:
+        return [joints(robot)]
+    return [] if robot["node"] is None else [f"node {robot['node']}"]
+
+
+def fact(value: Value | None) -> str:
+    """A fact for a person; `?` where it was not said yet."""
+    if value is None:
+        return "?"
+    return ("yes" if value else "no") if isinstance(value, bool) else shown(value)
 
 
 def _words(text: str | Sentence, style: str = "") -> Text:
@@ -144,7 +221,8 @@ def _zones(zones: list[dict[str, Any]]) -> Table:
     return drawn
 
 
-def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> list[Text]:
+def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool) -> list[Text]:
+    """`told`: with what each of its robots says."""
     task = cell["task"]
     standing = view.standing(cell)
     style = {"idle": "", "execute": "cyan", "paused": "yellow", "blocked": "yellow"}.get(standing, "red")
@@ -153,15 +231,16 @@ def _row(cell: dict[str, Any], arm: dict[str, Any], mobile: dict[str, Any]) -> l
     words = (cell["name"], view.standing_said(cell), " ".join(tasks), cell["step"] or "")
     return [
         *(_words(word, style) for word in words),
-        _of(arm, f"{joints(arm)}, {effector(arm)}"),
-        _of(mobile, "?" if mobile["node"] is None else f"node {mobile['node']}"),
+        *(_of(robots[device["name"]], device["holds"]) for device in (cell["devices"] if told else ())),
         Text(f"{task['elapsed_s']:.1f} s" if task else "", style=style),
     ]
 
 
-def _of(robot: dict[str, Any], said: str) -> Text:
-    """What a robot said last, dim where it is no longer heard."""
-    return Text(said, style="" if robot["online"] else "dim")
+def _of(robot: dict[str, Any], holds: str | None) -> Text:
+    """Where a robot is and how its effector stands, dim where it is no longer heard."""
+    said = place(robot) or ["?"]
+    said += [switched(robot["facts"][holds])] if holds else []
+    return Text(", ".join(said), style="" if robot["online"] else "dim")
 
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
@@ -183,33 +262,38 @@ def _obstacles(snapshot: dict[str, Any]) -> list[str]:
     what its idle cell says already not again.
     """
     told = {cell["blocked_by"] for cell in snapshot["cells"]}
-    idle = {name for cell in snapshot["cells"] if not cell["task"] for name in (cell["arm"], cell["mobile"])}
+    idle = {each["name"] for cell in snapshot["cells"] if not cell["task"] for each in cell["devices"]}
     robots = [each for each in snapshot["robots"] if each["name"] in idle and each["obstacle"]]
     robots = [each for each in robots if each["name"] not in told]
     return [each["obstacle"] for each in robots if not (each["online"] and each.get("latched"))]
 
 
-def joints(arm: dict[str, Any]) -> str:
+def joints(robot: dict[str, Any]) -> str:
     """Joint positions for a person: degrees, then millimetres."""
-    if arm["q"] is None:
-        return "?"
-    values = list(zip(arm["q"], arm["units"], strict=True))
+    values = list(zip(robot["q"], robot["units"], strict=True))
     turns = " ".join(f"{math.degrees(value):.0f}" for value, unit in values if unit == "rad")
     slides = " ".join(f"{value * 1000:.0f} mm" for value, unit in values if unit == "m")
     return " ".join(filter(None, (turns and f"{turns}°", slides)))
 
 
-def effector(arm: dict[str, Any]) -> str:
-    return {None: "?", True: "on", False: "off"}[arm["effector"]]
+def switched(value: bool | None) -> str:
+    """How an effector stands, or whatever else holds a part."""
+    return {None: "?", True: "on", False: "off"}[value]
 
 
 def parting(snapshot: dict[str, Any]) -> list[str]:
     """How each robot that was ever heard was left."""
-    return [_left(robot) for robot in snapshot["robots"] if robot["age_s"] is not None]
+    holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
+    heard = [robot for robot in snapshot["robots"] if robot["age_s"] is not None]
+    return [_left(robot, holds[robot["name"]]) for robot in heard]
 
 
-def _left(robot: dict[str, Any]) -> str:
-    grip = f", effector {effector(robot)}" if robot["effector"] is not None else ""
+def _left(robot: dict[str, Any], holds: str | None) -> str:
+    grip = (
+        ""
+        if holds is None or robot["facts"][holds] is None
+        else f", {holds} {switched(robot['facts'][holds])}"
+    )
     if not robot["online"]:
         return f"{robot['name']}: offline, not known to be still{grip}"
     still = robot["state"] in (MotionState.STOPPED, MotionState.NOT_HOMED, MotionState.STOP_LATCHED)

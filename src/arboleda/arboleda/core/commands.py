@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 
 from .facts import Facts
@@ -32,6 +32,11 @@ class Command:
 
     id: str
     robot: str
+
+    @property
+    def given(self) -> dict[str, object]:
+        """What it was made with besides its id, by name, as screens show it."""
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.name != "id"}
 
     @property
     def sets(self) -> Facts:

@@ -76,6 +76,20 @@ class Robot:
     position_key: ClassVar[str | None] = None  # the key of a report that has its position, if any
 
     @property
+    def kind_name(self) -> str:
+        """What its kind is called."""
+        raise NotImplementedError
+
+    @property
+    def fact_names(self) -> tuple[str, ...]:
+        """The facts that it reports, in the order in which people read them."""
+        return ()
+
+    def drawn(self) -> dict[str, object] | None:
+        """Its place on the floor, its speeds and its reference, for drawings; None where it is not drawn."""
+        return None
+
+    @property
     def held_fact(self) -> str | None:
         """The fact, a yes or no, that says whether it holds something; None where it cannot hold anything."""
         return None
@@ -231,6 +245,20 @@ class Cell:
     recipes: tuple[Recipe, ...] = ()
     stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
     arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
+    keyed_roles: ClassVar[tuple[str, ...]] = ()  # in data for clients these are keys of the cell as well
+
+    def described(self) -> dict[str, object]:
+        """What clients are told of it besides its devices and recipes."""
+        return {}
+
+    @property
+    def drawing(self) -> dict[str, object] | None:
+        """Which of its robots works where, for drawings of its work; None where that is not drawn."""
+        return None
+
+    def part_waits(self, recipe: str) -> Pose | None:
+        """At which pose the part of a task waits until it is gripped; None: on the mobile robot."""
+        return None
 
     @cached_property
     def roles(self) -> dict[str, Robot]:

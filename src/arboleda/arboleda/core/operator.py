@@ -152,8 +152,7 @@ class Operator:
 
     def _planned_in_cells(self, verb: Verb, robots: set[str]) -> Callable[[], None]:
         check, act = ACTS[verb]
-        names = {self._dispatcher.model.cell_of[robot].name for robot in robots}
-        cells = [cell for name, cell in self._cells.items() if name in names]
+        cells = self._of_robots(robots)
         refusals = {cell.cell.name: why for cell in cells if (why := check(self, cell, robots))}
         must = MUST_ALL.get(verb, ())
         firm = [cell.cell.name for cell in cells if cell.state in must and cell.cell.name in refusals]
@@ -161,6 +160,13 @@ class Operator:
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
         able = [cell for cell in cells if cell.cell.name not in refusals]
         return partial(self._do_in, able, act, robots)
+
+    def _of_robots(self, robots: set[str]) -> list[CellRun]:
+        """Their cells in the order of the file; one cell, as screens ask about it, comes without a search."""
+        names = {self._dispatcher.model.cell_of[robot].name for robot in robots}
+        if len(names) == 1:
+            return [self._cells[names.pop()]]
+        return [cell for name, cell in self._cells.items() if name in names]
 
     def _do_in(self, cells: list[CellRun], act: Do, robots: set[str]) -> None:
         for cell in cells:
@@ -236,7 +242,7 @@ class Operator:
         """`sis_a 7` is one station, `sis_a` the whole rack of a cell."""
         name, _, station = scope.partition(" ")
         robots = self._robots(name)
-        cells = [cell for cell in self._cells.values() if robots & set(cell.cell.holders)]
+        cells = [cell for cell in self._of_robots(robots) if robots & set(cell.cell.holders)]
         if station and not any(station == str(n) for cell in cells for n in range(len(cell.cell.stations))):
             raise Refused(NO_STATION(station=quoted(station), cell=_whole(name)))
         number = int(station) if station else None
@@ -296,7 +302,7 @@ class Operator:
     def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
         """Why robots may not set out for their reference: from where they stand they may cross any zone."""
         taken: dict[str, str] = {}
-        spaces = (space for cell in self._cells.values() for space in cell.cell.workspaces.values())
+        spaces = (space for cell in self._of_robots(robots) for space in cell.cell.workspaces.values())
         for space in spaces:
             name = space.robot.name
             for zone in sorted(space.zones) if name in robots else ():

@@ -84,6 +84,16 @@ def selector(title: Sentence | str, *children: Behaviour) -> Behaviour:
     return titled(composites.Selector(str(title), memory=True, children=list(children)), title)
 
 
+def framed(node: Behaviour) -> Behaviour:
+    """A node that only says when others run: where it runs, screens name the step in it."""
+    node.frame = True  # type: ignore[attr-defined]
+    return node
+
+
+def is_frame(node: Behaviour) -> bool:
+    return getattr(node, "frame", False)
+
+
 def start(context: Context) -> Behaviour:
     """Tell that a task starts."""
     announce = Announce(ANNOUNCE(), context, SystemStart(cell=context.cell.name))

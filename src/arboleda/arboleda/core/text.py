@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 from .errors import TextError
+from .facts import Value, shown
 from .model import Cell, Link, PlantModel
 from .outside import LINE, quoted
 from .recipe import Parameter, Recipe, known
@@ -42,6 +43,9 @@ OUTSIDE = Phrase("text.outside", "{word} is no {kind}; it is a number from {lowe
 OUTSIDE_WHOLE = Phrase(
     "text.outside_whole", "{word} is no {kind}; it is a whole number from {lower:g} to {upper:g}"
 )
+NO_PARAMETER = Phrase("text.no_parameter", "{recipe} of {cell} takes no values, and {word} was given")
+NO_VALUE = Phrase("text.no_value", "{recipe} of {cell} needs a value for {names}")
+PARAMETER = Phrase("text.parameter", "parameter")
 CELL = Phrase("text.cell", "cell")
 CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
 RECIPE = Phrase("text.recipe", "recipe")
@@ -70,6 +74,24 @@ def example(cell: Cell, recipe: Recipe) -> Order:
     for last in recipe.parameters[-1:]:
         words[last.name] = last.words(cell)[-1]
     return _order(cell, recipe, words, None)
+
+
+def spelled(
+    plant: PlantModel, *, cell: str, recipe: str = "", values: Mapping[str, Value] | None = None, id: str = ""
+) -> str:
+    """The text of a task whose values are named; TextError for what is no task of this plant."""
+    there = _cell(cell, plant, robots=False)
+    named = _recipe_of(there, recipe, plant)
+    given = values or {}
+    _check_names(there, named, tuple(given))
+    words = {each.name: _read(there, each, shown(given[each.name])) for each in named.parameters}
+    _check_reached(there, named)
+    text = _order(there, named, words, None).text
+    if not id:
+        return text
+    number = f"#{id.removeprefix('#')}"
+    _split_id([number])
+    return f"{text} {number}"
 
 
 def compose(
@@ -146,6 +168,31 @@ def _by_parameter(words: list[str], start: int, cell: Cell, recipe: Recipe, form
         raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=form))
     named |= zip(unnamed, in_order, strict=True)
     return {each.name: _read(cell, each, named[each.name]) for each in recipe.parameters}
+
+
+def _recipe_of(cell: Cell, word: str, plant: PlantModel) -> Recipe:
+    """The recipe of that name; without one the cell's default."""
+    names = [each.name for each in cell.recipes]
+    default = next((each for each in cell.recipes if each.is_default), None)
+    if not word and default is None:
+        raise TextError(NO_RECIPE(cell=cell.name, there=tuple(names), form=_form(plant)))
+    name = known(word, names) if word or default is None else default.name
+    if name is None:
+        raise TextError(_unknown(RECIPE(), word, names, cell.name))
+    return cell.recipe(name)
+
+
+def _check_names(cell: Cell, recipe: Recipe, given: tuple[str, ...]) -> None:
+    """TextError where a value has a name that no parameter has, or a parameter has no value."""
+    names = [each.name for each in recipe.parameters]
+    wrong = next((name for name in given if name not in names), None)
+    if wrong is not None and not names:
+        raise TextError(NO_PARAMETER(recipe=recipe.name, cell=cell.name, word=quoted(wrong)))
+    if wrong is not None:
+        raise TextError(_unknown(PARAMETER(), wrong, names, recipe.name))
+    missing = tuple(name for name in names if name not in given)
+    if missing:
+        raise TextError(NO_VALUE(recipe=recipe.name, cell=cell.name, names=missing))
 
 
 def _read(cell: Cell, parameter: Parameter, word: str) -> str:

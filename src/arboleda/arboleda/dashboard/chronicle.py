@@ -79,16 +79,17 @@ EXPECTED = frozenset({"idle", "free", "offline"})  # nothing has happened where 
 
 def _cells(snapshot: Row) -> dict[str, str]:
     """The cell of each robot."""
-    return {name: cell["name"] for cell in snapshot["cells"] for name in (cell["arm"], cell["mobile"])}
+    return {each["name"]: cell["name"] for cell in snapshot["cells"] for each in cell["devices"]}
 
 
 def _states(snapshot: Row) -> Iterator[Told]:
     """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence."""
+    online = {robot["name"]: robot["online"] for robot in snapshot["robots"]}
     for cell in snapshot["cells"]:
         yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or NOTHING
-        for name in (cell["arm"], cell["mobile"]):
-            robot = next(each for each in snapshot["robots"] if each["name"] == name)
-            yield cell["name"], "robot", name, "online" if robot["online"] else "offline", NOTHING
+        for device in cell["devices"]:
+            name = device["name"]
+            yield cell["name"], "robot", name, "online" if online[name] else "offline", NOTHING
     for task in snapshot["tasks"]:
         text = f"{task['text']} #{task['id']}"
         why = task["sentence"]

@@ -6,7 +6,7 @@ import asyncio
 import json
 from collections.abc import Awaitable, Callable
 from concurrent.futures import Future
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from nicegui import Client
 from nicegui.events import GenericEventArguments
@@ -103,7 +103,12 @@ class Desk:
     def _is_stopped(self, scope: str) -> bool:
         """Whether a stop has arrived by the other way, over HTTP."""
         snapshot = self._plant.snapshot()
-        names = {name for cell in snapshot["cells"] if scope in ("", cell["name"]) for name in _robots(cell)}
+        names = {
+            device["name"]
+            for cell in snapshot["cells"]
+            if scope in ("", cell["name"])
+            for device in cell["devices"]
+        }
         robots = [robot for robot in snapshot["robots"] if robot["name"] in (names or {scope})]
         return bool(robots) and all(robot["latched"] for robot in robots)
 
@@ -117,7 +122,3 @@ class Desk:
 
 VERBS = frozenset(verb.value for verb in Verb)
 Hear = Callable[[GenericEventArguments], Awaitable[None]]
-
-
-def _robots(cell: dict[str, Any]) -> tuple[str, str]:
-    return cell["arm"], cell["mobile"]

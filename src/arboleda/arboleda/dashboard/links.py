@@ -7,7 +7,7 @@ from .plant_side import Layout
 from .tags import live, rows, tag
 from .wording import Words
 
-COLUMNS = ("robot", "presence", "telemetry", "ready", "homed", "effector", "command", "boot", "refused")
+COLUMNS = ("robot", "kind", "presence", "telemetry", "ready", "homed", "facts", "command", "boot", "refused")
 
 
 def build(layout: Layout, words: Words) -> None:

@@ -104,14 +104,20 @@ def open_page(client: Client, desk: Desk, feed: Feed, layout: Layout, said: Word
     ui.on("arboleda", desk.hear)
     client.on_connect(lambda: feed.add(desk))
     client.on_delete(lambda: feed.remove(desk))
+    parts = parts_of(layout)
     with tag("div", classes="app"):
-        header.build(layout, said, list(PARTS), role)
+        header.build(layout, said, list(parts), role)
         with tag("div", id="parts"):
-            for name, build in PARTS.items():
+            for name, build in parts.items():
                 label = said(f"tab.{name}")
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
                     build(layout, said)
         trees.detail(said)
+
+
+def parts_of(layout: Layout) -> dict[str, Callable[[Layout, Words], None]]:
+    """The parts that this plant has something to show in: there is no twin where no robot is drawn."""
+    return {name: build for name, build in PARTS.items() if name != "twin" or layout["places"]["robots"]}
 
 
 def head(said: Words) -> str:

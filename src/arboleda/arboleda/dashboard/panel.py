@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from typing import Any
 
 from arboleda.core.messages import Verb
 
@@ -14,27 +15,28 @@ from .wording import Words
 
 @dataclass(frozen=True, kw_only=True)
 class Offer:
-    """Where a verb is offered, and how often a person is asked before it is done."""
+    """To whom a verb is offered, and how often a person is asked before it is done."""
 
     scopes: str
     asks: int = 0
     by_hand: bool = False
 
 
-PLANT, CELL, ARM, MOBILE = "plant", "cell", "arm", "mobile"
+PLANT, CELL, DEVICE = "plant", "cell", "device"
+HOLDER, MOVER, MOVER_ALONE = "holder", "mover", "mover_alone"  # for verbs that are not for all
 OFFERS: dict[str, tuple[Verb, Offer]] = {
-    "stop": (Verb.STOP, Offer(scopes="plant cell arm mobile")),
-    "clear": (Verb.CLEAR, Offer(scopes="plant cell arm mobile")),
+    "stop": (Verb.STOP, Offer(scopes="plant cell device")),
+    "clear": (Verb.CLEAR, Offer(scopes="plant cell device")),
     "reset": (Verb.RESET, Offer(scopes="plant cell")),
     "hold": (Verb.HOLD, Offer(scopes="plant cell")),
     "resume": (Verb.RESUME, Offer(scopes="plant cell")),
     "retry": (Verb.RETRY, Offer(scopes="cell")),
     "abandon": (Verb.ABANDON, Offer(scopes="cell")),
     "cancel": (Verb.CANCEL, Offer(scopes="cell")),
-    "release": (Verb.RELEASE, Offer(scopes="cell arm", asks=1)),
+    "release": (Verb.RELEASE, Offer(scopes="holder", asks=1)),
     "unload": (Verb.UNLOAD, Offer(scopes="plant cell")),
-    "home": (Verb.HOME, Offer(scopes="cell arm mobile", asks=1)),
-    "home_by_hand": (Verb.HOME, Offer(scopes="arm mobile", asks=1, by_hand=True)),
+    "home": (Verb.HOME, Offer(scopes="mover", asks=1)),
+    "home_by_hand": (Verb.HOME, Offer(scopes="mover_alone", asks=1, by_hand=True)),
 }
 
 
@@ -45,8 +47,10 @@ def build(layout: Layout, words: Words) -> None:
         for cell in layout["cells"]:
             live("p", f"advice.{cell['name']}", classes="advice", data_advice=cell["name"])
         with tag("ul", classes="verbs"):
+            racks = any(cell["stations"] for cell in layout["cells"])
             for name, (verb, offer) in OFFERS.items():
-                _verb(name, verb, offer, words)
+                if racks or verb is not Verb.UNLOAD:
+                    _verb(name, verb, offer, words)
         tag("p", words("panel.not_safety"), classes="hint")
         _suggestions(layout)
     with tag("div", classes="box"):
@@ -59,18 +63,25 @@ def _scopes(layout: Layout, words: Words) -> None:
     with tag("div", classes="scopes", role="group", aria_label=words("panel.scope")):
         _scope("", words("panel.plant"), PLANT)
         for cell in layout["cells"]:
-            with _scope(cell["name"], None, CELL):
+            with _scope(cell["name"], None, *_kinds(CELL, cell["devices"])):
                 tag("span", cell["name"])
                 live("span", f"scope.{cell['name']}", classes="pill")
     for cell in layout["cells"]:
         with tag("div", classes="scopes robots", role="group", data_robots=cell["name"]):
             tag("span", words("panel.only"), classes="hint")
-            _scope(cell["arm"], cell["arm"], ARM)
-            _scope(cell["mobile"], cell["mobile"], MOBILE)
+            for device in cell["devices"]:
+                alone = [MOVER_ALONE] if device["position"] else []
+                _scope(device["name"], device["name"], *_kinds(DEVICE, [device]), *alone)
 
 
-def _scope(scope: str, text: str | None, kind: str) -> object:
-    return tag("button", text, type="button", classes="choice", data_scope=scope, data_kind=kind)
+def _kinds(kind: str, devices: list[dict[str, Any]]) -> list[str]:
+    """What a scope is, for verbs that are not for all: one of these may hold a part, or goes somewhere."""
+    holder = [HOLDER] if any(device["holds"] for device in devices) else []
+    return [kind, *holder, *([MOVER] if any(device["position"] for device in devices) else [])]
+
+
+def _scope(scope: str, text: str | None, *kinds: str) -> Any:
+    return tag("button", text, type="button", classes="choice", data_scope=scope, data_kind=" ".join(kinds))
 
 
 def _verb(name: str, verb: Verb, offer: Offer, words: Words) -> None:
@@ -92,6 +103,6 @@ def _suggestions(layout: Layout) -> None:
     """What the plant would do next, read by the script to mark buttons."""
     for name in ["plant", *(cell["name"] for cell in layout["cells"])]:
         live("span", f"suggested.{name}", hidden="true", data_suggested=name)
-    robots = [robot for cell in layout["cells"] for robot in (cell["arm"], cell["mobile"])]
+    robots = [device["name"] for cell in layout["cells"] for device in cell["devices"]]
     for name in ["plant", *(cell["name"] for cell in layout["cells"]), *robots]:
         live("span", f"refused.{name}", hidden="true", data_refused=name)

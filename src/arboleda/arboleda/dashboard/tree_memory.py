@@ -107,9 +107,11 @@ class TreeMemory:
             for row in self.rows
             if self.statuses.get(row["path"]) == RUNNING
         }
+        if task.get("state") == "done":
+            _fill(self.rows, after)
         self._blame(task, after)
         for row in self.rows:
-            self._become(row["path"], row["name"], after[row["path"]], unix_s)
+            self._become(row["path"], row["name"], after.get(row["path"], IDLE), unix_s)
 
     def _blame(self, task: Row, after: dict[str, str]) -> None:
         """Show the leaf that failed the task as failed, also where no snapshot said so in time."""
@@ -152,9 +154,15 @@ def phases(rows: list[Row]) -> list[Row]:
 
 
 def steps(rows: list[Row]) -> list[str]:
-    """What people follow: the steps of the phases, else those of the root, not what they are made of."""
+    """What people follow: the steps of the phases, else those of the root; neither what they are made of, nor
+    what frames them."""
     above = {row["path"] for row in phases(rows)} or {"root"}
-    return [row["path"] for row in rows if parent(row["path"]) in above]
+    found = []
+    for row in rows:
+        if parent(row["path"]) in above:
+            above |= {row["path"]} if row["frame"] else set()
+            found += [] if row["frame"] else [row["path"]]
+    return found
 
 
 def judged(rows: list[Row], before: dict[str, str]) -> dict[str, str]:
@@ -179,6 +187,16 @@ def _conclude(sequence: str, paths: list[str], after: dict[str, str]) -> None:
         for path in paths:
             if after.get(path) == HALTED and (path == child or path.startswith(f"{child}.")):
                 after[path] = SUCCESS
+
+
+def _fill(rows: list[Row], after: dict[str, str]) -> None:
+    """What a sequence that was done is made of was done too, also where no snapshot saw it run."""
+    kinds = {row["path"]: row["kind"] for row in rows}
+    for path in kinds:
+        above = parent(path)
+        whole = above is not None and after.get(above) == SUCCESS and kinds[above] in ("sequence", "parallel")
+        if whole and after.get(path, IDLE) == IDLE:
+            after[path] = SUCCESS
 
 
 def _reset(row: Row, was: str) -> str:

@@ -16,7 +16,7 @@ def build(layout: Layout, words: Words) -> None:
     with tag("div", classes=f"cells {many}"):
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
-                _card(cell["name"], words)
+                _card(cell, words)
                 tree_box(cell, words)
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))
@@ -35,7 +35,8 @@ def beside(layout: Layout, words: Words) -> None:
             tree_box(cell, words)
 
 
-def _card(cell: str, words: Words) -> None:
+def _card(layout: dict[str, Any], words: Words) -> None:
+    cell = layout["name"]
     with tag(
         "button", type="button", classes="card", data_choose=cell, title=words("cells.choose", cell=cell)
     ):
@@ -53,11 +54,13 @@ def _card(cell: str, words: Words) -> None:
         live("span", f"{cell}.cause", classes="trouble")
         live("span", f"{cell}.trouble", classes="trouble")
     rows(f"ways.{cell}", ["", ""], classes="ways")
+    if any(device["position"] is None for device in layout["devices"]):
+        rows(f"devices.{cell}", ["", "", ""], classes="devices")
 
 
 def tree_box(layout: dict[str, Any], words: Words) -> None:
     """Where a cell's tree is drawn; what an idle one offers stands above it."""
-    cell, example = layout["name"], f"{layout['name']} {next(iter(layout['paths']))} {layout['stations'] - 1}"
+    cell = layout["name"]
     with tag("div", classes="tree-box"):
         with tag("div", classes="tree-tools"):
             live("span", f"{cell}.feedback", classes="feedback")
@@ -65,7 +68,9 @@ def tree_box(layout: dict[str, Any], words: Words) -> None:
             zooms(words)
         with tag("div", classes="empty"):
             tag("p", words("cells.no_tree"))
-            tag("p", words("cells.welcome", text=example), classes="example")
+            for recipe in layout["recipes"][:1]:
+                welcome = words("cells.welcome", text=recipe["example"], form=recipe["form"])
+                tag("p", welcome, classes="example")
             _offer(cell, classes="act primary offer")
         tag("div", classes="tree", data_tree=cell, role="tree", aria_label=words("cells.tree", cell=cell))
 

@@ -105,6 +105,18 @@ class Arm(Robot):
     position_key: ClassVar[str | None] = "q"
 
     @property
+    def kind_name(self) -> str:
+        return "arm"
+
+    @property
+    def fact_names(self) -> tuple[str, ...]:
+        return ("effector",)
+
+    def drawn(self) -> dict[str, object]:
+        speeds = [joint.speed for joint in self.joints]
+        return {"at": self.base.on_floor, "speeds": speeds, "reference": list(self.reference)}
+
+    @property
     def held_fact(self) -> str:
         return "effector"
 

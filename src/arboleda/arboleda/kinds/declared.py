@@ -126,6 +126,10 @@ class Told(Command):
     told: DeviceVerb = field(repr=False, compare=False)
 
     @property
+    def given(self) -> dict[str, object]:
+        return {"robot": self.robot, "verb": self.verb, **dict(self.values)}
+
+    @property
     def sets(self) -> Facts:
         values = dict(self.values)
         return tuple(
@@ -173,6 +177,14 @@ class Device(Robot):
 
     kind: DeviceKind
     position_key: ClassVar[str | None] = None
+
+    @property
+    def kind_name(self) -> str:
+        return self.kind.name
+
+    @cached_property
+    def fact_names(self) -> tuple[str, ...]:
+        return tuple(self.kind.facts)
 
     @property
     def held_fact(self) -> str | None:

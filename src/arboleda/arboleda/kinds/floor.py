@@ -12,3 +12,7 @@ class Placement:
     x: float
     y: float
     yaw: float = 0.0
+
+    @property
+    def on_floor(self) -> list[float]:
+        return [self.x, self.y, self.yaw]

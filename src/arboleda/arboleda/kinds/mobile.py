@@ -74,6 +74,15 @@ class Mobile(Robot):
     speed: float
     position_key: ClassVar[str | None] = "node"
 
+    @property
+    def kind_name(self) -> str:
+        return "mobile"
+
+    def drawn(self) -> dict[str, object]:
+        nodes = [list(self.grid.position(node)) for node in range(self.grid.size)]
+        at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]
+        return {"at": at, "speeds": speeds, "reference": nodes[0], "nodes": nodes}
+
     def objection(self, report: Report) -> str | None:
         for key in ("q", "effector", "piece"):
             if getattr(report, key) is not None:

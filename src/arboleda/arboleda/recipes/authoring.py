@@ -74,13 +74,13 @@ def _build(name: str, function: Callable[..., Step], order: Order, context: Cont
 
 def work(*parts: Step | Sequence[Step]) -> Step:
     """One step after the other."""
-    return steps.sequence("work", *flat(parts))
+    return steps.framed(steps.sequence("work", *flat(parts)))
 
 
 def parallel(*parts: Step) -> Step:
     """All at the same time, done once all are; where one fails, the others are halted."""
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)  # else what is done would be done again
-    return composites.Parallel("parallel", policy=policy, children=list(parts))
+    return steps.framed(composites.Parallel("parallel", policy=policy, children=list(parts)))
 
 
 class Kit:
@@ -122,11 +122,13 @@ class Kit:
             sentence = OTHER_ANSWER(robot=asked.name, answer=said(told), known=known)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
-        branches = [
-            steps.sequence(shown(value), Unless(f"is {shown(value)}", partial(answers, value)), *flat([way]))
-            for value, way in ways.items()
-        ]
-        return steps.selector("choose", *branches, Require("no other answer", self._context, other))
+        def branch(value: Value, way: Step | Sequence[Step]) -> Step:
+            chosen = Unless(f"is {shown(value)}", partial(answers, value))
+            return steps.framed(steps.sequence(shown(value), chosen, *flat([way])))
+
+        branches = [branch(value, way) for value, way in ways.items()]
+        other_way = Require("no other answer", self._context, other)
+        return steps.framed(steps.selector("choose", *branches, other_way))
 
     def fail(self, sentence: str) -> Step:
         """The task has failed, with this sentence."""
@@ -161,7 +163,7 @@ class Kit:
         """The first step that does not fail; where all do, the last one's failure counts."""
         *others, last = parts
         forgiven = [Forgiven(each, self._context) for each in others]
-        return steps.selector("fallback", *forgiven, last)
+        return steps.framed(steps.selector("fallback", *forgiven, last))
 
     def invert(self, step: Step) -> Step:
         """The step, which has to fail."""

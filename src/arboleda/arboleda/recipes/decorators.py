@@ -19,7 +19,13 @@ TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
 
 
-class Again(Decorator):
+class Around(Decorator):
+    """A step around another one, which is the step that screens name."""
+
+    frame = True
+
+
+class Again(Around):
     """Does its step again, `times` more at most, after a pause: while it fails for one of `causes`."""
 
     def __init__(
@@ -56,7 +62,7 @@ class Again(Decorator):
         return Status.RUNNING
 
 
-class Times(Decorator):
+class Times(Around):
     """Does its step `times` times, one after the other."""
 
     def __init__(self, child: Behaviour, context: Context, *, times: int) -> None:
@@ -78,7 +84,7 @@ class Times(Decorator):
         return Status.RUNNING
 
 
-class AtMost(Decorator):
+class AtMost(Around):
     """Its step ends within `seconds`, or is left, and the task fails."""
 
     def __init__(self, child: Behaviour, context: Context, *, seconds: float) -> None:
@@ -100,7 +106,7 @@ class AtMost(Decorator):
         return Status.FAILURE
 
 
-class Forgiven(Decorator):
+class Forgiven(Around):
     """Its step may fail, for another one is tried then."""
 
     def __init__(self, child: Behaviour, context: Context) -> None:
@@ -113,7 +119,7 @@ class Forgiven(Decorator):
         return self.decorated.status
 
 
-class Inverted(Decorator):
+class Inverted(Around):
     """Its step has to fail."""
 
     def __init__(self, child: Behaviour, context: Context) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 from arboleda.core.commands import Position
 from arboleda.core.model import Cell, Crossing, Pose, Positions, Robot, Workspace
@@ -47,6 +48,28 @@ class StorageCell(Cell):
     piece_check: bool = False
     crossings: tuple[Crossing, ...] = ()
     pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
+    keyed_roles: ClassVar[tuple[str, ...]] = ("arm", "mobile")
+
+    def described(self) -> dict[str, object]:
+        grid = self.mobile.grid
+        return {
+            "grid": {"rows": grid.rows, "columns": grid.columns},
+            "paths": {path.code: list(path.nodes) for path in self.paths},
+        }
+
+    @cached_property
+    def drawing(self) -> dict[str, object]:
+        return {
+            "arm": self.arm.name,
+            "mobile": self.mobile.name,
+            "pitch": self.mobile.grid.pitch,
+            "columns": self.mobile.grid.columns,
+            "pickups": [list(pickup.joints) for pickup in self.every_pickup],
+            "stations": [list(station.joints) for station in self.stations],
+        }
+
+    def part_waits(self, recipe: str) -> Pose | None:
+        return self.palletizing.pick if recipe == "palletizing" else None
 
     def pickup_of(self, path: Path) -> Pose:
         """Where the arm takes the part at the end of a path."""

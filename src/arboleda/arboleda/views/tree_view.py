@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
 from typing import Any
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.core.commands import Command
 from arboleda.core.leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless, title_of
-from arboleda.core.sentence import NOTHING, Sentence
-from arboleda.core.steps import PHASES
+from arboleda.core.sentence import NOTHING, Phrase, Sentence
+from arboleda.core.steps import MAIN, PHASES, RECOVERY, is_frame
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
+IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
 
 
 def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
@@ -23,6 +24,48 @@ def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     _add(tree, "", now, found)
     return found
+
+
+def step_of(tree: Behaviour | None) -> Sentence | None:
+    """The name of the step that runs, not of its parts nor of what frames it; a recovery's steps say so."""
+    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
+    if not running:
+        return None
+    step = running[0]
+    while step.parent is not None and not _frames(step.parent):
+        step = step.parent
+    phase = step.parent
+    while phase is not None and phase.name not in PHASES:
+        phase = phase.parent
+    title = title_of(step)
+    return IN_RECOVERY(step=title) if phase is not None and phase.name == RECOVERY else title
+
+
+def progress_of(tree: Behaviour | None) -> float | None:
+    """The share of the work's steps that are done, 0 to 1; None where no work runs, a recovery alone too."""
+    phases = tree.children if tree is not None else ()
+    main = next((phase for phase in phases if phase.name == MAIN), None)
+    steps = _steps(main, done=False) if main is not None and main.children else []
+    return sum(steps) / len(steps) if steps else None
+
+
+def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
+    """Of each step in a frame, and in the frames inside it, whether it is done; `done`: all of them are.
+
+    Of several ways only the one that is taken counts; until one is, they are one step.
+    """
+    nodes = frame.children
+    if isinstance(frame, composites.Selector):
+        nodes = [node for node in nodes if node.status in (Status.RUNNING, Status.SUCCESS)]
+    found: list[bool] = []
+    for node in nodes:
+        over = done or node.status is Status.SUCCESS
+        found += _steps(node, done=over) if is_frame(node) else [over]
+    return found or [done]
+
+
+def _frames(node: Behaviour) -> bool:
+    return node.name in PHASES or is_frame(node)
 
 
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
@@ -34,6 +77,7 @@ def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) ->
             "name": title_of(node),
             "phase": node.name if node.name in PHASES else None,
             "kind": kind(node),
+            "frame": is_frame(node),
             "status": node.status.value,
             "feedback": _feedback(node),
             "description": _description(node),
@@ -90,9 +134,9 @@ def _parameters(node: Behaviour) -> dict[str, Any]:
 def _of_command(node: Any) -> dict[str, Any]:
     if node.entry is None:
         return {}
-    command = node.entry.command
-    said = {field.name: getattr(command, field.name) for field in fields(command)}
-    return {"command": said.pop("id"), **said, **({"tries": node.tries + 1} if node.tries else {})}
+    command: Command = node.entry.command
+    own = {"command": command.id, **({"tries": node.tries + 1} if node.tries else {})}
+    return own | command.given | own  # a kind may have values of these names
 
 
 def _of_await(node: Any) -> dict[str, Any]:

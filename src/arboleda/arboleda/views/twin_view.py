@@ -8,13 +8,12 @@ from py_trees.behaviour import Behaviour
 
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
+from arboleda.core.commands import Motion, Position, Switch
 from arboleda.core.grips import Grip
 from arboleda.core.leaves import Act
 from arboleda.core.ledger import OPEN, Entry, State
+from arboleda.core.model import Cell
 from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath
-from arboleda.recipes.storage_cell import StorageCell
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})
@@ -32,48 +31,51 @@ def positions(plant: Plant) -> Row:
 
 def goal(entry: Entry | None) -> Row | None:
     """Where a robot's open motion command leads: {"q"} or {"nodes"}."""
-    if entry is None or entry.state not in UNDER_WAY:
+    way = _way(entry) if entry is not None and entry.state in UNDER_WAY else ()
+    if not way:
         return None
-    command = entry.command
-    if isinstance(command, MoveJoints):
-        return {"q": list(command.q)}
-    return {"nodes": list(command.nodes)} if isinstance(command, FollowPath) else None
+    end = way[-1]
+    return {"q": list(end)} if isinstance(end, tuple) else {"nodes": list(way)}
 
 
-def part(cell: CellRun) -> Row | None:
+def part(run: CellRun) -> Row | None:
     """Where the part of the cell's work is: {"at": "arm", "sure"}, {"at": "mobile"} or {"at": "pose", "q"}.
 
     Only what an effector holds is known by itself; where a part waits, and where it was put, follows from
-    what the tree has done so far.
+    what the tree has done so far. None where nobody draws the work of such a cell.
     """
-    storage = cell.cell
-    if not isinstance(storage, StorageCell):
+    cell = run.cell
+    if cell.drawing is None:
         return None
-    grip = cell.context.grip(storage.arm.name)
-    if grip is not Grip.OFF:
-        return {"at": "arm", "sure": grip is Grip.ON}
-    if cell.tree is None or cell.task is None:
+    for holder in cell.holders:
+        grip = run.context.grip(holder)
+        if grip is not Grip.OFF:
+            return {"at": "arm", "sure": grip is Grip.ON}
+    if run.tree is None or run.task is None:
         return None
-    sent = _sent(cell.tree)
-    gripped = [entry for entry in sent if isinstance(entry.command, SetEffector)]
+    sent = _sent(run.tree)
+    gripped = [entry for entry in sent if _grips(entry) is not None]
     if gripped:
-        return _put_down(sent, gripped[-1], storage)
-    return _waiting(cell.task.order.recipe, storage)
+        return _put_down(sent, gripped[-1], cell)
+    pose = cell.part_waits(run.task.order.recipe)
+    return {"at": "mobile"} if pose is None else {"at": "pose", "q": list(pose.joints)}
 
 
-def _waiting(recipe: str, cell: StorageCell) -> Row:
-    if recipe == "storage":
-        return {"at": "mobile"}
-    return {"at": "pose", "q": list(cell.palletizing.pick.joints)}
-
-
-def _put_down(sent: list[Entry], let_go: Entry, cell: StorageCell) -> Row | None:
+def _put_down(sent: list[Entry], let_go: Entry, cell: Cell) -> Row | None:
     """Where the arm was sent to last before it let go; what lies in a station is `stored`."""
-    before = sent[: sent.index(let_go)]
-    moves = [entry.command for entry in before if isinstance(entry.command, MoveJoints)]
-    if not moves or any(moves[-1].q == station.q for station in cell.stations):
+    before = [_way(entry)[-1] for entry in sent[: sent.index(let_go)] if _way(entry)]
+    places = [place for place in before if isinstance(place, tuple)]
+    if not places or any(places[-1] == station.q for station in cell.stations):
         return None
-    return {"at": "pose", "q": list(moves[-1].q)}
+    return {"at": "pose", "q": list(places[-1])}
+
+
+def _way(entry: Entry) -> tuple[Position, ...]:
+    return entry.command.way if isinstance(entry.command, Motion) else ()
+
+
+def _grips(entry: Entry) -> bool | None:
+    return entry.command.grips if isinstance(entry.command, Switch) else None
 
 
 def _sent(tree: Behaviour) -> list[Entry]:
@@ -111,6 +113,5 @@ def _reached(plant: Plant, belief: Belief, last: Entry | None) -> Row | None:
     place = plant.dispatcher.reached.get(belief.robot.name)
     if isinstance(place, tuple):
         return {"q": list(place)}
-    if last is None or last.state is not State.DONE or not isinstance(last.command, FollowPath):
-        return None
-    return {"node": last.command.nodes[-1]}
+    way = _way(last) if last is not None and last.state is State.DONE else ()
+    return {"node": way[-1]} if way and isinstance(way[-1], int) else None

@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from typing import Any
 
-from py_trees.behaviour import Behaviour
-from py_trees.common import Status
-
-from arboleda.core import steps
 from arboleda.core.advice import Advice, Hand, in_words, sentence
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.leaves import title_of
+from arboleda.core.facts import Value
 from arboleda.core.ledger import Entry
 from arboleda.core.messages import OperatorRequest, TaskChanged, Verb
-from arboleda.core.model import PlantModel
+from arboleda.core.model import Cell, PlantModel, Robot
 from arboleda.core.operator import OperatorAct
 from arboleda.core.plant import Plant
-from arboleda.core.sentence import BOTH, NOTHING, Phrase, Sentence
+from arboleda.core.sentence import BOTH, NOTHING, Sentence
 from arboleda.core.task import Task
-from arboleda.recipes.storage_cell import StorageCell
-from arboleda.wire.status import ERROR, OK, STALE, WARN
 
-from . import places, tree_view, twin_view
+from . import forms, places, tree_view, twin_view
 
-IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
-Diagnostic = tuple[str, str, int, str, dict[str, str]]
-TIMES = frozenset({"age_s", "telemetry_hz"})  # a diagnosis changes with the robot, not with time
 OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
 OF_CELLS = (
     *OF_ROBOTS,
@@ -88,20 +79,39 @@ def layout(model: PlantModel) -> dict[str, Any]:
         "plant": model.name,
         "zones": list(model.zones),
         "no_stop": [robot.name for robot in model.robots.values() if not robot.has_stop],
-        "cells": [_cell_layout(cell) for cell in model.cells if isinstance(cell, StorageCell)],
+        "cells": [_cell_layout(cell) for cell in model.cells],
         "places": places.places(model),
     }
 
 
-def _cell_layout(cell: StorageCell) -> dict[str, Any]:
-    grid = cell.mobile.grid
+def _cell_layout(cell: Cell) -> dict[str, Any]:
     return {
         "name": cell.name,
-        "arm": cell.arm.name,
-        "mobile": cell.mobile.name,
-        "grid": {"rows": grid.rows, "columns": grid.columns},
-        "paths": {path.code: list(path.nodes) for path in cell.paths},
+        **_by_role(cell),
+        "devices": _devices(cell),
         "stations": len(cell.stations),
+        **cell.described(),
+        "recipes": forms.recipes(cell),
+    }
+
+
+def _by_role(cell: Cell) -> dict[str, str]:
+    """The devices that clients also find under their roles."""
+    return {role: cell.roles[role].name for role in cell.keyed_roles}
+
+
+def _devices(cell: Cell) -> list[dict[str, Any]]:
+    return [_device(role, robot) for role, robot in cell.roles.items()]
+
+
+def _device(role: str, robot: Robot) -> dict[str, Any]:
+    """`position`: the key of its row that has it; `holds`: the fact that says whether it holds a part."""
+    return {
+        "role": role,
+        "name": robot.name,
+        "kind": robot.kind_name,
+        "position": robot.position_key,
+        "holds": robot.held_fact,
     }
 
 
@@ -121,28 +131,6 @@ def change(changed: TaskChanged) -> dict[str, Any]:
         "reason": changed.reason.value if changed.reason else None,
         "sentence": changed.sentence,
     }
-
-
-def step_of(tree: Behaviour | None) -> Sentence | None:
-    """The name of the step that runs, a step's own parts left out; a recovery's steps say so."""
-    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
-    if not running:
-        return None
-    step = running[0]
-    while step.parent is not None and step.parent.name not in steps.PHASES:
-        step = step.parent
-    phase = step.parent.name if step.parent else ""
-    title = title_of(step)
-    return IN_RECOVERY(step=title) if phase == steps.RECOVERY else title
-
-
-def progress_of(tree: Behaviour | None) -> float | None:
-    """The share of the work's steps that are done, 0 to 1; None where no work runs, a recovery alone too."""
-    phases = tree.children if tree is not None else ()
-    main = next((phase for phase in phases if phase.name == steps.MAIN), None)
-    if main is None or not main.children:
-        return None
-    return sum(step.status is Status.SUCCESS for step in main.children) / len(main.children)
 
 
 def _recent(plant: Plant) -> list[Task]:
@@ -169,10 +157,11 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
     return {
         "name": cell.cell.name,
         "state": cell.state.value,
-        **{role: robot.name for role, robot in cell.cell.roles.items()},
+        **_by_role(cell.cell),
+        "devices": _devices(cell.cell),
         "task": _task(cell.task, now) if cell.task else None,
-        "step": step_of(cell.tree),
-        "progress": progress_of(cell.tree),
+        "step": tree_view.step_of(cell.tree),
+        "progress": tree_view.progress_of(cell.tree),
         "queue": [task.id for task in cell.queue],
         "paused": cell.queue_paused,
         "waiting_for": cell.waiting_for() if cell.queue else None,
@@ -261,9 +250,10 @@ def _task(task: Task, now: float) -> dict[str, Any]:
 
 def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
     robot, now = belief.robot, plant.now
-    obstacle = plant.dispatcher.obstacle(robot.name)
+    obstacle, last = plant.dispatcher.obstacle(robot.name), plant.dispatcher.last_sent.get(robot.name)
     return {
         "name": robot.name,
+        "kind": robot.kind_name,
         "mqtt": robot.mqtt,
         "online": belief.online,
         "obstacle": obstacle.sentence if obstacle else None,
@@ -276,16 +266,28 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "latched": robot.name in plant.dispatcher.latched,
         "effector": belief.effector,
         "piece": belief.piece,
+        "facts": _facts(belief),
+        "answer": last.answer if last is not None else None,
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
         "still": belief.still,
         "holding": plant.dispatcher.grips.holding(robot.name) if robot.held_fact else None,
-        "goal": twin_view.goal(plant.dispatcher.last_sent.get(robot.name)),
+        "goal": twin_view.goal(last),
         "telemetry_hz": belief.rate_hz if belief.online else None,
-        "command": _command(plant.dispatcher.last_sent.get(robot.name), now),
+        "command": _command(last, now),
         "rejected": _rejected(plant.dispatcher.rejected.get(robot.name)),
         "refused": _refused(plant, robot.name, OF_ROBOTS),
     }
+
+
+def _facts(belief: Belief) -> dict[str, Value | None]:
+    """What its kind reports, None where it was not said yet; and what else it said."""
+    found = {name: belief.fact(name) for name in belief.robot.fact_names}
+    if belief.effector is not None:
+        found.setdefault("effector", belief.effector)
+    if belief.piece is not None:
+        found.setdefault("piece", belief.piece)
+    return found
 
 
 def _command(entry: Entry | None, now: float) -> dict[str, Any] | None:
@@ -311,36 +313,3 @@ def _act(act: OperatorAct) -> dict[str, Any]:
         "cell": act.cell,
         "sentence": act.sentence,
     }
-
-
-def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
-    """One (name, hardware id, level, message, values) per robot and cell of a snapshot."""
-    yield from map(_robot_diagnostic, snapshot["robots"])
-    yield from map(_cell_diagnostic, snapshot["cells"])
-
-
-def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:
-    level = OK if robot["online"] else STALE
-    if robot["online"] and robot["state"] not in (None, 0, 1):
-        level = ERROR
-    plain = {key: value for key, value in robot.items() if not isinstance(value, dict) and key not in TIMES}
-    values = {key: str(value) for key, value in plain.items() if value is not None}
-    if robot["telemetry_hz"] is not None:
-        values["telemetry_hz"] = f"{robot['telemetry_hz']:.0f}"
-    return (f"arboleda: {robot['name']}", robot["mqtt"], level, str(robot["obstacle"] or "ready"), values)
-
-
-def _cell_diagnostic(cell: dict[str, Any]) -> Diagnostic:
-    well = (
-        cell["state"] in (CellState.IDLE, CellState.EXECUTE) and not cell["paused"] and not cell["not_ready"]
-    )
-    message = str(cell["held_by"] or cell["not_ready"] or cell["waiting_for"] or cell["state"])
-    values = {
-        "state": cell["state"],
-        "queued": str(len(cell["queue"])),
-        "step": str(cell["step"] or ""),
-        "waiting_for": str(cell["not_ready"] or cell["waiting_for"] or ""),
-        "advice": ", ".join(str(each["said"]) for each in cell["advice"]),
-    }
-    level = OK if well else WARN
-    return (f"arboleda: {cell['name']}", "", level, message, values)

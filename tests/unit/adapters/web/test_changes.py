@@ -53,6 +53,8 @@ def test_ages_positions_and_trees_are_no_changes(before: dict, where: str, keys:
         ("cells", "cell", "queue", ["t-2"]),
         ("robots", "robot", "online", True),
         ("robots", "robot", "latched", True),
+        ("robots", "robot", "facts", {"lid": "open"}),
+        ("robots", "robot", "answer", "good"),
     ],
 )
 def test_a_row_that_changed_is_told_alone(

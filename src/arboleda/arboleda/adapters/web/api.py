@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 import logging
 from concurrent.futures import Future
+from contextlib import suppress
 from typing import Any, TypeVar
 from urllib.parse import quote
 
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.responses import JSONResponse
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from starlette.exceptions import HTTPException
 
 from arboleda import __version__
@@ -24,7 +25,7 @@ from .limits import LATER_S
 from .nothing_else import NothingElse
 from .plain_json import PlainJson, explained
 from .plant_side import PlantSide
-from .schema import ByHand, Done, Sentence, Snapshot, Task, TaskText
+from .schema import ByHand, Done, Offer, Sentence, Snapshot, Task, TaskForm, TaskText
 
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
@@ -85,13 +86,24 @@ def routes(side: PlantSide) -> APIRouter:
         """Every open task and those that ended last, in the order of their acceptance."""
         return PlainJson([explained(task) for task in side.snapshot()["tasks"]])
 
+    @api.get("/recipes", response_model=list[Offer])
+    async def recipes() -> JSONResponse:
+        """What each cell can be asked for: its recipes, their parameters, and what these can be."""
+        return PlainJson(side.offers())
+
     @api.post(
-        "/tasks", status_code=202, response_model=Task, responses=REFUSED, openapi_extra=_body(TaskText)
+        "/tasks",
+        status_code=202,
+        response_model=Task,
+        responses=REFUSED,
+        openapi_extra=_body(TaskText, TaskForm),
     )
     async def add_task(request: Request) -> JSONResponse:
-        """Queue a task; 422 where its text is refused, 503 where the queue is full."""
+        """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
-        task = await in_time(side.submit(task_text(await request.body())))
+        asked = task_asked(await request.body())
+        text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.model_dump())
+        task = await in_time(side.submit(text))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
@@ -159,12 +171,15 @@ def said_by_hand(body: bytes) -> bool:
         ) from None
 
 
-def task_text(body: bytes) -> str:
-    """The text in `{"text": "..."}`; PayloadError for anything else."""
-    try:
-        return TaskText.model_validate_json(body).text
-    except ValidationError:
-        raise PayloadError('The body must be JSON like {"text": "sis_a 0B 7"}, and nothing else.') from None
+def task_asked(body: bytes) -> TaskText | TaskForm:
+    """`{"text": "..."}`, or cell, recipe and values; PayloadError for anything else."""
+    for form in (TaskText, TaskForm):
+        with suppress(ValidationError):
+            return form.model_validate_json(body)
+    raise PayloadError(
+        'The body must be JSON like {"text": "sis_a 0B 7"} or '
+        '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}, and nothing else.'
+    )
 
 
 async def refuse(_request: Request, error: Exception) -> JSONResponse:
@@ -182,6 +197,8 @@ async def own_up(request: Request, error: Exception) -> JSONResponse:
     return JSONResponse({"sentence": "The plant could not answer: internal error."}, status_code=500)
 
 
-def _body(model: type[TaskText] | type[ByHand], *, required: bool = True) -> dict[str, Any]:
-    schema = model.model_json_schema()
+def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
+    """What is sent: one of these."""
+    schemas = [model.model_json_schema() for model in models]
+    schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
     return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}

@@ -26,7 +26,19 @@ ROWS = {
     "robots": (
         "robot",
         "name",
-        ("online", "obstacle", "state", "node", "homed", "latched", "effector", "piece", "boot_id"),
+        (
+            "online",
+            "obstacle",
+            "state",
+            "node",
+            "homed",
+            "latched",
+            "effector",
+            "piece",
+            "facts",
+            "answer",
+            "boot_id",
+        ),
     ),
     "tasks": ("task", "id", ("text", "cell", "state", "reason", "sentence")),
     "zones": ("zone", "zone", ("state", "robot", "waiting")),
@@ -60,7 +72,7 @@ def changed(before: Snapshot, after: Snapshot) -> list[tuple[str, Row]]:
 def _facts(row: Row, keys: tuple[str, ...]) -> Row:
     """Those keys of a row; of a task inside it, the id."""
     facts = {key: row[key] for key in keys}
-    return {key: value["id"] if isinstance(value, dict) else value for key, value in facts.items()}
+    return {key: value["id"] if key == "task" and value else value for key, value in facts.items()}
 
 
 class Reader:

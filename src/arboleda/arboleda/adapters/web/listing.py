@@ -93,6 +93,8 @@ def _json(content: Schema) -> Schema:
 
 
 def _shape(shape: Schema) -> str:
+    if "anyOf" in shape and "type" not in shape:
+        return "<p>or</p>".join(map(_shape, shape["anyOf"]))
     about = f"<p>{escape(shape['description'])}</p>" if "description" in shape else ""
     about += f"<p>One of: {escape(', '.join(shape['enum']))}.</p>" if "enum" in shape else ""
     rows = "".join(_field(name, field) for name, field in shape.get("properties", {}).items())

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol
 
+from arboleda.core.facts import Value
 from arboleda.core.messages import OperatorAnswer, Verb
 
 Snapshot = dict[str, Any]
@@ -15,6 +16,12 @@ class PlantSide(Protocol):
     """The plant as the server's thread sees it; no call blocks, and all data is plain."""
 
     def snapshot(self) -> Snapshot: ...
+
+    def offers(self) -> list[dict[str, Any]]:
+        """By cell, its recipes with their parameters and what these can be."""
+
+    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
+        """The text of a task whose values are named; TextError for what is no task of this plant."""
 
     def find(self, task: str) -> dict[str, Any] | None:
         """One task by its id, None where the plant knows none."""

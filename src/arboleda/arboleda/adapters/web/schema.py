@@ -26,6 +26,17 @@ class TaskText(_Asked):
     text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
 
 
+class TaskForm(_Asked):
+    """A task as a form of `/api/recipes` has it."""
+
+    cell: str = Field(examples=["sis_a"])
+    recipe: str = Field(default="", description="One of the cell's recipes; without it the default one.")
+    values: dict[str, bool | int | float | str] = Field(
+        default={}, examples=[{"path": "0B", "station": 7}], description="A value for each parameter."
+    )
+    id: str = Field(default="", description="Of your choice; the same id again asks for the same task.")
+
+
 class ByHand(_Asked):
     by_hand: bool = Field(
         default=False, description="For home: nothing moves, you declare that the robot is at its reference."
@@ -53,6 +64,30 @@ class Task(_Told):
     values: dict[str, Any] | None = None
 
 
+class Parameter(_Told):
+    """What a recipe wants to know; more types may come."""
+
+    name: str
+    called: str = Field(description="Its name for people.")
+    type: str = Field(description="`choice`: one of its `choices`; `integer`, `number`: within its limits.")
+    choices: list[str]
+    lower: float | None = None
+    upper: float | None = None
+
+
+class Recipe(_Told):
+    name: str
+    default: bool = Field(description="A task that names no recipe means this one.")
+    form: str = Field(examples=["<cell> <path> <station>"], description="How its task text is written.")
+    example: str = Field(examples=["sis_a 0A 8"])
+    parameters: list[Parameter]
+
+
+class Offer(_Told):
+    cell: str
+    recipes: list[Recipe]
+
+
 class Done(_Told):
     verb: Verb
     scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
@@ -73,11 +108,20 @@ class Advice(_Told):
     refusal: str | None = Field(description="Why it would be refused now.")
 
 
+class Device(_Told):
+    role: str
+    name: str
+    kind: str = Field(description="arm, mobile, or a kind of your own.")
+    position: str | None = Field(description="The key of its row under `robots` that has its position.")
+    holds: str | None = Field(description="The fact that says whether it holds a part.")
+
+
 class Cell(_Told):
+    """Cells of storage also have the names of their `arm` and `mobile` under these keys."""
+
     name: str
     state: CellState = Field(description="By PackML's word, as everywhere; an idle one may have `not_ready`.")
-    arm: str
-    mobile: str
+    devices: list[Device] = Field(description="Who works in it, by role.")
     task: Task | None
     step: str | None = Field(description="The step that runs.")
     queue: list[str] = Field(description="Ids of the tasks that wait.")
@@ -92,7 +136,10 @@ class Cell(_Told):
 
 
 class Robot(_Told):
+    """A device of any kind."""
+
     name: str
+    kind: str
     online: bool
     obstacle: str | None = Field(description="Why it gets no command now.")
     state: int | None = Field(
@@ -101,6 +148,10 @@ class Robot(_Told):
     age_s: float | None
     q: list[float] | None = Field(description="Joints of an arm in rad and m, measured.")
     node: int | None = Field(description="Node of a mobile robot on its grid.")
+    facts: dict[str, bool | int | float | str | None] = Field(
+        description="What it reports besides, by name; null where it was not said yet."
+    )
+    answer: bool | int | float | str | None = Field(description="To its last command, where that asked.")
     homed: bool | None
     latched: bool
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")

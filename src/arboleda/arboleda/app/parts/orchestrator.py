@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from typing import Any, Protocol
 from uuid import uuid4
@@ -14,6 +14,7 @@ from arboleda.adapters import clock
 from arboleda.adapters.store import Store
 from arboleda.core.commands import Command, Stop, StopMode
 from arboleda.core.errors import ArboledaError
+from arboleda.core.facts import Value
 from arboleda.core.messages import (
     Absence,
     Event,
@@ -34,7 +35,8 @@ from arboleda.core.messages import (
 from arboleda.core.model import PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.sentence import Phrase, as_sentence
-from arboleda.views import twin_view, view
+from arboleda.core.text import spelled
+from arboleda.views import diagnostics, forms, twin_view, view
 
 from ..loop import Loop
 from ..memory import remembered
@@ -69,7 +71,7 @@ class RosPort(PlantPort, Protocol):
     def diagnosed(self) -> bool: ...
     def check_alone(self) -> None: ...
     def publish_view(self, view: dict[str, Any]) -> Iterator[None]: ...
-    def publish_diagnostics(self, statuses: Iterable[view.Diagnostic]) -> Iterator[None]: ...
+    def publish_diagnostics(self, statuses: Iterable[diagnostics.Diagnostic]) -> Iterator[None]: ...
 
 
 class TooLate(ArboledaError):
@@ -138,6 +140,14 @@ class Orchestrator:
         now = clock.seconds()
         self.loop.post(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
         return answer
+
+    def offers(self) -> list[dict[str, Any]]:
+        """What each cell can be asked for."""
+        return forms.offers(self.plant.model)
+
+    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str:
+        """The task text of named values; TextError for what is no task of this plant."""
+        return spelled(self.plant.model, cell=cell, recipe=recipe, values=values, id=id)
 
     def snapshot(self) -> dict[str, Any]:
         """A snapshot now, made in slices between which the plant is stepped; not in the plant's thread."""
@@ -284,7 +294,7 @@ class Orchestrator:
         if self._ros is not None:
             yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
-                yield from self._ros.publish_diagnostics(view.diagnostics(snapshot))
+                yield from self._ros.publish_diagnostics(diagnostics.diagnostics(snapshot))
         rows = [*snapshot["cells"], *snapshot["robots"], *snapshot["tasks"]]
         del snapshot
         while rows:  # to give back the memory of them all at once takes as long as some slices

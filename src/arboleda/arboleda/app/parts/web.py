@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Protocol
@@ -19,6 +19,7 @@ from arboleda.adapters.web.names import is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
 from arboleda.adapters.web.server import DEFAULT_PORT, Server
 from arboleda.core.errors import QueueFull
+from arboleda.core.facts import Value
 from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.views import view
 
@@ -33,7 +34,9 @@ class Asked(Protocol):
     """What the part asks of the plant it belongs to."""
 
     def snapshot(self) -> Snapshot: ...
+    def offers(self) -> list[dict[str, Any]]: ...
     def find(self, task: str) -> dict[str, Any] | None: ...
+    def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str: ...
     def submit(self, text: str) -> Future[TaskChanged]: ...
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
 
@@ -52,7 +55,9 @@ class Side:
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
         self.snapshot = plant.snapshot
+        self.offers = plant.offers
         self.find = plant.find
+        self.spelled = plant.spelled
         self.operate = plant.operate
 
     def submit(self, text: str) -> Future[dict[str, Any]]:

@@ -1,25 +1,28 @@
-// The task form: cell, path and station write the task text, which may also be typed.
+// The task form: cell, recipe and the recipe's values write the task text, which may also be typed.
 
 import { answer, send } from "./acts.js";
 import * as place from "./place.js";
 
 const words = window.arboledaPage.words;
-const chosen = { cell: null, recipe: "storage", path: null, station: null, from: null };
-const all = (selector, inside = document) => [...inside.querySelectorAll(selector)];
-const maps = () => document.querySelector(`[data-maps="${CSS.escape(chosen.cell)}"]`);
+const chosen = { cell: null, recipe: null, values: {}, from: null }; // values by parameter; from: where a path begins
+const all = (selector, inside = form()) => [...inside.querySelectorAll(selector)];
+const form = () => document.getElementById("task-form");
+const text = () => document.getElementById("task-text");
+const recipes = () => all('[data-choice="recipe"]').filter(({ dataset }) => dataset.cells.split(" ").includes(chosen.cell));
+const fields = () => all("[data-fields]").find(({ dataset }) => dataset.fields === chosen.cell && dataset.recipe === chosen.recipe);
 
 export function start() {
-  const form = document.getElementById("task-form");
-  chosen.cell = form.querySelector('[data-choice="cell"]').dataset.value;
-  form.addEventListener("click", clicked);
-  form.addEventListener("submit", submitted);
+  chosen.cell = form().querySelector('[data-choice="cell"]')?.dataset.value ?? null;
+  form().addEventListener("click", clicked);
+  form().addEventListener("input", filled);
+  form().addEventListener("submit", submitted);
   document.getElementById("task-send").addEventListener("click", submitted);
   show();
 }
 
 // Begin with this cell, unless somebody is writing a task already.
 export function offer(cell) {
-  if (!cell || document.getElementById("task-text").value) return;
+  if (!cell || text().value) return;
   choose("cell", cell);
   show();
 }
@@ -27,48 +30,67 @@ export function offer(cell) {
 function clicked({ target }) {
   const button = target.closest("button");
   if (!button || button.id === "task-send") return;
-  const { choice, value, path, station, node } = button.dataset;
+  const { choice, value, set, path, station, node } = button.dataset;
+  const name = button.closest("[data-parameter]")?.dataset.parameter;
   if (choice) choose(choice, value);
-  if (path) chosen.path = path;
-  if (station) chosen.station = station;
-  if (node) walk(Number(node));
+  if (name && (set ?? path ?? station)) chosen.values[name] = set ?? path ?? station;
+  if (node) walk(name, Number(node));
   show();
   write();
   if (choice === "cell") place.go({ cell: value });
 }
 
+function filled({ target }) {
+  const name = target.dataset.setFrom;
+  if (!name) return;
+  chosen.values[name] = target.value.trim() || undefined;
+  write();
+}
+
 function choose(what, value) {
-  if (what === "cell" && value !== chosen.cell) Object.assign(chosen, { path: null, station: null, from: null });
+  if (value !== chosen[what]) Object.assign(chosen, { values: {}, from: null });
   chosen[what] = value;
 }
 
 // A start, then an end: the path between them, the next one where there are several.
-function walk(node) {
-  const paths = all("[data-path]", maps()).map(({ dataset }) => ({ code: dataset.path, nodes: dataset.nodes.split("-").map(Number) }));
+function walk(name, node) {
+  const paths = all("[data-path]", fields()).map(({ dataset }) => ({ code: dataset.path, nodes: nodes(dataset) }));
   const ends = paths.filter(({ nodes }) => nodes.at(-1) === node && (chosen.from === null || nodes[0] === chosen.from));
   if (ends.length && chosen.from !== null) {
-    const after = ends.findIndex(({ code }) => code === chosen.path) + 1;
-    chosen.path = ends[after % ends.length].code;
+    const after = ends.findIndex(({ code }) => code === chosen.values[name]) + 1;
+    chosen.values[name] = ends[after % ends.length].code;
   } else if (paths.some(({ nodes }) => nodes[0] === node)) {
-    Object.assign(chosen, { from: node, path: null });
+    Object.assign(chosen, { from: node });
+    delete chosen.values[name];
   }
 }
 
 function show() {
-  const storage = chosen.recipe === "storage";
+  if (!recipes().some(({ dataset }) => dataset.value === chosen.recipe)) choose("recipe", recipes()[0]?.dataset.value ?? null);
   for (const button of all("[data-choice]")) press(button, chosen[button.dataset.choice] === button.dataset.value);
-  for (const pair of all("[data-maps]")) pair.hidden = !storage || pair.dataset.maps !== chosen.cell;
-  const way = nodesOf(chosen.path);
-  if (way.length) chosen.from = way[0];
-  for (const button of all("[data-path]", maps())) press(button, button.dataset.path === chosen.path);
-  for (const button of all("[data-station]", maps())) press(button, button.dataset.station === chosen.station);
-  for (const button of all("[data-node]", maps())) showNode(button, way);
-  drawWay(way);
+  for (const button of all('[data-choice="recipe"]')) button.hidden = !recipes().includes(button);
+  for (const box of all("[data-fields]")) box.hidden = box !== fields();
+  for (const box of all("[data-parameter]", fields() ?? form())) showValue(box, chosen.values[box.dataset.parameter]);
 }
 
-function nodesOf(code) {
-  const found = code && maps().querySelector(`[data-path="${CSS.escape(code)}"]`);
-  return found ? found.dataset.nodes.split("-").map(Number) : [];
+// What is chosen of one parameter, on whatever it is chosen with.
+function showValue(box, value) {
+  for (const button of all("[data-set], [data-path], [data-station]", box)) {
+    const { set, path, station } = button.dataset;
+    press(button, (set ?? path ?? station) === value);
+  }
+  for (const input of all("[data-set-from]", box)) if (input.value !== (value ?? "")) input.value = value ?? "";
+  if (box.querySelector(".way")) showWay(box, value);
+}
+
+const nodes = (dataset) => dataset.nodes.split("-").map(Number);
+
+function showWay(box, code) {
+  const found = code && fields().querySelector(`[data-path="${CSS.escape(code)}"]`);
+  const way = found ? nodes(found.dataset) : [];
+  if (way.length) chosen.from = way[0];
+  for (const button of all("[data-node]", box)) showNode(button, way);
+  drawWay(box, way);
 }
 
 function showNode(button, way) {
@@ -77,31 +99,32 @@ function showNode(button, way) {
   press(button, way[0] === node || way.at(-1) === node || chosen.from === node);
 }
 
-function drawWay(way) {
-  const box = maps().querySelector(".way");
-  const columns = Number(maps().querySelector(".grid").dataset.columns);
-  const rows = Math.ceil(all("[data-node]", maps()).length / columns);
+function drawWay(box, way) {
+  const columns = Number(box.querySelector(".grid").dataset.columns);
+  const rows = Math.ceil(all("[data-node]", box).length / columns);
   const points = way.map((node) => `${(node % columns) + 0.5},${Math.floor(node / columns) + 0.5}`).join(" ");
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("viewBox", `0 0 ${columns} ${rows}`);
   const line = document.createElementNS("http://www.w3.org/2000/svg", "polyline");
   line.setAttribute("points", points);
   svg.append(line);
-  box.replaceChildren(svg);
+  box.querySelector(".way").replaceChildren(svg);
 }
 
 function press(button, on) {
   button.setAttribute("aria-pressed", on);
 }
 
+// The words of the task in their order; those that are still missing are left out.
 function write() {
-  const words_ = chosen.recipe === "palletizing" ? [chosen.cell, "palletizing"] : [chosen.cell, chosen.path, chosen.station];
-  document.getElementById("task-text").value = words_.filter((word) => word !== null).join(" ");
+  const { head, parameters } = fields()?.dataset ?? { head: "[]", parameters: "[]" };
+  const values = JSON.parse(parameters).map((name) => chosen.values[name]);
+  text().value = [...JSON.parse(head), ...values].filter((word) => word !== undefined).join(" ");
 }
 
 function submitted(event) {
   event.preventDefault();
   event.stopPropagation();
-  const text = document.getElementById("task-text").value.trim();
-  return text ? send("submit", text) : answer(words.empty_task, false);
+  const task = text().value.trim();
+  return task ? send("submit", task) : answer(words.empty_task, false);
 }

@@ -38,7 +38,7 @@ function arrive({ tab, cell, task: named, lang }) {
   question.dismiss(); // it was asked elsewhere
   showPart(tab);
   showCell(cell ?? cells()[0]);
-  if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "", cell ? "cell" : "plant");
+  if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "");
   form.offer(cell);
   task.show(named);
   tree.close();
@@ -55,18 +55,19 @@ function showCell(chosen) {
   all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
 }
 
-let scope = { of: "", kind: "plant" };
+let scope = { of: "" };
 
 const cellOf = (of) => all("[data-robots]").find((box) => box.dataset.robots === of || box.querySelector(`[data-scope="${CSS.escape(of)}"]`))?.dataset.robots ?? "";
 
-function chooseScope(of, kind) {
-  scope = { of, kind };
+function chooseScope(of) {
+  const kinds = document.querySelector(`[data-scope="${CSS.escape(of)}"]`).dataset.kind.split(" ");
+  scope = { of };
   acts.setScope(of);
   const cell = cellOf(of);
-  all("[data-scope]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.scope === of || (each.dataset.kind === "cell" && each.dataset.scope === cell)));
+  all("[data-scope]").forEach((each) => each.setAttribute("aria-pressed", each.dataset.scope === of || (each.dataset.kind.startsWith("cell") && each.dataset.scope === cell)));
   all("[data-robots]").forEach((box) => (box.hidden = box.dataset.robots !== cell));
   all("[data-advice]").forEach((line) => (line.hidden = line.dataset.advice !== cell));
-  all(".verb").forEach((verb) => (verb.hidden = !verb.dataset.scopes.split(" ").includes(kind)));
+  all(".verb").forEach((verb) => (verb.hidden = !verb.dataset.scopes.split(" ").some((each) => kinds.includes(each))));
   suggest();
 }
 
@@ -122,9 +123,9 @@ function nextLook() {
 function clicked(event) {
   const button = event.target.closest("button");
   if (!button) return;
-  const { choose, twinCell, scope: of, kind, filter, value: cell, language } = button.dataset;
+  const { choose, twinCell, scope: of, filter, value: cell, language } = button.dataset;
   if (choose ?? twinCell) place.go({ cell: choose ?? twinCell });
-  if (of !== undefined) chooseScope(of, kind), place.go({ cell: cellOf(of) || null });
+  if (of !== undefined) chooseScope(of), place.go({ cell: cellOf(of) || null });
   if (filter) filterBy(filter, cell);
   if (language) cookie("language", language), location.assign(place.address({ lang: language }));
   if (button.classList.contains("look")) nextLook();
@@ -154,7 +155,7 @@ function begin() {
   onChange(suggest);
   onChange(alarm);
   document.addEventListener("click", clicked);
-  chooseScope("", "plant");
+  chooseScope("");
   place.start(arrive);
   place.settle({});
   setInterval(watch, 1000);

@@ -14,7 +14,7 @@ export class Plant {
     this.paints = new Paints(THREE);
     this.root = new THREE.Group();
     this.furniture = new Furniture(THREE, scene, this.paints);
-    this.numbers = new Map(scene.cells.map((cell, number) => [cell.name, number]));
+    this.numbers = new Map([...new Set(scene.robots.map((robot) => robot.cell))].map((cell, number) => [cell, number]));
     this.robots = new Map(scene.robots.map((robot) => [robot.name, new Robot(THREE, robot, this.paints)]));
     this.zones = new Map(scene.zones.map((zone) => [zone.zone, new Zone(THREE, zone, this.paints)]));
     this.parts = new Map(scene.cells.map((cell) => [cell.name, this.newPart()]));
@@ -93,7 +93,7 @@ export class Plant {
     this.root.updateMatrixWorld(true);
     const cells = this.scene.cells.filter((cell) => !name || cell.name === name);
     const stations = cells.flatMap((cell) => [...cell.pickups, ...cell.stations]).map((frame) => new Vector3(frame[3], frame[7], frame[11]));
-    const robots = cells.flatMap((cell) => [cell.arm, cell.mobile]).map((robot) => this.robots.get(robot));
+    const robots = [...this.robots.values()].filter((robot) => !name || robot.told.cell === name);
     return [...stations, ...cells.flatMap((cell) => this.furniture.corners.get(cell.name).map((corner) => corner.clone())), ...robots.flatMap((robot) => robot.points())];
   }
 

@@ -10,7 +10,7 @@ from arboleda.views.view import standing
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face
+from . import Face, links
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
@@ -20,6 +20,7 @@ Row = dict[str, Any]
 
 def face(moment: Moment) -> Face:
     found: Face = {}
+    robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
     for cell in moment.snapshot["cells"]:
         memory = moment.trees[cell["name"]]
         found.update(_card(moment, cell, memory))
@@ -27,6 +28,7 @@ def face(moment: Moment) -> Face:
         rests = cell["state"] == "held"
         found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf, rests=rests))
         found.update(_changes(moment, cell["name"], memory))
+        found.update(_devices(moment, cell, robots))
     return found
 
 
@@ -51,6 +53,18 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.trouble": [trouble(moment, cell), state],
         f"bar/{name}.progress": progress(memory.rows, memory.statuses) if cell["task"] else None,
     }
+
+
+def _devices(moment: Moment, cell: Row, robots: dict[str, Row]) -> Face:
+    """A row for each device that no drawing shows: what it says, and what it was told last."""
+    name = cell["name"]
+    shown = [each["name"] for each in cell["devices"] if each["position"] is None]
+    found: Face = {f"rows/devices.{name}": shown} if shown else {}
+    for device in shown:
+        robot = robots[device]
+        texts = [device, links.says(moment.words, robot), links.command(moment, robot)]
+        found[f"row/devices.{name}/{device}"] = {"state": links.state(robot), "texts": texts}
+    return found
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
@@ -172,9 +186,20 @@ def progress(rows: list[Row], statuses: dict[str, str]) -> float:
     """The share of the steps of the work that are done; of the recovery's once that runs."""
     found = phases(rows)
     active = [row for row in found if statuses.get(row["path"]) == RUNNING] or found[:1]
-    steps = [row["path"] for phase in active for row in rows if parent(row["path"]) == phase["path"]]
-    done = sum(statuses.get(path) == SUCCESS for path in steps)
-    return round(done / len(steps), 3) if steps else 0.0
+    steps = [over for phase in active for over in _steps(rows, statuses, phase, done=False)]
+    return round(sum(steps) / len(steps), 3) if steps else 0.0
+
+
+def _steps(rows: list[Row], statuses: dict[str, str], frame: Row, *, done: bool) -> list[bool]:
+    """As `tree_view.progress_of` counts them."""
+    nodes = [row for row in rows if parent(row["path"]) == frame["path"]]
+    if frame["kind"] == "selector":
+        nodes = [row for row in nodes if statuses.get(row["path"]) in (RUNNING, SUCCESS)]
+    found: list[bool] = []
+    for row in nodes:
+        over = done or statuses.get(row["path"]) == SUCCESS
+        found += _steps(rows, statuses, row, done=over) if row["frame"] else [over]
+    return found or [done]
 
 
 def tree_face(

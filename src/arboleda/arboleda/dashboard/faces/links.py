@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.core.facts import shown
+
+from ..wording import Words
 from . import Face
 from .moment import Moment, seconds
 
@@ -19,8 +22,11 @@ def face(moment: Moment) -> Face:
         "text/strays": _strays(moment),
         "rows/links": [robot["name"] for robot in moment.snapshot["robots"]],
     }
-    for robot in moment.snapshot["robots"]:
-        found[f"row/links/{robot['name']}"] = _row(moment, robot)
+    robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
+    for cell in moment.snapshot["cells"]:
+        for device in cell["devices"]:
+            robot = robots[device["name"]]
+            found[f"row/links/{robot['name']}"] = _row(moment, robot, cell["name"], device["position"])
     return found
 
 
@@ -47,31 +53,29 @@ def _strays(moment: Moment) -> list[str]:
     return [moment.words(key, count=stray["count"], last=stray["last"] or ""), "warning"]
 
 
-def _row(moment: Moment, robot: Row) -> Row:
+def _row(moment: Moment, robot: Row, cell: str, position: str | None) -> Row:
+    """`position`: the key that has it, None of what goes nowhere and needs no homing."""
     words = moment.words
-    state = "online" if robot["online"] else "offline"
+    presence = "online" if robot["online"] else "offline"
     return {
-        "state": _state(robot),
-        "cell": next(
-            cell["name"]
-            for cell in moment.snapshot["cells"]
-            if robot["name"] in (cell["arm"], cell["mobile"])
-        ),
+        "state": state(robot),
+        "cell": cell,
         "texts": [
             robot["name"],
-            words(f"links.{state}"),
+            words.of("device_kind", robot["kind"]),
+            words(f"links.{presence}"),
             _telemetry(moment, robot),
-            _readiness(moment, robot),
-            _yes_or_no(moment, robot["homed"]),
-            _effector(moment, robot),
-            _command(moment, robot["command"]),
+            _readiness(moment, robot, moves=position is not None),
+            "" if position is None else _yes_or_no(moment, robot["homed"]),
+            says(words, robot),
+            command(moment, robot),
             str(robot["boot_id"]) if robot["boot_id"] is not None else "",
             _refused(moment, robot),
         ],
     }
 
 
-def _state(robot: Row) -> str:
+def state(robot: Row) -> str:
     if not robot["online"]:
         return "offline"
     if robot["state"] == MOVING:
@@ -79,9 +83,9 @@ def _state(robot: Row) -> str:
     return "warning" if robot["obstacle"] else "online"
 
 
-def _readiness(moment: Moment, robot: Row) -> str:
+def _readiness(moment: Moment, robot: Row, *, moves: bool) -> str:
     if robot["online"] and robot["state"] == MOVING:
-        return moment.words("links.moving")
+        return moment.words("links.moving" if moves else "links.working")
     return moment.words.say(robot["obstacle"]) if robot["obstacle"] else moment.words("links.ready")
 
 
@@ -99,20 +103,35 @@ def _yes_or_no(moment: Moment, value: bool | None) -> str:
     return moment.words({None: "links.unsaid", True: "links.yes", False: "links.no"}[value])
 
 
-def _effector(moment: Moment, robot: Row) -> str:
-    if robot["holding"] is None:
-        return ""
-    words = moment.words
-    grip = words({None: "links.unsaid", True: "links.on", False: "links.off"}[robot["effector"]])
-    return f"{grip}, {words('links.holding')}" if robot["holding"] else grip
+def says(words: Words, robot: Row) -> str:
+    """Each of its facts by name, whether we have a word for it or not; and whether it may hold a part."""
+    told = robot["facts"].items()
+    facts = [f"{words.of('fact', name)} {_fact(words, name, value)}" for name, value in told]
+    return ", ".join([*facts, *([words("links.holding")] if robot["holding"] else [])])
 
 
-def _command(moment: Moment, command: Row | None) -> str:
-    if command is None:
+def _fact(words: Words, name: str, value: Any) -> str:
+    """A fact in words of its own where there are some: `on` of an effector."""
+    if value is None:
+        return words("links.unsaid")
+    return words.flat.get(f"fact_said.{name}.{shown(value)}") or _value(words, value)
+
+
+def _value(words: Words, value: Any) -> str:
+    if isinstance(value, bool):
+        return words("links.yes" if value else "links.no")
+    return shown(value)
+
+
+def command(moment: Moment, robot: Row) -> str:
+    """What it was told last, what became of it and, where that was a question, its answer."""
+    told = robot["command"]
+    if told is None:
         return ""
     words = moment.words
-    state = words.of("command_state", command["state"])
-    return f"{words.say(command['what'])}: {state}, {words('links.ago', time=seconds(command['age_s']))}"
+    state = words.of("command_state", told["state"])
+    answer = "" if robot["answer"] is None else f" ({_value(words, robot['answer'])})"
+    return f"{words.say(told['what'])}: {state}{answer}, {words('links.ago', time=seconds(told['age_s']))}"
 
 
 def _refused(moment: Moment, robot: Row) -> str:

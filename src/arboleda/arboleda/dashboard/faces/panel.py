@@ -39,7 +39,8 @@ def suggested(cell: Row) -> tuple[str, ...]:
     first = cell["advice"][0] if cell["advice"] else None
     if first is None or first["hand"] or first["refusal"]:
         return ()
-    return (first["do"],) if first["scope"] in (cell["name"], cell["arm"]) else ()
+    here = (cell["name"], *(device["name"] for device in cell["devices"] if device["holds"]))
+    return (first["do"],) if first["scope"] in here else ()
 
 
 def refused_everywhere(cells: list[Row]) -> dict[str, str]:

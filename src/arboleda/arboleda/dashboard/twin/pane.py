@@ -26,8 +26,7 @@ def build(layout: Layout, words: Words) -> None:
 
 def _cells(layout: Layout, words: Words) -> None:
     with tag("div", classes="filter", role="group", aria_label=words("twin.cells")):
-        for cell in layout["cells"]:
-            name = cell["name"]
+        for name in dict.fromkeys(robot["cell"] for robot in layout["places"]["robots"]):
             does = words("twin.visit", cell=name)
             tag("button", name, type="button", classes="choice", data_twin_cell=name, title=does)
 

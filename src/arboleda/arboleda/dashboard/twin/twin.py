@@ -28,13 +28,12 @@ class Twin:
 
     def frame(self, positions: Row, now: float) -> Row:
         """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
-        robots = {row["name"]: self._tracks[row["name"]].see(row, now) for row in positions["robots"]}
+        rows = {row["name"]: row for row in positions["robots"]}
+        robots = {name: track.see(rows[name], now) for name, track in self._tracks.items()}
         found: Row = {f"robot/{name}": drawn for name, drawn in robots.items()}
-        for cell, part in positions["parts"].items():
-            found[f"part/{cell}"] = self._parts[cell].see(
-                part, robots[self._arms[cell]], positions["stored"][cell]
-            )
-        for cell, numbers in positions["stored"].items():
+        for cell, part in self._parts.items():
+            numbers, arm = positions["stored"][cell], robots[self._arms[cell]]
+            found[f"part/{cell}"] = part.see(positions["parts"][cell], arm, numbers)
             found[f"stored/{cell}"] = numbers
         for zone in positions["zones"]:
             found[f"zone/{zone['zone']}"] = {key: zone[key] for key in ("state", "robot", "waiting")}

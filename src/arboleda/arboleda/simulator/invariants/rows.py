@@ -18,7 +18,7 @@ from arboleda.core.sentence import Phrase, Sentence
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.recipes.storage_cell import StorageCell
-from arboleda.views.view import IN_RECOVERY
+from arboleda.views.tree_view import IN_RECOVERY
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand

@@ -13,7 +13,7 @@ from arboleda.core.errors import PayloadError
 from arboleda.core.ledger import OPEN, State
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.views import places, twin_view, view
+from arboleda.views import diagnostics, places, twin_view, view
 from arboleda.wire import status
 
 from ..recorded.cells import KnownCell
@@ -217,7 +217,7 @@ def _goal(last: SentCommand | None) -> Row | None:
 
 
 def _diagnoses(shown: Row) -> Iterator[str]:
-    told = {name: rest for name, *rest in view.diagnostics(shown)}
+    told = {name: rest for name, *rest in diagnostics.diagnostics(shown)}
     for robot in shown["robots"]:
         whose, level, message, values = told.pop(f"arboleda: {robot['name']}", (None, None, "", {}))
         yield from rows.of_robot(robot, values)

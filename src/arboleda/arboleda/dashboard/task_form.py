@@ -1,0 +1,200 @@
+"""The form that writes a task's text: a cell, a recipe, and a control for each parameter of the recipe."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from .plant_side import Layout
+from .tags import act_button, tag
+from .wording import Words
+
+FEW = 12  # choices that are shown as buttons; more are a list that opens
+Row = dict[str, Any]
+
+
+def build(layout: Layout, words: Words) -> None:
+    cells = layout["cells"]
+    with tag("form", id="task-form", classes="box form"):
+        tag("h2", words("tasks.new"))
+        with _group(words("tasks.cell")):
+            for cell in cells:
+                _choice("cell", cell["name"], cell["name"])
+        with _group(words("tasks.recipe")):
+            for name, there in _recipes(cells).items():
+                _choice("recipe", name, words.of("recipe", name), data_cells=" ".join(there))
+        for cell in cells:
+            for recipe in cell["recipes"]:
+                _fields(cell, recipe, words)
+        _text(_example(cells), words)
+
+
+def _recipes(cells: list[Row]) -> dict[str, list[str]]:
+    """Every recipe of the plant, and the cells that offer it."""
+    found: dict[str, list[str]] = {}
+    for cell in cells:
+        for recipe in cell["recipes"]:
+            found.setdefault(recipe["name"], []).append(cell["name"])
+    return found
+
+
+def _fields(cell: Row, recipe: Row, words: Words) -> None:
+    """What is asked for one recipe of one cell; the script shows those of what was chosen."""
+    head = [cell["name"], *([] if recipe["default"] else [recipe["name"]])]
+    names = [each["name"] for each in recipe["parameters"]]
+    drawn = any(_is_path(cell, each) or _is_station(cell, each) for each in recipe["parameters"])
+    with tag(
+        "div",
+        classes="fields",
+        hidden="true",
+        data_fields=cell["name"],
+        data_recipe=recipe["name"],
+        data_head=json.dumps(head),
+        data_parameters=json.dumps(names),
+        **({"data_maps": cell["name"]} if drawn else {}),
+    ):
+        for parameter in recipe["parameters"]:
+            _control(cell, parameter, words)
+        for parameter in recipe["parameters"]:
+            if _is_path(cell, parameter):
+                _codes(cell, parameter, words)
+
+
+def _is_path(cell: Row, parameter: Row) -> bool:
+    """Whether it names one of the cell's ways over its grid, which can be shown."""
+    return bool(parameter["choices"]) and parameter["choices"] == list(cell.get("paths", ()))
+
+
+def _is_station(cell: Row, parameter: Row) -> bool:
+    """Whether it numbers the stations of the cell's rack."""
+    return bool(parameter["choices"]) and parameter["choices"] == [str(n) for n in range(cell["stations"])]
+
+
+def _control(cell: Row, parameter: Row, words: Words) -> None:
+    name, label = parameter["name"], _label(parameter, words)
+    if _is_path(cell, parameter):
+        with _field(name, label, classes="map"):
+            _grid(cell, words)
+    elif _is_station(cell, parameter):
+        with _field(name, label, classes="map"):
+            _rack(cell, words)
+    elif parameter["type"] != "choice":
+        _number(parameter, label, words)
+    elif len(parameter["choices"]) <= FEW:
+        with _field(name, label, classes="choices"):
+            for word in parameter["choices"]:
+                tag("button", word, type="button", classes="choice", data_set=word)
+    else:
+        with _named(parameter, label), tag("select", data_set_from=name):
+            tag("option", "", value="")
+            for word in parameter["choices"]:
+                tag("option", word, value=word)
+
+
+def _label(parameter: Row, words: Words) -> str:
+    """As our words have it, else as the recipe says it."""
+    known = words.of("field", parameter["name"])
+    said = words.say(parameter["called"]) if known == parameter["name"] else known
+    return said[:1].upper() + said[1:].replace("_", " ")
+
+
+def _number(parameter: Row, label: str, words: Words) -> None:
+    """A field with its limits; the plant has the last word on them."""
+    whole = parameter["type"] == "integer"
+    limits = {key: parameter[of] for key, of in (("min", "lower"), ("max", "upper")) if of in parameter}
+    asked = label
+    if len(limits) == 2:
+        asked = words("tasks.between", what=label, **{key: f"{value:g}" for key, value in limits.items()})
+    with _named(parameter, asked):
+        step = "1" if whole else "any"
+        tag("input", type="number", step=step, data_set_from=parameter["name"], **limits)
+
+
+def _named(parameter: Row, label: str) -> Any:
+    """A label around one control."""
+    made = tag("label", classes="field", data_parameter=parameter["name"])
+    with made:
+        tag("span", label)
+    return made
+
+
+def _field(name: str, label: str, *, classes: str) -> Any:
+    """A group of buttons, of which one is the parameter's value."""
+    made = tag("fieldset", classes=classes, data_parameter=name)
+    with made:
+        tag("legend", label)
+    return made
+
+
+def _group(label: str) -> Any:
+    made = tag("fieldset", classes="choices")
+    with made:
+        tag("legend", label)
+    return made
+
+
+def _choice(what: str, value: str, text: str, **more: str) -> None:
+    tag("button", text, type="button", classes="choice", data_choice=what, data_value=value, **more)
+
+
+def _codes(cell: Row, parameter: Row, words: Words) -> None:
+    label = _label(parameter, words)
+    name = parameter["name"]
+    with tag("div", classes="codes", role="group", aria_label=label, data_parameter=name):
+        for code, nodes in cell["paths"].items():
+            way = "-".join(str(node) for node in nodes)
+            tag("button", code, type="button", classes="choice", data_path=code, data_nodes=way, title=way)
+
+
+def _rack(cell: Row, words: Words) -> None:
+    with tag("div", classes="rack"):
+        for station in range(cell["stations"]):
+            label = words("tasks.station_label", station=station)
+            number = str(station)
+            tag("button", number, type="button", classes="place", data_station=number, aria_label=label)
+
+
+def _grid(cell: Row, words: Words) -> None:
+    """A button per node; a click on a start, then on an end, chooses the path between them."""
+    rows, columns = cell["grid"]["rows"], cell["grid"]["columns"]
+    ends = {nodes[0]: "start" for nodes in cell["paths"].values()}
+    ends |= {nodes[-1]: "end" for nodes in cell["paths"].values()}
+    with tag("div", classes="grid", style=f"--columns: {columns}", data_columns=str(columns)):
+        tag("div", classes="way", aria_hidden="true")
+        for node in range(rows * columns):
+            kind = ends.get(node, "between")
+            label = words(f"tasks.node_{kind}", node=node)
+            tag(
+                "button",
+                str(node),
+                type="button",
+                classes=f"place {kind}",
+                data_node=str(node),
+                aria_label=label,
+                title=label,
+            )
+
+
+def _example(cells: list[Row]) -> str:
+    offered = (recipe["example"] for cell in cells for recipe in cell["recipes"])
+    return next(offered, "")
+
+
+def _text(example: str, words: Words) -> None:
+    with tag("div", classes="send"):
+        with tag("label", classes="text"):
+            tag("span", words("tasks.text"))
+            tag(
+                "input",
+                id="task-text",
+                type="text",
+                autocomplete="off",
+                autocapitalize="off",
+                spellcheck="false",
+                maxlength="200",
+                placeholder=example,
+            )
+        act_button(
+            words("tasks.send"), "submit", "", words("tasks.send_does"), classes="primary", id="task-send"
+        )
+    tag("p", words("tasks.send_does"), classes="hint")

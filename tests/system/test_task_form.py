@@ -1,0 +1,78 @@
+"""The form that is made of what cells offer, in a real browser."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from .page import PATIENCE_MS, connected, running
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with running(tmp_path_factory.mktemp("state")) as found:
+        yield found
+
+
+@pytest.fixture
+def page(browser: Any, address: str) -> Iterator[Any]:
+    """The form of tasks; a script that fails fails the test."""
+    context = browser.new_context(viewport={"width": 360, "height": 740}, locale="es")
+    made = context.new_page()
+    troubles: list[str] = []
+    made.set_default_timeout(PATIENCE_MS)
+    made.on("pageerror", lambda error: troubles.append(str(error)))
+    made.goto(f"{address}/?tab=tasks")
+    connected(made)
+    yield made
+    context.close()
+    assert troubles == []
+
+
+def pressed(page: Any) -> list[str]:
+    return page.eval_on_selector_all(
+        "#task-form [aria-pressed=true]",
+        "all => all.filter(each => each.checkVisibility()).map(each => each.innerText)",
+    )
+
+
+def sent(page: Any) -> str:
+    """The id of the task that was sent."""
+    page.click("#task-send")
+    page.wait_for_function("document.getElementById('answer').textContent.startsWith('Aceptada')")
+    found = re.search(r"#([\w.-]+)\)", page.inner_text("#answer"))
+    assert found is not None
+    return found[1]
+
+
+def test_a_person_gives_a_task_by_the_form_of_its_recipe(page: Any) -> None:
+    page.click("#task-form [data-value=sis_b]")
+    assert page.inner_text("legend:has-text('Estación')") == "Estación del almacén"
+    page.click("[data-fields=sis_b] [data-parameter=station] [data-station='4']")
+    page.click("[data-fields=sis_b] [data-parameter=path] [data-path='2A']")
+    assert page.input_value("#task-text") == "sis_b 2A 4"
+    assert pressed(page) == ["sis_b", "Almacenar una pieza", "2", "6", "4", "2A"]
+    task = sent(page)
+    page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
+
+
+def test_another_recipe_asks_for_what_it_needs_and_no_more(page: Any) -> None:
+    page.click("#task-form [data-value=sis_c]")
+    page.click("#task-form [data-value=palletizing]")
+    assert page.input_value("#task-text") == "sis_c palletizing"
+    assert not page.is_visible("[data-fields=sis_c] [data-parameter]")
+    task = sent(page)
+    page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
+
+
+def test_another_cell_forgets_what_was_chosen(page: Any) -> None:
+    page.click("#task-form [data-value=sis_a]")
+    page.click("[data-fields=sis_a] [data-path='0B']")
+    page.click("#task-form [data-value=sis_b]")
+    assert page.input_value("#task-text") == "sis_b"
+    assert "0B" not in pressed(page)

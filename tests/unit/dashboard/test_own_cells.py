@@ -1,0 +1,104 @@
+"""What the page shows of a cell of any devices."""
+
+from __future__ import annotations
+
+import json
+
+from arboleda.core.messages import Event
+from arboleda.core.model import PlantModel
+from arboleda.dashboard import page
+from arboleda.dashboard.faces import Face
+from arboleda.dashboard.faces.links import says
+from arboleda.dashboard.story import Story
+from arboleda.dashboard.wording import words
+from arboleda.testing import shipped
+from arboleda.views import view
+
+from ..kinds.lab import Bench, model
+from .conftest import LINKS
+
+
+class Told(Bench):
+    """A bench whose story is told at every step, as the page's feed does."""
+
+    def __init__(self, plant: PlantModel) -> None:
+        self.story = Story(view.layout(plant), [])
+        super().__init__(plant)
+
+    def _pass(self, *events: Event) -> None:
+        super()._pass(*events)
+        self.story.see(view.snapshot(self.plant), 1000.0 + self.now)
+
+    def face(self, language: str = "en") -> Face:
+        face = self.story.face(language, LINKS)
+        assert json.loads(json.dumps(face)) == face
+        return face
+
+
+def baking() -> Told:
+    here = Told(model())
+    here.submit("bench bake 10")
+    assert here.wait(30.0, lambda: here.told[-1:] == ["oven bake"])
+    here.wait(1.0)
+    return here
+
+
+def test_the_links_show_each_device_with_its_kind_and_its_facts() -> None:
+    here = baking()
+    here.plant.dispatcher.beliefs["oven"].facts.pop("dose")
+    here.wait(0.1)
+    texts = here.face()["row/links/oven"]["texts"]
+    assert texts[:2] == ["oven", "oven"]
+    assert "at work" in texts
+    assert "lid closed, clamped yes, dose not told, holds a part" in texts
+    assert here.face()["row/links/eye"]["cell"] == "bench"
+
+
+def test_the_card_of_a_cell_shows_the_devices_that_no_drawing_shows() -> None:
+    face = baking().face("es")
+    assert face["rows/devices.bench"] == ["oven", "eye"]
+    name, said, command = face["row/devices.bench/oven"]["texts"]
+    assert (name, said) == ("oven", "lid closed, clamped sí, dose 5, sujeta una pieza")
+    assert "bake 10" in command
+    assert "(good)" in face["row/devices.bench/eye"]["texts"][2]
+
+
+def test_an_effector_is_on_or_off_where_other_facts_are_so_or_not() -> None:
+    row = {"facts": {"effector": False, "piece": True, "lid": "open"}, "holding": False}
+    assert says(words("en"), row) == "effector off, piece yes, lid open"
+    assert says(words("es"), row) == "efector desactivado, pieza sí, lid open"
+
+
+def test_the_bar_of_a_recipe_of_ones_own_grows_with_its_steps() -> None:
+    here = Told(model())
+    here.submit("bench bake 10")
+    bars: list[float] = []
+    while here.changes[-1].state.value != "done":
+        here.wait(0.2)
+        bars += [bar] if (bar := here.face()["bar/bench.progress"]) not in (None, *bars) else []
+    assert bars == sorted(bars) and len(bars) >= 4
+    snapshot = view.snapshot(baking().plant)["cells"][0]
+    assert baking().face()["bar/bench.progress"] == round(snapshot["progress"], 3)
+
+
+def test_the_failed_step_of_a_recipe_of_ones_own_is_named() -> None:
+    here = Told(model())
+    here.submit("bench careless")
+    here.outcome()
+    cause, state = here.face()["text/bench.cause"]
+    assert state == "failed"
+    assert cause.startswith('Failed in step "oven bake 5": oven needs lid to be closed')
+    task = here.story.task_face("t-1000-1", "en")
+    failed = [key for key, node in task.items() if key.startswith("node/#task") and node["failed"]]
+    assert "node/#task/0.1.1" in failed
+
+
+def test_there_is_no_twin_where_nothing_is_drawn() -> None:
+    assert "twin" not in page.parts_of(view.layout(model()))
+    assert list(page.parts_of(view.layout(shipped()))) == list(page.PARTS)
+
+
+def test_the_time_line_tells_of_every_device() -> None:
+    here = baking()
+    online = [event for event in here.story.chronicle.events if event["kind"] == "robot"]
+    assert {event["subject"] for event in online} == {"oven", "eye"}
