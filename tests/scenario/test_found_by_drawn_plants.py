@@ -391,6 +391,28 @@ FOUND = {
                 stations: {0: {deg: [-31.7, -74.0], mm: 83.8}}
         """,
     ),
+    "an arm that stood a motor step beyond its limit was told to rise there, which its board refuses": Found(
+        seed=3658,
+        faults=tuple(
+            Fault(kind="operator_cancel", at=8.0 + 5.3 * number, target="cell_1") for number in range(10)
+        ),
+        file="""
+            name: drawn_3658
+            cells:
+              cell_1:
+                arm:
+                  name: arm_1
+                  model: scara
+                  link: mqtt
+                  evidence: ids
+                  limits: {q1_deg: [-150.0, 150.0], q2_deg: [-119.6, 135.0], q3_mm: [0.0, 100.0]}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [-135.4, -39.1], mm: 96.9}
+                pickup: {deg: [-77.2, -119.6], mm: 71.4, approach_mm: 7.1}
+                paths: {0Y: [2]}
+                stations: {0: {deg: [-20.0, -119.6], mm: 50.0, approach_mm: 10.0}}
+        """,
+    ),
 }
 
 

@@ -68,6 +68,10 @@ class Joint:
         """`value` as the motor can hold it."""
         return self.steps(value) * self.step
 
+    def within(self, value: float) -> float:
+        """`value`, or the limit that it is beyond, as the motor step nearest to a limit may be."""
+        return min(max(value, self.lower), self.upper)
+
     def higher(self, value: float, *others: float) -> float:
         """The highest of these values where the joint lifts, else `value`."""
         if self.pinion_radius_m is None or self.up == 0:
@@ -160,10 +164,10 @@ class Arm(Robot):
         return self.quantised(position)
 
     def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
-        """Only prismatic joints lift; how, each of them says."""
+        """Only prismatic joints lift; how, each of them says. None is sent beyond its limits."""
         assert isinstance(position, tuple)
         rows = zip(self.joints, position, *[up for up in heights if isinstance(up, tuple)], strict=True)
-        return tuple(joint.higher(q, *above) for joint, q, *above in rows)
+        return tuple(joint.higher(joint.within(q), *above) for joint, q, *above in rows)
 
     def reached(self, q: tuple[float, ...], target: tuple[float, ...]) -> bool:
         """Whether reported joints `q` lie within tolerance of a quantised target."""
