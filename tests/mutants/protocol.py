@@ -9,7 +9,7 @@ from arboleda.core.leaves import Act
 from arboleda.core.ledger import Ledger
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.receipts import Receipts
-from arboleda.wire import goals, hop, strict
+from arboleda.wire import forms, hop, strict
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge
 
@@ -97,7 +97,7 @@ WIRE = (
     mutant(
         "wire_targets_legal",
         "Joint targets go out as they are, not as motor steps.",
-        edit(goals._wire_joints, "robot.quantised(command.q)", "command.q"),
+        edit(forms._wire_joints, "arm.quantised(command.q)", "command.q"),
         weather="none",
     ),
     mutant(

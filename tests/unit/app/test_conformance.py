@@ -163,9 +163,9 @@ class Unlatched(Board):
 class Boastful(Board):
     """Says done for whatever has come to rest."""
 
-    def _stop(self, *, latch: bool) -> None:
+    def _break_off(self, word: str | None = None) -> None:
         job = self._job
-        super()._stop(latch=latch)
+        super()._break_off(word)
         if job is not None:
             self._receipts.finish(job)
 

@@ -1,16 +1,13 @@
-"""A laboratory bench without a robot arm, and its plant in one loop with its virtual devices."""
+"""A laboratory bench without a robot arm, with its bridge and its virtual boards."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from arboleda.core.commands import Command, OnStop
-from arboleda.core.messages import Event, OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
+from arboleda.core.messages import TaskChanged
 from arboleda.core.model import Cell, Evidence, Link, PlantModel
-from arboleda.core.plant import Plant
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
 from arboleda.recipes import Choice, Kit, recipe, work
-from arboleda.sim.machine import Machine
+from arboleda.testing.rig import Rig
 
 LID = FactType(type=str, words=("open", "closed"), first="open")
 DOSE = FactType(type=int, words=(5, 10, 20), first=5)
@@ -85,56 +82,21 @@ def model(*recipes: object, evidence: Evidence = Evidence.IDS) -> PlantModel:
     return PlantModel(name="lab", cells=(bench,))
 
 
-class Bench:
-    """The plant and its virtual devices; messages take no time, `wait` goes from deadline to deadline."""
+class Bench(Rig):
+    """The plant, the bridge and its virtual boards; messages take no time."""
 
     def __init__(self, plant: PlantModel) -> None:
-        self.now = 0.0
-        self.plant = Plant(plant, epoch=1000, now=0.0)
-        devices = [robot for robot in plant.robots.values() if isinstance(robot, Device)]
-        self.machines = {each.name: Machine(each, now=0.0, boot_id=7) for each in devices}
-        self.changes: list[TaskChanged] = []
-        self.answers: list[OperatorAnswer] = []
-        self.told: list[str] = []
-        self.lost: Callable[[Command], bool] = lambda command: False
-        self._pass()
+        super().__init__(plant, now=0.0)
+        self.machines = {name: board.body for name, board in self.boards.items()}
 
-    def submit(self, text: str) -> None:
-        self._pass(TaskRequest(at=self.now, text=text))
-
-    def operate(self, verb: Verb, scope: str = "") -> str | None:
-        self._pass(OperatorRequest(at=self.now, verb=verb, scope=scope))
-        refusal = self.answers[-1].refusal
-        return None if refusal is None else str(refusal)
-
-    def wait(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
-        end = self.now + seconds
-        while self.now < end and not until():
-            due = [machine.next_deadline for machine in self.machines.values()]
-            self.now = min(end, max(self.now, min(self.plant.next_deadline, *due)))
-            self._pass()
-        return until()
+    @property
+    def told(self) -> list[str]:
+        """What devices were told, in order: `oven clamp`, `oven stop`."""
+        commands = (each for each in self.sent if isinstance(each, Command))
+        return [f"{each.robot} {getattr(each, 'verb', 'stop')}" for each in commands]
 
     def outcome(self, seconds: float = 120.0) -> TaskChanged:
         """The end of the task that was asked for last."""
         ended = ("done", "failed", "cancelled", "refused")
         assert self.wait(seconds, lambda: self.changes[-1].state.value in ended)
         return self.changes[-1]
-
-    def _pass(self, *events: Event) -> None:
-        """One step of the plant, and what comes of it at once."""
-        heard: list[Event] = [*events]
-        for machine in self.machines.values():
-            heard += machine.step(self.now, ()) if machine.next_deadline <= self.now else ()
-        while True:
-            out = self.plant.step(self.now, heard)
-            self.changes += [each for each in out if isinstance(each, TaskChanged)]
-            self.answers += [each for each in out if isinstance(each, OperatorAnswer)]
-            commands = [each for each in out if isinstance(each, Command) and not self.lost(each)]
-            if not commands:
-                return
-            self.told += [f"{each.robot} {getattr(each, 'verb', 'stop')}" for each in commands]
-            heard = []
-            for name, machine in self.machines.items():
-                mine = [each for each in commands if each.robot == name]
-                heard += machine.step(self.now, mine) if mine else ()

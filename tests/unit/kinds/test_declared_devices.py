@@ -13,7 +13,6 @@ from arboleda.core.messages import Reason, TaskState, Verb
 from arboleda.core.model import Evidence, Link
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
-from arboleda.sim.machine import Machine
 
 from .lab import EYE, ON, OVEN, Bench, bake, careless, model
 
@@ -48,9 +47,7 @@ def test_an_answer_that_the_recipe_does_not_know_is_a_failure() -> None:
         return work(seen, cell.choose(seen, {"good": [], "bad": []}))
 
     here = Bench(model(guess))
-    eye = here.plant.model.robots["eye"]
-    odd = replace(EYE, verbs={"look": replace(EYE.verbs["look"], answers=("odd",))})
-    here.machines["eye"] = Machine(replace(eye, kind=odd), now=0.0, boot_id=7)  # type: ignore[call-arg]
+    here.machines["eye"].answer = lambda goal: "odd"
     here.submit("bench guess")
     assert str(here.outcome().sentence) == "eye look answered odd; the recipe knows good, bad"
 
@@ -84,14 +81,14 @@ def test_a_process_that_finishes_goes_on_through_a_stop_and_keeps_the_cell_from_
     assert here.operate(Verb.STOP) is None
     assert here.outcome().reason is Reason.STOPPED
     here.wait(2.0)
-    assert here.machines["oven"].busy
+    assert here.machines["oven"].moving
     assert here.operate(Verb.CLEAR) is None
     here.wait(1.0)
     assert here.operate(Verb.RESET) is None
     here.operate(Verb.RESUME)
     here.submit("bench bake 5")
     assert str(here.plant.cells["bench"].waiting_for()) == "oven is still doing bake 10"
-    assert here.wait(60.0, lambda: not here.machines["oven"].busy)
+    assert here.wait(60.0, lambda: not here.machines["oven"].moving)
     assert here.machines["oven"].facts["dose"] == 10
 
 
@@ -108,7 +105,7 @@ def test_a_motion_is_halted_by_a_stop() -> None:
 
 def test_a_question_that_nobody_answers_fails_in_its_time() -> None:
     here = Bench(model())
-    here.lost = lambda command: command.robot == "eye"
+    here.lost = lambda publication: publication.topic == "eye/orden"
     here.submit("bench bake 10")
     ended = here.outcome()
     assert (ended.state, ended.reason) == (TaskState.FAILED, Reason.DEADLINE)
@@ -259,7 +256,8 @@ def test_a_parameter_says_what_it_can_be() -> None:
 def test_a_device_cannot_say_what_its_kind_does_not_have() -> None:
     here = Bench(model())
     here.machines["oven"].facts["lid"] = "ajar"
-    before = here.plant.dispatcher.ledger.ignored["report"]
     here.wait(1.0)
-    assert here.plant.dispatcher.ledger.ignored["report"] > before
+    counted = here.bridge.counters["oven"]
+    assert counted.refused > 0
+    assert str(counted.last) == "oven/sensores: datos.lid is 'ajar'; allowed: open, closed"
     assert here.plant.dispatcher.beliefs["oven"].fact("lid") == "open"

@@ -22,6 +22,7 @@ REFUSALS: dict[str, Reason] = {
     "no_link": Reason.LINK_LOST,
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
+    "condicion": Reason.PRECONDITION,
 }
 QUIET_S = 0.3  # what a command takes to a robot, one telemetry period, and APART_S for its answer
 OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})

@@ -109,6 +109,11 @@ class Robot:
         return True
 
     @property
+    def homes(self) -> bool:
+        """Whether it can lose its position, and run a homing routine or be put at its reference."""
+        return True
+
+    @property
     def reference(self) -> Position | None:
         """Where its position is counted from; None where it counts nothing that a boot could lose."""
         return None
@@ -151,8 +156,11 @@ class Robot:
 
     @property
     def says_homed(self) -> bool:
-        """Whether it knows itself if it is homed; a board that assumes so after every boot does not."""
-        return self.evidence is Evidence.IDS and not self.assume_homed
+        """Whether it knows itself if it is homed; a board that assumes so after every boot does not.
+
+        What has no homing never loses a position, and so never has to say it.
+        """
+        return (self.evidence is Evidence.IDS and not self.assume_homed) or not self.homes
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -61,6 +61,7 @@ SAYS_UNHOMED_BY_HAND = Phrase(
     "refusal.says_unhomed_by_hand",
     "{robot} says that it is not homed; home {robot} at its own controls first",
 )
+NO_HOMING = Phrase("refusal.no_homing", "{robot} has no homing")
 CANNOT_REPORT = Phrase(
     "refusal.cannot_report",
     "{robot} cannot report a homing; put it at its reference and say: home {robot} --by-hand",
@@ -114,7 +115,9 @@ class Operator:
         self._intake = intake
         self._clock = clock
         self.acts: deque[OperatorAct] = deque(maxlen=ACTS_KEPT)
-        self._reached = {robot.name for cell in cells.values() for robot in cell.cell.reached}
+        reached = [robot for cell in cells.values() for robot in cell.cell.reached]
+        self._reached = {robot.name for robot in reached}
+        self._homing = {robot.name for robot in reached if robot.homes}
 
     def act(self, request: OperatorRequest) -> None:
         """Do it and journal it; Refused says why nothing was done."""
@@ -270,8 +273,8 @@ class Operator:
         return partial(cell.cancel, failure)
 
     def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
-        """What is only drawn is left out; asked for alone, it is refused."""
-        robots = self._reached & robots or robots
+        """What is only drawn, and what has no homing, is left out; asked for alone, it is refused."""
+        robots = self._homing & robots or robots
         for name in sorted(robots):
             obstacle = self._not_homeable(name, by_hand=by_hand)
             if obstacle:
@@ -318,6 +321,8 @@ class Operator:
             return refusal
         if name not in self._reached:
             return ONLY_DRAWN(robot=name)
+        if not belief.robot.homes:
+            return NO_HOMING(robot=name)
         if work := self._dispatcher.work_of(name):
             return STILL_DOING(robot=name, doing=work.doing)
         robot, has_routine = belief.robot, belief.robot.evidence is Evidence.IDS

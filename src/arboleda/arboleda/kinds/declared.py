@@ -52,6 +52,12 @@ class FactType:
         fits = type(value) is self.type or (self.type is float and type(value) is int)
         return fits and (not self.words or value in self.words)
 
+    def read(self, value: object) -> Value | None:
+        """The value as this type has it, where whole numbers are numbers, too; None for any other value."""
+        if self.type is float and type(value) is int:
+            value = float(value)
+        return value if self.takes(value) else None  # type: ignore[return-value]
+
     def allowed(self) -> str:
         """In words, for who gave another value."""
         return ", ".join(map(shown, self.words)) if self.words else TYPES[self.type]
@@ -185,6 +191,10 @@ class Device(Robot):
     @cached_property
     def fact_names(self) -> tuple[str, ...]:
         return tuple(self.kind.facts)
+
+    @property
+    def homes(self) -> bool:
+        return False
 
     @property
     def held_fact(self) -> str | None:

@@ -10,14 +10,14 @@ from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel
 
 from .axis import Axis
-from .body import Told
+from .body import Robotic, Told
 
 FASTEST = 1e6  # steps/s: one per microsecond of the board's clock
 STEEPEST = 9e11  # steps/s2: beyond it the ramp's first interval falls below a microsecond
 WIRE_ROUNDING_DEG = 1e-4
 
 
-class ArmBody:
+class ArmBody(Robotic):
     """One stepper per joint; `start` and `pickups` are joint positions in rad and m.
 
     The piece sensor sees the piece that lies ready at each pick-up, and the one the effector holds.

@@ -16,6 +16,7 @@ from arboleda.wire.payloads import (
     Goal,
     HomeGoal,
     JointsGoal,
+    OrderGoal,
     PathGoal,
     Presence,
     StopGoal,
@@ -30,6 +31,8 @@ from .receipts import Receipts
 from .uplink import Uplink
 
 SILENCE_US = 1_000_000  # without beat or command while moving: ramp to a stop
+KNOWN_ORDERS = 8  # a machine may do several things at once, and any of them may be told again
+SILENCE, ALARM = "silencio", "alarma"  # why a machine gives its work up
 
 
 class Board:
@@ -44,7 +47,9 @@ class Board:
         self.refusals = 0  # messages rejected whole since power-up
         self.watch: Callable[[Goal], None] | None = None
         self._numbered = robot.evidence is Evidence.IDS
-        self._assume_homed = robot.assume_homed
+        self._tells_facts = robot.evidence is not Evidence.STATE
+        self._assume_homed = robot.assume_homed or not body.homes
+        self._knows = 1 if body.homes else KNOWN_ORDERS
         heard = body.channels if robot.has_stop else body.channels - {Channel.STOP}
         self._channels = {topic(robot.mqtt, channel): channel for channel in Channel if channel in heard}
         self._now_us = now_us
@@ -58,7 +63,7 @@ class Board:
         self.latched = False
         self.faulted = False
         self._job: Goal | None = None  # the motion that will count as done when the body comes to rest
-        self._receipts = Receipts()
+        self._receipts = Receipts(known=self._knows)
         self._uplink.told = 0
         self._beaten = False
         self._alive_us = self._now_us
@@ -69,7 +74,7 @@ class Board:
 
     @property
     def state(self) -> MotionState:
-        if self.body.next_change_us is not None:
+        if self.body.next_change_us is not None and self.body.moving:
             return MotionState.MOVING
         if self.faulted:
             return MotionState.FAULT
@@ -113,7 +118,7 @@ class Board:
         """A driver reports an alarm: the board ramps to a stop and moves nothing until `repair`."""
         self.advance(now_us)
         self.faulted = True
-        self._stop(latch=False)
+        self._break_off(ALARM)
         self._tell()
 
     def repair(self, now_us: int) -> None:
@@ -181,6 +186,8 @@ class Board:
         """The word for a well-numbered command that the board must not carry out now."""
         if isinstance(goal, StopGoal) or (isinstance(goal, EffectorGoal) and not goal.on):
             return None
+        if isinstance(goal, OrderGoal):
+            return self.body.objection(goal, latched=self.latched, faulted=self.faulted)
         if self.latched:
             return "paro"
         if isinstance(goal, EffectorGoal):
@@ -197,6 +204,10 @@ class Board:
         if isinstance(goal, (JointsGoal, PathGoal)):
             self.body.start(self._now_us, goal)
             self._job = goal
+        elif isinstance(goal, OrderGoal):
+            self.body.start(self._now_us, goal)
+            self._job = goal if self.body.is_work(goal) else self._job
+            self._book_ends()
         elif isinstance(goal, HomeGoal):
             self.body.home(self._now_us)
             self._job = goal
@@ -207,16 +218,23 @@ class Board:
             self.latched = False
 
     def _stop(self, *, latch: bool) -> None:
-        job, self._job = self._job, None
         self.latched = self.latched or latch
+        if not self.body.finishes:
+            self._break_off()
+
+    def _break_off(self, word: str | None = None) -> None:
+        """End what it does; with a word, it was the board itself that did so."""
+        job, self._job = self._job, None
         if self.body.moving and job is not None:  # told again, a ramp on its way down would begin anew
             self.body.stop(self._now_us)
+        if word is not None and isinstance(job, OrderGoal):
+            self._receipts.fail(job, word)
 
     def _next_motion_us(self) -> int:
         """When a moving body arrives somewhere, or the silence, where it is watched, gets too long."""
         change_us = self.body.next_change_us
         assert change_us is not None
-        if not self._beaten or self._job is None:
+        if not self._beaten or self._job is None or self.body.finishes:
             return change_us
         return min(change_us, self._alive_us + SILENCE_US)
 
@@ -229,11 +247,21 @@ class Board:
     def _move_on(self) -> None:
         """An arrival or the end of patience, at the time the board has reached."""
         self.body.advance(self._now_us)
+        if self.body.ends:
+            self._book_ends()
         if not self.body.moving:
             self._finish()
         elif self._next_motion_us() <= self._now_us:
-            self._stop(latch=False)
+            self._break_off(SILENCE)
         self._tell()
+
+    def _book_ends(self) -> None:
+        for end in self.body.take_ends():
+            if end.failure is not None:
+                self._receipts.fail(end.goal, end.failure)
+                self._job = None if self._job is end.goal else self._job
+            elif end.answer is not None:
+                self._receipts.answered(end.goal, end.answer)
 
     def _finish(self) -> None:
         job, self._job = self._job, None
@@ -268,7 +296,8 @@ class Board:
     def _telemetry(self, told: Told) -> Telemetry:
         receipts = self._receipts
         if not self._numbered:
-            return Telemetry(state=self.state, q=told.q, node=told.node)
+            facts = told.facts if self._tells_facts else None
+            return Telemetry(state=self.state, q=told.q, node=told.node, facts=facts)
         return Telemetry(
             state=self.state,
             q=told.q,
@@ -282,7 +311,11 @@ class Board:
             refusal=receipts.refusal,
             refused_seq=receipts.refused,
             boot_id=self.boot_id,
-            homed=self.homed,
+            homed=self.homed if self.body.homes else None,
+            facts=told.facts,
+            answer=receipts.answer[1] if receipts.answer else None,
+            answered_seq=receipts.answer[0] if receipts.answer else None,
+            failures=receipts.failures or None if told.facts is not None else None,
         )
 
 

@@ -1,33 +1,81 @@
-"""What a board drives: the axes of an arm, or a mobile robot on its grid."""
+"""What a board drives: the axes of an arm, a mobile robot on its grid, or a machine of a declared kind."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
+from arboleda.core.facts import Facts, Value
+from arboleda.wire.payloads import Goal, OrderGoal
 from arboleda.wire.topics import Channel
 
 
 class Told(NamedTuple):
-    """What a body can say of itself: the angles of an arm or the node of a mobile, and what it holds."""
+    """What a body can say of itself: the angles of an arm, the node of a mobile or the facts of a machine,
+    and what it holds."""
 
     q: tuple[float, ...] | None = None
     node: int | None = None
     effector: bool | None = None
     piece: bool | None = None
+    facts: Facts | None = None
+
+
+class End(NamedTuple):
+    """A command that a machine ended by itself: answered, or given up with a word for why."""
+
+    goal: Goal
+    answer: Value | None = None
+    failure: str | None = None
+
+
+class Robotic:
+    """A body that takes no orders: it halts when it is stopped, and is done when it arrives."""
+
+    homes = True
+    ends: Sequence[End] = ()
+    finishes = False
+
+    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+        return "formato"
+
+    def is_work(self, goal: OrderGoal) -> bool:
+        return False
+
+    def take_ends(self) -> list[End]:
+        return []
 
 
 class Body(Protocol):
     """Every time is in microseconds and never earlier than the one before.
 
-    `next_change_us`: when it arrives somewhere if nobody interferes; None while still.
+    `next_change_us`: when it arrives somewhere if nobody interferes; None while still. `homes`: whether it
+    has a reference. `ends` are those that its board has not taken yet.
     """
 
     axes: int | None
     channels: frozenset[Channel]
     next_change_us: int | None
+    homes: bool
+
+    @property
+    def ends(self) -> Sequence[End]: ...
 
     @property
     def moving(self) -> bool: ...
+
+    @property
+    def finishes(self) -> bool:
+        """Whether what it does now goes on through a stop and a silence."""
+
+    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+        """The word that refuses an order now; None where it can be carried out."""
+
+    def is_work(self, goal: OrderGoal) -> bool:
+        """Whether an order that can be carried out keeps the machine busy."""
+
+    def take_ends(self) -> list[End]:
+        """What ended since the last call, in order."""
 
     def admits(self, goal: Any) -> bool:
         """Whether a goal, of the type that `decode` makes for this body, is within its limits."""

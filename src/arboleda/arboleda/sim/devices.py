@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from arboleda.core.model import Link, PlantModel, Robot
 from arboleda.kinds.arm import Arm
+from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import Mobile
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.transport import Connection, Delivery, Publication
@@ -15,6 +16,7 @@ from arboleda.wire.transport import Connection, Delivery, Publication
 from .arm import ArmBody
 from .board import Board
 from .body import Body
+from .machine import MachineBody
 from .mobile import MobileBody
 
 
@@ -103,14 +105,17 @@ class Devices:
 
 
 def _body(model: PlantModel, robot: Robot) -> Body:
-    """The body of an arm standing at its home pose, or of a mobile at the start of its first path."""
+    """The body of an arm standing at its home pose, of a mobile at the start of its first path, or of a
+    device as its facts begin."""
     cell = model.cell_of[robot.name]
     if isinstance(robot, Arm) and isinstance(cell, StorageCell):
         pickups = [pose.joints for pose in (*cell.every_pickup, cell.palletizing.pick)]
         return ArmBody(robot, start=cell.home.joints, pickups=pickups)
     if isinstance(robot, Mobile) and isinstance(cell, StorageCell):
         return MobileBody(robot, start_node=cell.paths[0].nodes[0])
-    raise TypeError(f"{robot.name} is neither an arm nor a mobile robot")
+    if isinstance(robot, Device):
+        return MachineBody(robot.kind)
+    raise TypeError(f"{robot.name} is neither an arm, a mobile robot nor a device of a declared kind")
 
 
 def _us(seconds: float) -> int:

@@ -1,120 +1,179 @@
-"""A device of a declared kind, virtual: it does what its verbs say, in the time that they take."""
+"""What a declared device drives, virtual: it does what its verbs say, in the time that they take."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command, OnStop, Stop, StopMode
+from arboleda.core.commands import OnStop
 from arboleda.core.facts import Facts, Value
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState
-from arboleda.kinds.declared import Device, Effect, Told
+from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, Told, UseError
+from arboleda.wire.payloads import DEVICE, OrderGoal
+from arboleda.wire.topics import Channel
 
-PERIOD_S = 0.1  # of its telemetry
+from . import body
+from .body import End
+
+WORK = frozenset({Effect.MOTION, Effect.PROCESS})
+SUPERSEDED = "relevado"  # the word for a switch that another one of the same fact has overtaken
 
 
 @dataclass(frozen=True, kw_only=True)
 class Deed:
-    """A command that it carries out, until `ends_at` s."""
+    """An order that it carries out, until `ends_us`."""
 
+    goal: OrderGoal
     command: Told
-    ends_at: float
-
-
-class Machine:
-    """One virtual device; `step` takes commands in, at a time that is handed to it, and returns reports."""
-
-    def __init__(self, device: Device, *, now: float, boot_id: int) -> None:
-        self.device = device
-        self.facts: dict[str, Value] = {name: type.first for name, type in device.kind.facts.items()}
-        self.boot_id = boot_id
-        self.latched = False
-        self.next_deadline = now
-        self._next_report = now
-        self._deed: Deed | None = None
-        self._accepted: str | None = None
-        self._done: str | None = None
-        self._rejected: tuple[str, str] | None = None
-        self._answered: tuple[str, Value] | None = None
+    ends_us: int
 
     @property
-    def busy(self) -> bool:
-        """Whether it is carrying something out."""
-        return self._deed is not None
+    def verb(self) -> DeviceVerb:
+        return self.command.told
 
-    def step(self, now: float, commands: Iterable[Command]) -> list[Report]:
-        """Take commands in at `now` s; what it reports, at least once each PERIOD_S."""
-        before = self._words()
-        for command in commands:
-            self._take(now, command)
-        self._finish(now)
-        reports = []
-        if now >= self._next_report or self._words() != before:
-            reports.append(self._report(now))
-            self._next_report = now + PERIOD_S
-        ends_at = self._deed.ends_at if self._deed else self._next_report
-        self.next_deadline = min(self._next_report, ends_at)
-        return reports
+    @property
+    def is_work(self) -> bool:
+        return self.verb.effect in WORK
 
-    def _take(self, now: float, command: Command) -> None:
-        if isinstance(command, Stop):
-            self._stop(command.mode)
-        elif isinstance(command, Told):
-            refusal = self._refusal(command)
-            if refusal is not None:
-                self._rejected = (command.id, refusal)
-                return
-            self._accepted = command.id
-            self._deed = Deed(command=command, ends_at=now + command.told.takes_s)
 
-    def _refusal(self, command: Told) -> str | None:
-        if self.latched and command.told.effect is not Effect.QUERY:
+class MachineBody:
+    """One work at a time, one switch per fact, one query; each becomes true at its end, and not before.
+
+    `facts` are how the machine truly is, whatever its board does. Without power it lets go of what it holds,
+    as a gripper does whose spring opens it: what it holds is then lost, which is worse for the plant than a
+    clamp that stays. Everything else stays as it is: a door does not move because its board boots.
+
+    `answer` says what it answers to a query, and `fails` with what word an order will end as given up; None:
+    it will be done.
+    """
+
+    axes: int | None = DEVICE
+    channels = frozenset({Channel.ORDER, Channel.STOP, Channel.BEAT})
+    homes = False
+
+    def __init__(self, kind: DeviceKind) -> None:
+        self.kind = kind
+        self.facts: dict[str, Value] = {name: type.first for name, type in kind.facts.items()}
+        self.answer: Callable[[OrderGoal], Value] = self.first_answer
+        self.fails: Callable[[OrderGoal], str | None] = _never
+        self.ends: list[End] = []
+        self._deeds: list[Deed] = []
+        self.next_change_us: int | None = None
+
+    def reset(self) -> None:
+        self._deeds, self.ends, self.next_change_us = [], [], None
+        if self.kind.held_fact is not None:
+            self.facts[self.kind.held_fact] = False
+
+    @property
+    def moving(self) -> bool:
+        return any(deed.is_work for deed in self._deeds)
+
+    @property
+    def finishes(self) -> bool:
+        return any(deed.is_work and deed.verb.on_stop is OnStop.FINISH for deed in self._deeds)
+
+    def first_answer(self, goal: OrderGoal) -> Value:
+        """The first of the answers that its kind declares for a query."""
+        return self.kind.verbs[goal.verb].answers[0]
+
+    def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+        """The word that refuses an order now; None where it can be carried out."""
+        command = self._command(goal)
+        if command is None:
+            return "formato"
+        works = command.told.effect in WORK
+        if latched and not _goes_on_while_stopped(command):
             return "paro"
-        if self._deed is not None:
-            return "busy"
-        unmet = next((name for name, value in command.needs if self.facts[name] != value), None)
-        return None if unmet is None else f"needs_{unmet}"
+        if works and (self.moving or faulted):
+            return "ocupado"
+        return None if all(self.facts[name] == value for name, value in command.needs) else "condicion"
 
-    def _stop(self, mode: StopMode) -> None:
-        self.latched = mode is StopMode.LATCH or (self.latched and mode is not StopMode.CLEAR)
-        halts = self._deed is not None and self._deed.command.told.on_stop is OnStop.HALT
-        if mode is not StopMode.CLEAR and halts:
-            self._deed = None
+    def is_work(self, goal: OrderGoal) -> bool:
+        return self.kind.verbs[goal.verb].effect in WORK
 
-    def _finish(self, now: float) -> None:
-        deed = self._deed
-        if deed is None or now < deed.ends_at:
-            return
-        self._deed = None
-        self.facts.update(deed.command.sets)
-        if deed.command.told.effect is Effect.QUERY:
-            self._answered = (deed.command.id, self.device.kind.verbs[deed.command.verb].answers[0])
-        self._done = deed.command.id
+    def start(self, now_us: int, goal: OrderGoal) -> None:
+        """Begin an order without an objection; even what takes no time takes a moment."""
+        command = self._command(goal)
+        assert command is not None
+        self._supersede(command)
+        takes_us = max(1, round(command.told.takes_s * 1e6))
+        self._deeds.append(Deed(goal=goal, command=command, ends_us=now_us + takes_us))
+        self._plan()
 
-    def _state(self) -> MotionState:
-        if self._deed is not None and self._deed.command.told.effect in (Effect.MOTION, Effect.PROCESS):
-            return MotionState.MOVING
-        return MotionState.STOP_LATCHED if self.latched else MotionState.STOPPED
+    def stop(self, now_us: int) -> None:
+        """Work ends where it is; what it would have set stays as it was."""
+        self._deeds = [deed for deed in self._deeds if not deed.is_work]
+        self._plan()
 
-    def _words(self) -> Sequence[object]:
-        ended = (self._accepted, self._done, self._rejected, self._answered)
-        return (*ended, self._state(), tuple(self.facts.items()))
+    def advance(self, now_us: int) -> None:
+        for deed in sorted(self._deeds, key=lambda each: each.ends_us):
+            if deed.ends_us <= now_us:
+                self._deeds.remove(deed)
+                self._end(deed)
+        self._plan()
 
-    def _report(self, now: float) -> Report:
-        rejected, refusal = self._rejected or (None, None)
-        answered, answer = self._answered or (None, None)
+    def take_ends(self) -> list[End]:
+        taken, self.ends = self.ends, []
+        return taken
+
+    def tell(self) -> body.Told:
         facts: Facts = tuple(self.facts.items())
-        return Report(
-            at=now,
-            robot=self.device.name,
-            boot_id=self.boot_id,
-            accepted=self._accepted,
-            done=self._done,
-            rejected=rejected,
-            refusal=refusal,
-            answered=answered,
-            answer=answer,
-            state=self._state(),
-            facts=facts,
-        )
+        return body.Told(facts=facts)
+
+    def admits(self, goal: object) -> bool:
+        raise NotImplementedError("a machine takes orders only")
+
+    def home(self, now_us: int) -> None:
+        raise NotImplementedError("a machine has no reference")
+
+    def switch_effector(self, on: bool) -> None:
+        raise NotImplementedError("what a machine holds is one of its facts")
+
+    def put_at_reference(self) -> None:
+        """It has none."""
+
+    def _command(self, goal: OrderGoal) -> Told | None:
+        """What an order asks for; None where its kind knows no such verb or value."""
+        verb = self.kind.verbs.get(goal.verb)
+        types = dict(verb.parameters) if verb else {}
+        read = {name: types[name].read(value) if name in types else None for name, value in goal.values}
+        values = {name: value for name, value in read.items() if value is not None}
+        if len(values) < len(goal.values):
+            return None
+        try:
+            command = self.kind.command(id="", robot="", verb=goal.verb, values=values)
+        except UseError:
+            return None
+        assert isinstance(command, Told)
+        return command
+
+    def _supersede(self, command: Told) -> None:
+        """Forget the query that was asked before, and give up the switches whose facts this one sets."""
+        effect, sets = command.told.effect, {name for name, _ in command.sets}
+        for deed in [deed for deed in self._deeds if deed.verb.effect is effect]:
+            if effect is Effect.SWITCH and sets & {name for name, _ in deed.command.sets}:
+                self._deeds.remove(deed)
+                self.ends.append(End(deed.goal, failure=SUPERSEDED))
+            elif effect is Effect.QUERY:
+                self._deeds.remove(deed)
+
+    def _end(self, deed: Deed) -> None:
+        word = self.fails(deed.goal)
+        if word is not None:
+            self.ends.append(End(deed.goal, failure=word))
+            return
+        self.facts.update(deed.command.sets)
+        if deed.verb.effect is Effect.QUERY:
+            self.ends.append(End(deed.goal, answer=self.answer(deed.goal)))
+
+    def _plan(self) -> None:
+        self.next_change_us = min((deed.ends_us for deed in self._deeds), default=None)
+
+
+def _goes_on_while_stopped(command: Told) -> bool:
+    """A query, or what lets go of a part."""
+    return command.told.effect is Effect.QUERY or getattr(command, "grips", None) is False
+
+
+def _never(goal: OrderGoal) -> None:
+    """Every order will be done."""

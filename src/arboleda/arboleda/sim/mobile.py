@@ -8,10 +8,10 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
 
-from .body import Told
+from .body import Robotic, Told
 
 
-class MobileBody:
+class MobileBody(Robotic):
     """At a node, or on an edge that it always drives to its end; each takes pitch / speed.
 
     `node` is where it takes itself to be, `true_node` where it is.

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from arboleda.wire.payloads import Goal
+from collections import deque
+
+from arboleda.core.facts import Value
+from arboleda.wire.payloads import FAILURES_KEPT, Goal
 
 UNKNOWN_SEQ = 0  # senders count from 1
 
 
 class Receipts:
-    """The numbers of the last accepted, finished and refused command; all count only for `epoch`.
+    """The numbers of the last accepted, finished and refused command, of the last answer and of the last few
+    failures; all count only for `epoch`.
 
-    `told` is all of it.
+    `told` is all of it. `known` is how many accepted commands it knows again, should one come twice.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, known: int = 1) -> None:
+        self._recent: deque[int | None] = deque(maxlen=known)
         self._enter(None)
 
     def _enter(self, epoch: int | None) -> None:
@@ -23,14 +28,26 @@ class Receipts:
         self.finished: int | None = None
         self.refusal: str | None = None
         self.refused: int | None = None
+        self.answer: tuple[int, Value] | None = None
+        self.failures: tuple[tuple[int, str], ...] = ()
+        self._recent.clear()
         self._note()
 
     def _note(self) -> None:
-        self.told = (self.epoch, self.accepted, self.finished, self.refusal, self.refused)
+        given_up = self.failures
+        self.told = (
+            self.epoch,
+            self.accepted,
+            self.finished,
+            self.refusal,
+            self.refused,
+            self.answer,
+            given_up,
+        )
 
     def repeats(self, goal: Goal) -> bool:
-        """Whether this is the last accepted command once more (QoS 1 may deliver twice)."""
-        return goal.seq is not None and (goal.epoch, goal.seq) == (self.epoch, self.accepted)
+        """Whether this is an accepted command once more (QoS 1 may deliver twice)."""
+        return goal.seq is not None and goal.epoch == self.epoch and goal.seq in self._recent
 
     def objection(self, goal: Goal) -> str | None:
         """The refusal its numbers deserve; a fresh command makes its epoch the current one."""
@@ -44,12 +61,25 @@ class Receipts:
 
     def accept(self, goal: Goal) -> None:
         self.accepted = goal.seq
+        self._recent.append(goal.seq)
         self._note()
 
     def finish(self, goal: Goal) -> None:
         """A motion ended by itself; one of an older epoch is nobody's news any more."""
         if goal.epoch == self.epoch:
             self.finished = goal.seq
+            self._note()
+
+    def answered(self, goal: Goal, answer: Value) -> None:
+        """A query has its answer."""
+        if goal.epoch == self.epoch and goal.seq is not None:
+            self.answer = (goal.seq, answer)
+            self._note()
+
+    def fail(self, goal: Goal, word: str) -> None:
+        """A command ended short, by itself."""
+        if goal.epoch == self.epoch and goal.seq is not None:
+            self.failures = (*self.failures, (goal.seq, word))[-FAILURES_KEPT:]
             self._note()
 
     def refuse(self, word: str, seq: int | None, epoch: int | None) -> None:

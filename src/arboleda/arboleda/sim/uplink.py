@@ -40,7 +40,8 @@ class Uplink:
     def tell(self, said: Telemetry) -> None:
         """Telemetry; a `seq` of 0 stands for the number that it gets."""
         if self.connected:
-            self._frame = encode(said).partition(UNNUMBERED)
+            raw = encode(said)
+            self._frame = (raw, b"", b"") if said.seq is None else raw.partition(UNNUMBERED)
             self.tell_again()
 
     def tell_angles(self, q: tuple[float, ...]) -> None:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from arboleda.core.commands import Command, Motion, Stop, StopMode
+from arboleda.core.commands import Command, Stop, StopMode, Work
 from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Facts
 from arboleda.core.messages import Report
 from arboleda.core.model import Evidence, MotionState, Robot
 from arboleda.core.sentence import NOTHING, Phrase, Sentence
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
 
 from . import goals, rejections
 from .copies import Copies
+from .forms import form_of
 from .hop import shown
 from .labels import Labels
 from .link import BoardLink, Heard
@@ -65,14 +65,14 @@ class Board:
         self._plant: int | None = None
         self._last: Report | None = None
         self._words: Words | None = None  # of the last telemetry, until a command changes what it means
-        self._axes = len(robot.joints) if isinstance(robot, Arm) else None
-        self._nodes = robot.grid.size if isinstance(robot, Mobile) else 0
+        self._form = form_of(robot)
+        self._axes = self._form.joints
         self._motion: OpenMotion | None = None
         self._latched = False
 
     @property
     def in_motion(self) -> bool:
-        """Whether a motion command is open."""
+        """Whether a motion or a process is open."""
         return self._motion is not None
 
     def connection(self, at: float, up: bool) -> list[Message]:
@@ -143,7 +143,7 @@ class Board:
         if channel is Channel.TELEMETRY and not ending and (again := self._again(delivery)):
             return [again]
         try:
-            said = decode(channel, delivery.payload, axes=self._axes)
+            said = decode(channel, delivery.payload, axes=self._form.axes)
             self._check(said, delivery)
         except PayloadError as error:
             self._count(UNREADABLE(topic=delivery.topic, why=error.sentence))
@@ -166,7 +166,7 @@ class Board:
 
     def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
         """The same with other joints, where nothing else is new of a moving arm."""
-        read = read_angles(delivery.payload, self._axes or 0)
+        read = read_angles(delivery.payload, len(self._axes))
         if read is None:
             return None
         angles, length = read
@@ -182,8 +182,10 @@ class Board:
             raise PayloadError("a command is not for the bridge")
         if delivery.retain and isinstance(said, Telemetry):
             raise PayloadError("telemetry is retained: nobody knows how old it is")
-        if isinstance(said, Telemetry) and said.node is not None and said.node >= self._nodes:
-            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {self._nodes - 1}")
+        if isinstance(said, Telemetry) and said.node is not None and said.node >= self._form.nodes:
+            raise PayloadError(f"nodo is {said.node}; allowed: 0 to {self._form.nodes - 1}")
+        if isinstance(said, Telemetry) and said.facts is not None:
+            self._form.told(said.facts)
 
     def _presence(self, at: float, online: bool) -> list[Message]:
         self.link.presence(online)
@@ -203,11 +205,11 @@ class Board:
         if heard is Heard.REBOOT:
             self.labels.reboot()
             self._motion = None
-        q, ended = self._joints(said), self.labels.hear(said)
-        if self._motion and self._motion.ended(at, said, q, ended):
+        q, facts, ended = self._joints(said), self._form.told(said.facts), self.labels.hear(said)
+        if self._motion and self._motion.ended(at, said, q, ended, facts):
             self._motion = None
-        out = self._objections(at)
-        self._last, self._words = self._told(at, said, q), Words.of(delivery.payload, said)
+        out = [*self._objections(at), *self._given_up_before(at)]
+        self._last, self._words = self._told(at, said, q, facts), Words.of(delivery.payload, said)
         return [*out, self._last, *([] if heard is Heard.NEWS else self._stop_again(at))]
 
     def _objections(self, at: float) -> list[Message]:
@@ -225,6 +227,13 @@ class Board:
             self._count_foreign(sentence, refused=False)
             out.append(ForeignCommand(at=at, robot=self.robot.name, sentence=sentence))
         return out
+
+    def _given_up_before(self, at: float) -> list[Message]:
+        """A report of each command that the board has newly given up, but for the last, which all tell."""
+        return [
+            replace(self._word(at), failed=command_id, failure=word)
+            for command_id, word in self.labels.failed_before
+        ]
 
     def _rejection(self, at: float, command: Command, word: str, sender: str, *, by_board: bool) -> Rejection:
         return Rejection(
@@ -257,7 +266,7 @@ class Board:
             publication = self._publication(channel, goal)
         except PayloadError:
             return self.refuse(at, command, "formato", sender)
-        if isinstance(command, Motion):
+        if isinstance(command, Work):
             self._motion = OpenMotion(robot=self.robot, command=command, seq=seq)
             return [self.beat(), publication]
         if isinstance(command, Stop) and command.mode is not StopMode.CLEAR and self._motion:
@@ -274,11 +283,12 @@ class Board:
         return None if said.q is None else self._in_si(said.q)
 
     def _in_si(self, angles: tuple[float, ...]) -> tuple[float, ...]:
-        assert isinstance(self.robot, Arm)
-        rows = zip(self.robot.joints, angles, strict=True)
+        rows = zip(self._axes, angles, strict=True)
         return tuple([from_wire(joint, value) for joint, value in rows])
 
-    def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None) -> Report:
+    def _told(self, at: float, said: Telemetry, q: tuple[float, ...] | None, facts: Facts | None) -> Report:
+        answered, answer = self.labels.answered or (None, None)
+        failed, failure = self.labels.failed or (None, None)
         return self._report(
             at,
             state=said.state,
@@ -289,6 +299,11 @@ class Board:
             homed=said.homed,
             effector=said.effector,
             piece=said.piece,
+            facts=facts,
+            answered=answered,
+            answer=answer,
+            failed=failed,
+            failure=failure,
         )
 
     def _report(self, at: float, **said: object) -> Report:

@@ -9,11 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from arboleda.core.commands import Command, Home, Stop, StopMode
+from arboleda.core.facts import shown as shown_value
 from arboleda.core.messages import Heartbeat
 from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.declared import Told
 from arboleda.kinds.mobile import FollowPath
 
 COMMAND = "command"
+ORDER = "order"
 HEARTBEAT = "plant/heartbeat"
 PLAIN: dict[type[Command], str] = {
     MoveJoints: "joint_goals_q",
@@ -67,7 +70,10 @@ def without_id(command: Command) -> Command:
 
 
 def shown(command: Command) -> str:
-    """The command as people publish it: `stop_cmd 2`, `joint_goals_q`."""
+    """The command as people publish it: `stop_cmd 2`, `joint_goals_q`, `order run program=1001`."""
+    if isinstance(command, Told):
+        values = (f"{name}={shown_value(value)}" for name, value in command.values)
+        return " ".join((ORDER, command.verb, *values))
     name = PLAIN[type(command)]
     if isinstance(command, Stop):
         return f"{name} {int(command.mode)}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from arboleda.core.commands import Command
+from arboleda.core.facts import Value
 
 from .payloads import Telemetry
 from .strict import UINT32
@@ -30,6 +31,8 @@ class Labels:
 
     `rejected` is the last rejected command and its word, whether the board or the bridge rejected it.
     `objection` is what the board has refused in its last telemetry and not before, with the word.
+    `answered` is the last query that a device answered, with the answer; `failed` the last command that it
+    gave up, with its word, and `failed_before` those that it names newly beside that one.
     `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before.
     """
 
@@ -38,6 +41,9 @@ class Labels:
         self.accepted: str | None = None
         self.done: str | None = None
         self.rejected: tuple[str, str] | None = None
+        self.answered: tuple[str, Value] | None = None
+        self.failed: tuple[str, str] | None = None
+        self.failed_before: list[tuple[str, str]] = []
         self.objection: tuple[Issued, str] | None = None
         self.foreign: tuple[int, int] | None = None
         self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
@@ -47,6 +53,7 @@ class Labels:
         self._spoken = False
         self._raised = False
         self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
+        self._heard_failures: tuple[tuple[int, str], ...] = ()
 
     def repeated(self, command_id: str) -> bool:
         """Whether this id came before; it counts as known from now on. Unlabelled ones never repeat."""
@@ -70,8 +77,9 @@ class Labels:
 
     def reboot(self) -> None:
         """The board forgot everything; what it says from now on is new."""
-        self.accepted = self.done = self.rejected = None
+        self.accepted = self.done = self.rejected = self.answered = self.failed = None
         self._heard_refusal = None
+        self._heard_failures = ()
 
     def hear(self, said: Telemetry) -> frozenset[int]:
         """Take over what telemetry says about our commands; the seqs that it reports ended."""
@@ -83,7 +91,25 @@ class Labels:
         self.accepted = self._name(said.ack) if ours else None
         self.done = self._name(said.done) if ours else None
         done = said.done if ours else None
-        return frozenset([seq for seq in (done, refused) if seq is not None])
+        self._answered(said, ours=ours)
+        failed = self._given_up(said, ours=ours)
+        return frozenset([seq for seq in (done, refused, *failed) if seq is not None])
+
+    def _answered(self, said: Telemetry, *, ours: bool) -> None:
+        query = self._name(said.answered_seq) if ours else None
+        self.answered = None if query is None or said.answer is None else (query, said.answer)
+
+    def _given_up(self, said: Telemetry, *, ours: bool) -> list[int]:
+        """The seqs of the commands that the board gave up; it repeats the last few in every message."""
+        failures = said.failures if ours and said.failures else ()
+        names = [(self._name(seq), word) for seq, word in failures]
+        known = [(name, word) for name, word in names if name is not None]
+        self.failed = known[-1] if known else None
+        before = set(self._heard_failures)
+        news = [(self._name(seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
+        self.failed_before = [(name, word) for name, word in news if name is not None]
+        self._heard_failures = failures
+        return [seq for seq, _ in failures]
 
     def _strange(self, said: Telemetry) -> tuple[int, int] | None:
         """A number above ours that the board newly accepted: another MQTT client has commanded it.

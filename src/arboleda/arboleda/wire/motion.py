@@ -1,4 +1,4 @@
-"""An open motion command: when does what a board says end it?
+"""An open motion or process: when does what a board says end it?
 
 The judge of the core decides what was achieved; this only decides how long the board needs beats.
 """
@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command
+from arboleda.core.commands import Motion, Position, Work
+from arboleda.core.facts import Facts
 from arboleda.core.model import Evidence, MotionState, Robot
-from arboleda.kinds.arm import Arm, MoveJoints
-from arboleda.kinds.mobile import FollowPath
 
 from .payloads import Telemetry
 
@@ -19,14 +18,14 @@ LINGER_S = 1.0  # as long as a board drives on without beats; what it says may b
 
 @dataclass(kw_only=True)
 class OpenMotion:
-    """A motion command that was sent as `seq`; `stopping` once a halt or a stop followed it.
+    """Work that was sent as `seq`; `stopping` once a halt or a stop followed it.
 
     A board that names no command may say that it stands still because an earlier move has ended, or before
     this one has reached it. So it gets beats until it has said so for LINGER_S: `ending` meanwhile.
     """
 
     robot: Robot
-    command: Command
+    command: Work
     seq: int
     stopping: bool = False
     moved: bool = False
@@ -37,8 +36,16 @@ class OpenMotion:
         """Whether the next telemetry may end it though it repeats the last."""
         return self._still_since is not None
 
-    def ended(self, at: float, said: Telemetry, q: tuple[float, ...] | None, seqs: frozenset[int]) -> bool:
-        """Whether telemetry heard `at` (joints `q` in SI, the command `seqs` it ends) ends this motion."""
+    def ended(
+        self,
+        at: float,
+        said: Telemetry,
+        q: tuple[float, ...] | None,
+        seqs: frozenset[int],
+        facts: Facts | None = None,
+    ) -> bool:
+        """Whether telemetry heard `at` ends this work: joints `q` in SI, the `facts` of a device, and the
+        command `seqs` that it ends."""
         if self.seq in seqs:
             return True
         if said.state is MotionState.MOVING:
@@ -46,16 +53,16 @@ class OpenMotion:
             return False
         if self.robot.evidence is Evidence.IDS:
             return self.stopping
-        if not (self.stopping or self.moved or self._reached(said, q)):
+        if not (self.stopping or self.moved or self._reached(said.node if q is None else q, facts)):
             return False
         self._still_since = at if self._still_since is None else self._still_since
         return at >= self._still_since + LINGER_S
 
-    def _reached(self, said: Telemetry, q: tuple[float, ...] | None) -> bool:
+    def _reached(self, position: Position | None, facts: Facts | None) -> bool:
         if self.robot.evidence is not Evidence.JOINTS:
             return False
-        if isinstance(self.command, FollowPath):
-            return said.node == self.command.nodes[-1]
-        if isinstance(self.command, MoveJoints) and isinstance(self.robot, Arm) and q is not None:
-            return self.robot.reached(q, self.robot.quantised(self.command.q))
-        return False
+        if self.command.sets:
+            return set(self.command.sets) <= set(facts or ())
+        if position is None or not isinstance(self.command, Motion) or not self.command.way:
+            return False
+        return self.robot.stands_at(position, self.command.way[-1])

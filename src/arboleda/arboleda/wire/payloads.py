@@ -8,6 +8,7 @@ from functools import cache, lru_cache
 
 from arboleda.core.commands import StopMode
 from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Facts
 from arboleda.core.model import MotionState
 from arboleda.core.outside import quoted
 
@@ -19,6 +20,7 @@ from .values import (
     Goal,
     HomeGoal,
     JointsGoal,
+    OrderGoal,
     PathGoal,
     Payload,
     Presence,
@@ -27,12 +29,16 @@ from .values import (
 )
 
 __all__ = [
+    "DEVICE",
+    "DEVICE_REFUSALS",
+    "FAILURES_KEPT",
     "REFUSALS",
     "Beat",
     "EffectorGoal",
     "Goal",
     "HomeGoal",
     "JointsGoal",
+    "OrderGoal",
     "PathGoal",
     "Payload",
     "Presence",
@@ -46,16 +52,22 @@ __all__ = [
 
 REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"})
 """The words a board may give as `rechazo`."""
+DEVICE_REFUSALS = frozenset({"viejo", "retenido", "formato", "paro", "ocupado", "condicion"})
+"""Those that a device of a declared kind may give."""
+DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
+FAILURES_KEPT = 3  # of a device; as many may end unseen before telemetry arrives again
 
 MAX_ANGLE_DEG = 1e6  # far beyond any robot, and exact enough for a board's binary32
 FOREIGN_TO_ARMS = ("an arm", "nodo")
 FOREIGN_TO_MOBILES = ("a mobile robot", "efector", "pieza", "q1_mov")
+FOREIGN_TO_DEVICES = ("a device", "nodo", "efector", "pieza", "q1_mov", "ref")
 _DECIMALS = 4
 _LAST_STATE = MotionState.STOP_LATCHED.value
 
 
 def decode(channel: Channel, raw: bytes, *, axes: int | None) -> Payload:
-    """The message `raw` on `channel` of an arm with `axes` joints (None: a mobile), else PayloadError.
+    """The message `raw` on `channel` of an arm with `axes` joints (None: a mobile, 0: a device of a declared
+    kind), else PayloadError.
 
     Unknown extra keys are allowed: a newer board may say more.
     """
@@ -138,6 +150,13 @@ def _home(fields: strict.Fields, axes: int | None) -> HomeGoal:
     return HomeGoal(**_stamp(fields))
 
 
+def _order(fields: strict.Fields, axes: int | None) -> OrderGoal:
+    if axes != DEVICE:
+        raise PayloadError("only a device of a declared kind takes orders")
+    values = fields.facts("valores") if "valores" in fields else ()
+    return OrderGoal(verb=fields.name("verbo"), values=values or (), **_stamp(fields))
+
+
 @lru_cache(maxsize=64)
 def _beat(raw: bytes) -> Beat:
     """Whoever beats says the same four times a second."""
@@ -146,6 +165,8 @@ def _beat(raw: bytes) -> Beat:
 
 def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
     fields.together("rechazo", "rechazo_seq")
+    if axes == DEVICE:
+        return _telemetry_of_device(fields)
     fields.refuse(*FOREIGN_TO_ARMS if axes is not None else FOREIGN_TO_MOBILES)
     keys = () if axes is None else _joint_keys(axes, "_mov")
     return Telemetry(
@@ -165,12 +186,37 @@ def _telemetry(fields: strict.Fields, axes: int | None) -> Telemetry:
     )
 
 
+def _telemetry_of_device(fields: strict.Fields) -> Telemetry:
+    fields.together("respuesta", "respuesta_seq")
+    fields.refuse(*FOREIGN_TO_DEVICES)
+    state = MotionState(fields.integer("estado", _LAST_STATE))
+    if state is MotionState.NOT_HOMED:
+        raise PayloadError(f"estado is {state.value}; a device has no homing")
+    return Telemetry(
+        q=None,
+        node=None,
+        state=state,
+        seq=fields.optional("seq"),
+        ack_epoch=fields.optional("epoca_ack"),
+        ack=fields.optional("ack"),
+        done=fields.optional("hecho"),
+        refusal=fields.word("rechazo", DEVICE_REFUSALS) if "rechazo" in fields else None,
+        refused_seq=fields.optional("rechazo_seq"),
+        boot_id=fields.optional("arranque"),
+        facts=fields.facts("datos"),
+        answer=fields.fact("respuesta"),
+        answered_seq=fields.optional("respuesta_seq"),
+        failures=fields.named("fallos", FAILURES_KEPT),
+    )
+
+
 _READERS: dict[Channel, Callable[[strict.Fields, int | None], Payload]] = {
     Channel.JOINTS: _joints,
     Channel.PATH: _path,
     Channel.EFFECTOR: _effector,
     Channel.STOP: _stop,
     Channel.HOME: _home,
+    Channel.ORDER: _order,
     Channel.TELEMETRY: _telemetry,
 }
 
@@ -193,6 +239,8 @@ def _stamped(body: dict[str, object], goal: Goal) -> dict[str, object]:
 def _telemetry_body(said: Telemetry) -> dict[str, object]:
     if (said.refusal is None) != (said.refused_seq is None):
         raise PayloadError("rechazo and rechazo_seq go together")
+    if (said.answer is None) != (said.answered_seq is None):
+        raise PayloadError("respuesta and respuesta_seq go together")
     return {
         **_angles(said.q or (), "_mov"),
         "nodo": said.node,
@@ -207,7 +255,23 @@ def _telemetry_body(said: Telemetry) -> dict[str, object]:
         "ref": _bit(said.homed),
         "efector": _bit(said.effector),
         "pieza": _bit(said.piece),
+        "respuesta": None if said.answer is None else strict.fact("respuesta", said.answer),
+        "respuesta_seq": said.answered_seq,
+        "fallos": [[seq, _word(word)] for seq, word in said.failures or ()] or None,
+        "datos": None if said.facts is None else _named("datos", said.facts),
     }
+
+
+def _word(word: str) -> str:
+    return strict.name("fallos", word, strict.LONGEST_WORD)
+
+
+def _order_body(goal: OrderGoal) -> dict[str, object]:
+    return {"verbo": strict.name("verbo", goal.verb), "valores": _named("valores", goal.values) or None}
+
+
+def _named(key: str, facts: Facts) -> dict[str, object]:
+    return dict(strict.facts(key, dict(facts)))
 
 
 def _bit(value: bool | None) -> int | None:
@@ -220,6 +284,7 @@ _WRITERS: dict[type, Callable[..., dict[str, object]]] = {
     EffectorGoal: lambda goal: _stamped({"efector": int(goal.on)}, goal),
     StopGoal: lambda goal: _stamped({"paro": goal.mode.value}, goal),
     HomeGoal: lambda goal: _stamped({"ref": 1}, goal),
+    OrderGoal: lambda goal: _stamped(_order_body(goal), goal),
     Beat: lambda beat: {"epoca": beat.epoch},
     Telemetry: _telemetry_body,
 }

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from arboleda.core.commands import Command
 from arboleda.core.model import Robot
 from arboleda.core.sentence import OWN, Phrase, Sentence
-from arboleda.kinds.arm import Arm, MoveJoints
-from arboleda.kinds.mobile import FollowPath, Mobile
 
-from .goals import FLOAT32_SLACK
+from .forms import BEYOND, NODES, ON_THE_GRID, UNDONE, form_of
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
@@ -23,14 +21,10 @@ TAKEN = Phrase(
     "foreign.taken",
     "{robot}: its board took a command of another MQTT client (epoca {epoch}, seq {seq})",
 )
-ON_THE_GRID = Phrase(
-    "why.on_the_grid", "a path begins at the robot's node or next to it, and follows the grid"
-)
-NODES = Phrase("why.nodes", "its nodes are 0 to {last}")
-BEYOND = Phrase("why.beyond", "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}")
 WHY = {
     "no_link": Phrase("why.no_link", "its board is not heard"),
     "no_stop": Phrase("why.no_stop", "the plant file says that it has no stop"),
+    "no_home": Phrase("why.no_home", "it has no homing routine"),
     "old_epoch": Phrase("why.old_epoch", "it is of another start of the plant than the one that is heard"),
     FOREIGN: Phrase("why.foreign", "a plant commands this robot (foreign_commands: refuse)"),
     "formato": Phrase("why.formato", "it makes no sense for this robot"),
@@ -38,6 +32,7 @@ WHY = {
     "paro": Phrase("why.paro", "its stop is latched"),
     "sin_ref": Phrase("why.sin_ref", "it is not homed"),
     "ocupado": Phrase("why.ocupado", "it is homing"),
+    "condicion": Phrase("why.condicion", "what this needs to be so is not so"),
     "viejo": Phrase("why.viejo", "its board has taken a later command"),
     "retenido": Phrase("why.retenido", "the broker kept it"),
 }
@@ -97,27 +92,14 @@ def taken(robot: Robot, epoch: int, seq: int) -> Sentence:
 
 
 def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> Sentence | str:
-    beyond = None
-    if word == "limite" and isinstance(command, MoveJoints) and isinstance(robot, Arm):
-        beyond = _beyond(robot, command)
-    elif word == "limite" and isinstance(command, FollowPath) and isinstance(robot, Mobile):
-        beyond = ON_THE_GRID() if by_board else NODES(last=robot.grid.size - 1)
-    return beyond or (WHY[word]() if word in WHY else word)
-
-
-def _beyond(arm: Arm, command: MoveJoints) -> Sentence | None:
-    """The first joint beyond its limits; None where none is."""
-    for number, (joint, value) in enumerate(zip(arm.joints, command.q, strict=True), start=1):
-        if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
-            lower, upper = joint.lower, joint.upper
-            return BEYOND(number=number, value=value, lower=lower, upper=upper, unit=joint.unit)
-    return None
+    more = form_of(robot).why(robot, command, word, by_board)
+    return more or (WHY[word]() if word in WHY else word)
 
 
 SAID_OF_OTHERS = {
     phrase.key: phrase
     for phrase in (
-        *(SOMEBODY, REJECTED, REJECTED_OF, OBEYED, OVERHEARD, TAKEN, ON_THE_GRID, NODES, BEYOND, OWN),
+        *(SOMEBODY, REJECTED, REJECTED_OF, OBEYED, OVERHEARD, TAKEN, ON_THE_GRID, NODES, BEYOND, UNDONE, OWN),
         *WHY.values(),
     )
 }

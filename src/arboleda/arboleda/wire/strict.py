@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Collection
 
 from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Facts, Value
 from arboleda.core.outside import quoted
 
 LIMIT_BYTES = 512
 UINT32 = 2**32 - 1
+LARGEST = 1e9  # of a fact that is a number
+LONGEST = 32  # characters of a name, and of a text
+LONGEST_WORD = 16  # of a word for why
+_NAME = re.compile(r"[A-Za-z0-9_.-]+", re.ASCII)
+_TEXT = re.compile(r"[ !#-\[\]-~]{0,32}", re.ASCII)  # each of them one byte in JSON
 
 
 def read(raw: bytes) -> Fields:
@@ -60,6 +67,34 @@ def number(key: str, value: object, bound: float) -> float:
     return float(value)  # type: ignore[arg-type]
 
 
+def name(key: str, value: object, longest: int = LONGEST) -> str:
+    """A name of a verb, a fact or a fault, as somebody who makes a board chose it."""
+    if not isinstance(value, str) or len(value) > longest or not _NAME.fullmatch(value):
+        raise PayloadError(f"{key} is {_shown(value)}; 1 to {longest} of A-Z a-z 0-9 _ . - are needed")
+    return value
+
+
+def fact(key: str, value: object) -> Value:
+    """A value of a fact, a parameter or an answer: true, false, a number or a short text."""
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str):
+        if not _TEXT.fullmatch(value):
+            allowed = "printable ASCII without quotes and backslashes"
+            raise PayloadError(f"{key} is {_shown(value)}; at most {LONGEST} of {allowed} are allowed")
+        return value
+    if isinstance(value, int):
+        return integer(key, value, bottom=-UINT32)
+    return number(key, value, LARGEST)
+
+
+def facts(key: str, values: object) -> Facts:
+    """An object of named values."""
+    if not isinstance(values, dict):
+        raise PayloadError(f"{key} is {_shown(values)}; an object is needed")
+    return tuple((name(f"a name in {key}", each), fact(f"{key}.{each}", values[each])) for each in values)
+
+
 class Fields:
     """The keys of one object; a getter returns a checked value or raises PayloadError naming the key."""
 
@@ -100,6 +135,26 @@ class Fields:
         value = self.optional(key, 1)
         return None if value is None else value == 1
 
+    def name(self, key: str) -> str:
+        return name(key, self._get(key))
+
+    def fact(self, key: str) -> Value | None:
+        """A value that may be absent."""
+        return fact(key, self._values[key]) if key in self._values else None
+
+    def facts(self, key: str) -> Facts | None:
+        """An object of named values that may be absent."""
+        return facts(key, self._values[key]) if key in self._values else None
+
+    def named(self, key: str, most: int) -> tuple[tuple[int, str], ...] | None:
+        """Up to `most` pairs of a number and a word, `[[12, "atasco"]]`, that may be absent."""
+        rows = self._values.get(key)
+        if key not in self._values:
+            return None
+        if not isinstance(rows, list) or not 1 <= len(rows) <= most:
+            raise PayloadError(f"{key} is {_shown(rows)}; a list of 1 to {most} pairs is needed")
+        return tuple(_pair(f"{key}[{index}]", row) for index, row in enumerate(rows))
+
     def together(self, first: str, second: str) -> None:
         """Two keys that only make sense as a pair."""
         if (first in self._values) != (second in self._values):
@@ -117,6 +172,12 @@ class Fields:
             return self._values[key]
         except KeyError:
             raise PayloadError(f"{key} is missing") from None
+
+
+def _pair(key: str, row: object) -> tuple[int, str]:
+    if not isinstance(row, list) or len(row) != 2:
+        raise PayloadError(f"{key} is {_shown(row)}; a number and a word are needed")
+    return integer(key, row[0]), name(key, row[1], LONGEST_WORD)
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:

@@ -20,6 +20,7 @@ class Channel(str, Enum):
     HOME = "referencia"
     BEAT = "latido"
     PATH = "camino"
+    ORDER = "orden"
     TELEMETRY = "sensores"
     PRESENCE = "conexion"
 

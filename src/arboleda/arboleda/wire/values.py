@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from arboleda.core.commands import StopMode
+from arboleda.core.facts import Facts, Value
 from arboleda.core.model import MotionState
 
 
@@ -56,6 +57,16 @@ class HomeGoal:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OrderGoal:
+    """`orden`: a verb of a declared kind of device, with its values."""
+
+    verb: str
+    values: Facts
+    seq: int | None
+    epoch: int | None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Beat:
     """`latido`: who commands is alive."""
 
@@ -64,9 +75,12 @@ class Beat:
 
 @dataclass(frozen=True, kw_only=True)
 class Telemetry:
-    """`sensores`: `q` of an arm or `node` of a mobile; the rest None where the board does not say it.
+    """`sensores`: `q` of an arm, `node` of a mobile or `facts` of a device; the rest None where the board
+    does not say it.
 
-    `seq` counts telemetry since boot; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`.
+    `seq` counts telemetry since boot; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`, as are
+    `answered_seq`, the last query that a device answered, and those of `failures`, the last few commands that
+    it gave up, oldest first.
     """
 
     state: MotionState
@@ -82,6 +96,10 @@ class Telemetry:
     homed: bool | None = None
     effector: bool | None = None
     piece: bool | None = None
+    facts: Facts | None = None
+    answer: Value | None = None
+    answered_seq: int | None = None
+    failures: tuple[tuple[int, str], ...] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,5 +109,5 @@ class Presence:
     online: bool
 
 
-Goal = JointsGoal | PathGoal | EffectorGoal | StopGoal | HomeGoal
+Goal = JointsGoal | PathGoal | EffectorGoal | StopGoal | HomeGoal | OrderGoal
 Payload = Goal | Beat | Telemetry | Presence

@@ -1,0 +1,109 @@
+"""Whether a kind of device can be spoken to over MQTT at all: its names, and the longest of its messages."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+
+from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Value
+from arboleda.core.model import Evidence, MotionState
+from arboleda.core.outside import quoted
+from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
+
+from . import strict
+from .payloads import DEVICE_REFUSALS, FAILURES_KEPT, OrderGoal, Telemetry, encode
+from .strict import LONGEST, LONGEST_WORD, UINT32
+
+SMALLEST = -2.2250738585072014e-300  # no number takes more characters
+TEXT = "x" * LONGEST
+
+
+def objections(kind: DeviceKind, evidence: Evidence) -> list[str]:
+    """What keeps a kind of device at this level of evidence from MQTT, a sentence each."""
+    found = [*_names(kind), *_proofs(kind, evidence)]
+    return found or [*_lengths(kind)]
+
+
+def _names(kind: DeviceKind) -> Iterator[str]:
+    for name, type in kind.facts.items():
+        yield from _refused(f"a fact of {kind.name}", strict.name, "its name", name)
+        yield from _values(f"{name} of {kind.name}", type.words)
+    for verb in kind.verbs.values():
+        whose = f"a verb of {kind.name}"
+        yield from _refused(whose, strict.name, "its name", verb.name)
+        for name, type in verb.parameters:
+            whose = f"a value of {verb.name} of {kind.name}"
+            yield from _refused(whose, strict.name, "its name", name)
+            yield from _values(f"{name} of {verb.name} of {kind.name}", type.words)
+        yield from _values(f"an answer to {verb.name} of {kind.name}", verb.answers)
+
+
+def _values(whose: str, values: tuple[Value, ...]) -> Iterator[str]:
+    for value in values:
+        yield from _refused(whose, strict.fact, "it", value)
+
+
+def _proofs(kind: DeviceKind, evidence: Evidence) -> Iterator[str]:
+    for verb in kind.verbs.values():
+        what = f"{quoted(verb.name)} of {kind.name}"
+        if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:
+            yield f"{what} is a query: an answer names its question, which needs evidence: ids"
+        if verb.effect is Effect.SWITCH and not verb.sets:
+            yield f"{what} is a switch that sets no fact: nothing would ever say that it is done"
+
+
+def _lengths(kind: DeviceKind) -> Iterator[str]:
+    for verb in kind.verbs.values():
+        goal = OrderGoal(
+            verb=verb.name,
+            values=tuple((name, longest(type)) for name, type in verb.parameters),
+            seq=UINT32,
+            epoch=UINT32,
+        )
+        yield from _refused(f"{verb.name} of {kind.name} with its longest values", encode, goal)
+    yield from _refused(f"all that a {kind.name} can say at once", encode, _telemetry(kind))
+
+
+def _telemetry(kind: DeviceKind) -> Telemetry:
+    """The longest message with all that a device of this kind can say."""
+    answers = [answer for verb in kind.verbs.values() for answer in _answers(verb)]
+    return Telemetry(
+        q=None,
+        node=None,
+        state=MotionState.STOP_LATCHED,
+        seq=UINT32,
+        ack_epoch=UINT32,
+        ack=UINT32,
+        done=UINT32,
+        refusal=max(DEVICE_REFUSALS, key=len),
+        refused_seq=UINT32,
+        boot_id=UINT32,
+        facts=tuple((name, longest(type)) for name, type in kind.facts.items()),
+        answer=max(answers, key=_length, default=None),
+        answered_seq=UINT32 if answers else None,
+        failures=((UINT32, "x" * LONGEST_WORD),) * FAILURES_KEPT,
+    )
+
+
+def _answers(verb: DeviceVerb) -> tuple[Value, ...]:
+    return (verb.answers or (TEXT,)) if verb.effect is Effect.QUERY else ()
+
+
+def longest(type: FactType) -> Value:
+    """The value of a type that takes most characters."""
+    return max(type.words or (LONGEST_OF[type.type],), key=_length)
+
+
+def _length(value: Value) -> int:
+    return len(json.dumps(value))
+
+
+def _refused(whose: str, look: Callable[..., object], *arguments: object) -> Iterator[str]:
+    try:
+        look(*arguments)
+    except PayloadError as error:
+        yield f"{whose}: {error}"
+
+
+LONGEST_OF: dict[type, Value] = {bool: False, int: -UINT32, float: SMALLEST, str: TEXT}

@@ -1,0 +1,190 @@
+"""How robots of each type are spoken to over MQTT, and what their telemetry can hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from arboleda.core.commands import Command, Home, Stop, StopMode
+from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Facts
+from arboleda.core.model import Robot
+from arboleda.core.outside import quoted
+from arboleda.core.sentence import Phrase, Sentence
+from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
+from arboleda.kinds.declared import Device, FactType, Told, UseError
+from arboleda.kinds.mobile import FollowPath, Mobile
+
+from .payloads import DEVICE, EffectorGoal, Goal, HomeGoal, JointsGoal, OrderGoal, PathGoal, StopGoal
+from .topics import Channel
+from .units import to_wire
+
+FLOAT32_SLACK = 1e-6  # a goal at its limit comes back from a Float32MultiArray this far beyond it (rad, m)
+ON_THE_GRID = Phrase(
+    "why.on_the_grid", "a path begins at the robot's node or next to it, and follows the grid"
+)
+NODES = Phrase("why.nodes", "its nodes are 0 to {last}")
+BEYOND = Phrase("why.beyond", "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}")
+UNDONE = Phrase("why.undone", "it has not ended its last work, or is in fault")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """One class of commands on its way to a board: its channel, its payload, and the word that refuses it."""
+
+    channel: Channel
+    goal: type[Goal]
+    body: Callable[[Any, Any], dict[str, object]]
+    refusal: Callable[[Any, Any], str | None] = lambda robot, command: None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Form:
+    """What one robot is told, and what it tells.
+
+    `missing` has the words that refuse what it knows no way for; any other is `formato`. `why` says more
+    of a refusal than its word does, where there is more.
+    """
+
+    ways: Mapping[type[Command], Way]
+    axes: int | None  # as `decode` wants it
+    joints: tuple[Joint, ...] = ()
+    nodes: int = 0
+    facts: Mapping[str, FactType] = field(default_factory=dict)
+    missing: Mapping[type[Command], str] = field(default_factory=dict)
+    why: Callable[[Any, Any, str, bool], Sentence | None] = lambda robot, command, word, by_board: None
+
+    def way(self, kind: type[Command]) -> Way | None:
+        """How commands of this class go, or of its nearest base that has a way."""
+        return next((self.ways[base] for base in kind.__mro__ if base in self.ways), None)
+
+    def told(self, facts: Facts | None) -> Facts | None:
+        """The facts of its telemetry as its kind declares them; PayloadError for one that it cannot say."""
+        return None if facts is None else tuple(self._fact(name, value) for name, value in facts)
+
+    def _fact(self, name: str, value: object) -> tuple[str, Any]:
+        type = self.facts.get(name)
+        if type is None:
+            known = ", ".join(self.facts) or "none"
+            raise PayloadError(f"datos has {quoted(name)}; this device has {known}")
+        said = type.read(value)
+        if said is None:
+            raise PayloadError(f"datos.{name} is {quoted(value)}; allowed: {type.allowed()}")
+        return name, said
+
+
+def form_of(robot: Robot) -> Form:
+    """That of the nearest type of robot that has one."""
+    return next(FORMS[base] for base in type(robot).__mro__ if base in FORMS)(robot)
+
+
+def _check_joints(arm: Arm, command: MoveJoints) -> str | None:
+    if len(command.q) != len(arm.joints) or not all(math.isfinite(value) for value in command.q):
+        return "formato"
+    return "limite" if _beyond(arm, command) else None
+
+
+def _check_path(mobile: Mobile, command: FollowPath) -> str | None:
+    if not command.nodes:
+        return "formato"
+    inside = all(0 <= node < mobile.grid.size for node in command.nodes)
+    return None if inside else "limite"
+
+
+def _check_order(device: Device, command: Told) -> str | None:
+    try:
+        device.kind.command(id="", robot=device.name, verb=command.verb, values=dict(command.values))
+    except UseError:
+        return "formato"
+    return None
+
+
+def _check_stop(robot: Robot, command: Stop) -> str | None:
+    return None if robot.has_stop else "no_stop"
+
+
+def _wire_joints(arm: Arm, command: MoveJoints) -> dict[str, object]:
+    rows = zip(arm.joints, arm.quantised(command.q), strict=True)
+    return {"q": tuple(to_wire(joint, value) for joint, value in rows)}
+
+
+def _beyond(arm: Arm, command: MoveJoints) -> Sentence | None:
+    """The first joint beyond its limits; None where none is."""
+    for number, (joint, value) in enumerate(zip(arm.joints, command.q, strict=True), start=1):
+        if not joint.lower - FLOAT32_SLACK <= value <= joint.upper + FLOAT32_SLACK:
+            lower, upper = joint.lower, joint.upper
+            return BEYOND(number=number, value=value, lower=lower, upper=upper, unit=joint.unit)
+    return None
+
+
+def _why_of_arms(arm: Arm, command: Command, word: str, by_board: bool) -> Sentence | None:
+    return _beyond(arm, command) if word == "limite" and isinstance(command, MoveJoints) else None
+
+
+def _why_of_mobiles(mobile: Mobile, command: Command, word: str, by_board: bool) -> Sentence | None:
+    if word != "limite" or not isinstance(command, FollowPath):
+        return None
+    return ON_THE_GRID() if by_board else NODES(last=mobile.grid.size - 1)
+
+
+def _why_of_devices(device: Device, command: Command, word: str, by_board: bool) -> Sentence | None:
+    return UNDONE() if word == "ocupado" else None
+
+
+STOP = Way(
+    channel=Channel.STOP,
+    goal=StopGoal,
+    body=lambda robot, command: {"mode": StopMode(command.mode)},
+    refusal=_check_stop,
+)
+HOME = Way(channel=Channel.HOME, goal=HomeGoal, body=lambda robot, command: {})
+OF_ARMS: dict[type[Command], Way] = {
+    MoveJoints: Way(channel=Channel.JOINTS, goal=JointsGoal, body=_wire_joints, refusal=_check_joints),
+    SetEffector: Way(
+        channel=Channel.EFFECTOR, goal=EffectorGoal, body=lambda robot, command: {"on": command.on}
+    ),
+    Stop: STOP,
+    Home: HOME,
+}
+OF_MOBILES: dict[type[Command], Way] = {
+    FollowPath: Way(
+        channel=Channel.PATH,
+        goal=PathGoal,
+        body=lambda robot, command: {"nodes": command.nodes},
+        refusal=_check_path,
+    ),
+    Stop: STOP,
+    Home: HOME,
+}
+OF_DEVICES: dict[type[Command], Way] = {
+    Told: Way(
+        channel=Channel.ORDER,
+        goal=OrderGoal,
+        body=lambda robot, command: {"verb": command.verb, "values": command.values},
+        refusal=_check_order,
+    ),
+    Stop: STOP,
+}
+
+
+def _of_arm(arm: Arm) -> Form:
+    return Form(ways=OF_ARMS, axes=len(arm.joints), joints=arm.joints, why=_why_of_arms)
+
+
+def _of_mobile(mobile: Mobile) -> Form:
+    return Form(ways=OF_MOBILES, axes=None, nodes=mobile.grid.size, why=_why_of_mobiles)
+
+
+def _of_device(device: Device) -> Form:
+    return Form(
+        ways=OF_DEVICES,
+        axes=DEVICE,
+        facts=device.kind.facts,
+        missing={Home: "no_home"},
+        why=_why_of_devices,
+    )
+
+
+FORMS: dict[type[Robot], Callable[[Any], Form]] = {Arm: _of_arm, Mobile: _of_mobile, Device: _of_device}
