@@ -19,7 +19,7 @@ RVIZ_CONFIG = "rviz/plant.rviz"  # in the share folder of this package
 
 def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], share: str) -> list[Row]:
     """The nodes of a plant; `urdf` describes a robot by its name, `share` is this package's folder."""
-    robots = [robot for cell in plant.cells for robot in (cell.arm, cell.mobile)]
+    robots = [robot for robot in plant.robots.values() if isinstance(robot, Arm | Mobile)]
     rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))] if choice.describe else []
     rows += _plant(choice, boards=plant.has_boards)
     if choice.rviz:

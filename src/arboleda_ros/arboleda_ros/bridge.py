@@ -12,14 +12,14 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from std_msgs.msg import Float32MultiArray, String, UInt32
+from std_msgs.msg import String, UInt32
 
 from arboleda.core.commands import Command
 from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Heartbeat, Report
 from arboleda.core.model import Link, PlantModel, Robot
 from arboleda.wire import epochs, rejections
-from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN, FromPlant
+from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.status import ERROR, OK, WARN
 
@@ -94,17 +94,19 @@ class BridgePort(Port):
             publisher.publish(String(data=json.dumps(plain)))
 
     def _obey(self, robot: Robot) -> None:
-        self._listen(
-            Float32MultiArray, f"{robot.name}/{COMMAND}", partial(self._on_labelled, robot), qos.COMMAND
-        )
+        kind_of_all, of_all = convert.ordered(robot)
+        self._listen(kind_of_all, of_all, partial(self._on_labelled, robot, of_all), qos.COMMAND)
         for kind in convert.commands_of(robot):
+            if f"{robot.name}/{PLAIN[kind]}" == of_all:
+                continue
             handle = partial(self._on_plain, kind, robot)
             self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", handle, qos.COMMAND)
 
-    def _on_labelled(self, robot: Robot, message: Float32MultiArray) -> None:
-        with self._telling(robot, COMMAND):
+    def _on_labelled(self, robot: Robot, topic: str, message: Any) -> None:
+        with self._telling(robot, topic.rpartition("/")[2]):
             command, copied = convert.labelled_command(robot, message)
-        self._on_event(FromPlant(at=self._clock(), message=command, copied=copied))
+        sender = "" if command.id else self._senders.of(topic)
+        self._on_event(FromPlant(at=self._clock(), message=command, copied=copied, sender=sender))
 
     def _on_plain(self, kind: type[Command], robot: Robot, message: Any) -> None:
         if convert.is_copy(message):

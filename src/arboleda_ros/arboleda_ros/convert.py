@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float32MultiArray, MultiArrayDimension, UInt8
+from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
 from arboleda.core.commands import Command, Home, Stop, StopMode
 from arboleda.core.counting import counted
@@ -15,8 +15,10 @@ from arboleda.core.errors import PayloadError
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState, Robot
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.declared import Device, Told
 from arboleda.kinds.mobile import FollowPath, Mobile
-from arboleda.wire.hop import PLAIN, loses_its_id
+from arboleda.wire import order
+from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
 from arboleda.wire.status import from_label, to_label
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
@@ -26,24 +28,40 @@ _AT_NODE = 0.125  # of the pitch: a mobile farther than this from every node is 
 
 def commands_of(robot: Robot) -> tuple[type[Command], ...]:
     """The kinds of command a robot takes."""
+    if isinstance(robot, Device):
+        return (Told, Stop)
     return (MoveJoints, SetEffector, Stop, Home) if isinstance(robot, Arm) else (FollowPath, Stop, Home)
 
 
 def message_type(kind: type[Command]) -> type:
     """The ROS 2 type of a plain command topic."""
+    if kind is Told:
+        return String
     return Float32MultiArray if kind in (MoveJoints, FollowPath) else UInt8
 
 
-def command_message(command: Command, *, copy: bool = False) -> Float32MultiArray | UInt8:
+def ordered(robot: Robot) -> tuple[type, str]:
+    """The type and the topic that carries all commands of a robot with their ids, in one order."""
+    if isinstance(robot, Device):
+        return String, f"{robot.name}/{ORDER}"
+    return Float32MultiArray, f"{robot.name}/{COMMAND}"
+
+
+def command_message(command: Command, *, copy: bool = False) -> Float32MultiArray | UInt8 | String:
     """A command as its plain topic carries it; arrays are labelled with the id, and as copies."""
+    if isinstance(command, Told):
+        return String(data=order.write(command))
     if not loses_its_id(command):
         return _labelled(command.id, _values(command), *((COPY,) if copy else ()))
     return UInt8(data=int(_values(command)[0]))
 
 
-def labelled_message(command: Command, *, copied: bool) -> Float32MultiArray:
-    """A command as the topic `command` carries it: id and plain topic; and whether that has a copy."""
-    return _labelled(command.id, _values(command), PLAIN[type(command)], *((COPY,) if copied else ()))
+def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32MultiArray | String:
+    """A command as the robot's topic for all of them carries it: with its id, and whether its plain topic
+    has a copy."""
+    if isinstance(robot, Device):
+        return String(data=order.write(command, copied=copied))
+    return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *((COPY,) if copied else ()))
 
 
 def is_copy(message: Float32MultiArray | UInt8) -> bool:
@@ -51,8 +69,10 @@ def is_copy(message: Float32MultiArray | UInt8) -> bool:
     return isinstance(message, Float32MultiArray) and any(dim.label == COPY for dim in message.layout.dim[1:])
 
 
-def labelled_command(robot: Robot, message: Float32MultiArray) -> tuple[Command, bool]:
-    """The command in a message of the robot's topic `command`, and whether a UInt8 copy of it comes."""
+def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple[Command, bool]:
+    """The command in a message of the robot's topic for all of them, and whether a UInt8 copy of it comes."""
+    if isinstance(robot, Device):
+        return order.read(robot, message.data)
     labels = [dim.label for dim in message.layout.dim]
     topics = {PLAIN[kind]: kind for kind in commands_of(robot)}
     if len(labels) < 2 or labels[1] not in topics:
@@ -82,6 +102,8 @@ def command(kind: type[Command], robot: Robot, message: Float32MultiArray | UInt
     if isinstance(robot, Mobile) and kind is FollowPath:
         id, values = _unlabelled(message, robot.name)
         return FollowPath(id=id, robot=robot.name, nodes=_nodes(robot, values))
+    if isinstance(robot, Device) and kind is Told:
+        return order.read(robot, message.data)[0]
     if kind is SetEffector:
         return SetEffector(id="", robot=robot.name, on=bool(_one_of(message, (0, 1))))
     if kind is Stop:

@@ -13,7 +13,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, Float32MultiArray, String, UInt8, UInt32
+from std_msgs.msg import Bool, String, UInt8, UInt32
 
 from arboleda.app import view_text
 from arboleda.app.seldom import Seldom
@@ -33,9 +33,10 @@ from arboleda.core.messages import (
 from arboleda.core.model import Evidence, Link, PlantModel, Robot
 from arboleda.core.sentence import in_json
 from arboleda.kinds.arm import Arm
+from arboleda.kinds.declared import Device
 from arboleda.views import view
 from arboleda.wire import rejections
-from arboleda.wire.hop import COMMAND, HEARTBEAT, PLAIN
+from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
 
 from . import convert, qos, statuses
 from .asking import Asker
@@ -69,12 +70,12 @@ class OrchestratorPort(Port):
         self._on_event = on_event
         speak = partial(self._speak, profile=qos.COMMAND, alone=True)
         self._labelled = {
-            robot.name: speak(Float32MultiArray, f"{robot.name}/{COMMAND}")
+            robot.name: speak(*convert.ordered(robot))
             for robot in model.robots.values()
             if robot.link is Link.MQTT
         }
         self._commands = {
-            (robot.name, kind): speak(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}")
+            (robot.name, kind): self._plain(robot, kind, speak)
             for robot in model.robots.values()
             for kind in convert.commands_of(robot)
         }
@@ -174,7 +175,7 @@ class OrchestratorPort(Port):
 
     def _command(self, command: Command) -> None:
         """On `command` where a bridge of ours listens; on the plain topic for whoever else does."""
-        plain, labelled = self._commands[command.robot, type(command)], self._labelled.get(command.robot)
+        plain, labelled = self._commands[command.robot, kind_of(command)], self._labelled.get(command.robot)
         bridges = labelled.get_subscription_count() if labelled is not None else 0
         listeners = plain.get_subscription_count()
         if labelled is not None and not bridges and not listeners:
@@ -183,13 +184,21 @@ class OrchestratorPort(Port):
             self._speak_plainly(command, plain)
             return
         copied = listeners > bridges  # a bridge listens to both
-        labelled.publish(convert.labelled_message(command, copied=copied))
+        labelled.publish(convert.labelled_message(self._robots[command.robot], command, copied=copied))
         if copied:
             plain.publish(convert.command_message(command, copy=True))
 
+    def _plain(self, robot: Robot, kind: type[Command], speak: Callable[..., Publisher]) -> Publisher:
+        """The publisher of a plain topic; that of a device's orders is the one for all its commands."""
+        _, of_all = convert.ordered(robot)
+        topic = f"{robot.name}/{PLAIN[kind]}"
+        if topic == of_all and robot.name in self._labelled:
+            return self._labelled[robot.name]
+        return speak(convert.message_type(kind), topic)
+
     def _speak_plainly(self, command: Command, plain: Publisher) -> None:
         message = convert.command_message(command)
-        own = self._own.get((command.robot, type(command)))
+        own = self._own.get((command.robot, kind_of(command)))
         if own is not None:
             own.say(message)
         plain.publish(message)
@@ -201,7 +210,8 @@ class OrchestratorPort(Port):
             self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", overhear, qos.BEST_EFFORT)
         if isinstance(robot, Arm):
             self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
-        if robot.link is Link.MQTT or robot.evidence is Evidence.IDS:
+        tells_facts = isinstance(robot, Device) and robot.evidence is not Evidence.STATE
+        if robot.link is Link.MQTT or robot.evidence is Evidence.IDS or tells_facts:
             ear = statuses.Ear(robot, self._clock, self._on_event)
             topic = f"{robot.name}/status"
             if robot.link is Link.ROS:

@@ -6,9 +6,9 @@ import threading
 from collections import deque
 from typing import Any
 
-from std_msgs.msg import Float32MultiArray, UInt8
+from std_msgs.msg import Float32MultiArray, String, UInt8
 
-Said = tuple[tuple[float, ...], tuple[str, ...]]
+Said = tuple[tuple[float | str, ...], tuple[str, ...]]
 KEPT = 20  # own messages that may be under way to our own ear; one that got lost must not be waited for
 
 
@@ -22,7 +22,7 @@ class OwnTopic:
         self._said: deque[Said] = deque(maxlen=KEPT)
         self._lock = threading.Lock()  # the plant speaks on its own thread, and hears on that of the link
 
-    def say(self, message: Float32MultiArray | UInt8) -> None:
+    def say(self, message: Float32MultiArray | UInt8 | String) -> None:
         """To be called before the message is published."""
         with self._lock:
             self._said.append(_content(message))
@@ -37,7 +37,7 @@ class OwnTopic:
             return True
 
 
-def _content(message: Float32MultiArray | UInt8) -> Said:
-    if isinstance(message, UInt8):
+def _content(message: Float32MultiArray | UInt8 | String) -> Said:
+    if isinstance(message, UInt8 | String):
         return (message.data,), ()
     return tuple(message.data), tuple(dim.label for dim in message.layout.dim)

@@ -27,13 +27,15 @@ _PIECES = {piece: Bool(data=piece) for piece in (False, True)}
 
 
 class Voice:
-    """The publishers of one robot; only arms have a piece sensor."""
+    """The publishers of one robot; only arms have a piece sensor, and devices no joints."""
 
     def __init__(self, robot: Robot, speak: Speak, clock: Clock) -> None:
-        self._words, self._position, self._clock = StatusMessage(robot), JointsMessage(robot), clock
+        self._words, self._clock = StatusMessage(robot), clock
+        self._position = JointsMessage(robot) if robot.position_key is not None else None
         self.status = speak(DiagnosticStatus, f"{robot.name}/status", alone=True)
         self.state = speak(UInt8, f"{robot.name}/motion_state")
-        self.joints = speak(JointState, convert.joint_states_topic(robot))
+        stands = robot.position_key is not None
+        self.joints = speak(JointState, convert.joint_states_topic(robot)) if stands else None
         self.piece = speak(Bool, f"{robot.name}/piece_detected") if isinstance(robot, Arm) else None
 
     def say(self, report: Report) -> None:
@@ -41,8 +43,8 @@ class Voice:
         self.status.publish(self._words.of(report))
         if report.state is not None:
             self.state.publish(_STATES[report.state])
-        position = self._position.of(report, self._clock)
-        if position is not None:
+        position = self._position.of(report, self._clock) if self._position is not None else None
+        if self.joints is not None and position is not None:
             self.joints.publish(position)
         if self.piece is not None and report.piece is not None:
             self.piece.publish(_PIECES[report.piece])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -134,6 +134,10 @@ class Robot:
         """The command that lets go of what it holds."""
         raise NotImplementedError
 
+    def at_rate(self, rate: float) -> Robot:
+        """The same robot, virtual and so many times as fast."""
+        return self
+
     def stands_at(self, position: Position, goal: Position) -> bool:
         """Whether a reported position is that goal."""
         return position == goal
@@ -220,6 +224,11 @@ class Workspace:
         places = (pose.zones for pose in self.poses)
         return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
 
+    def with_robots(self, change: Callable[[Robot], Robot]) -> Workspace:
+        """The same workspace of a changed robot."""
+        tool = None if self.tool is None else change(self.tool)
+        return replace(self, robot=change(self.robot), tool=tool)
+
     @property
     def hand(self) -> Robot:
         """What holds the parts that it carries."""
@@ -302,6 +311,13 @@ class Cell:
     @cached_property
     def robots(self) -> tuple[Robot, ...]:
         return tuple(self.roles.values())
+
+    def with_robots(self, change: Callable[[Robot], Robot]) -> Cell:
+        """The same cell with each robot changed; none of them gets another name."""
+        members = tuple((role, change(robot)) for role, robot in self.members)
+        return replace(
+            self, members=members, spaces=tuple(space.with_robots(change) for space in self.spaces)
+        )
 
     @cached_property
     def reached(self) -> tuple[Robot, ...]:

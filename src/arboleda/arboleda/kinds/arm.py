@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -71,6 +71,9 @@ class Joint:
     def within(self, value: float) -> float:
         """`value`, or the limit that it is beyond, as the motor step nearest to a limit may be."""
         return min(max(value, self.lower), self.upper)
+
+    def at_rate(self, rate: float) -> Joint:
+        return replace(self, speed=self.speed * rate, acceleration=self.acceleration * rate**2)
 
     def higher(self, value: float, *others: float) -> float:
         """The highest of these values where the joint lifts, else `value`."""
@@ -173,6 +176,10 @@ class Arm(Robot):
         """Whether reported joints `q` lie within tolerance of a quantised target."""
         rows = zip(q, target, self.tolerances, strict=True)
         return all(abs(value - goal) <= tolerance for value, goal, tolerance in rows)
+
+    def at_rate(self, rate: float) -> Arm:
+        """So accelerating that every ramp keeps its shape."""
+        return replace(self, joints=tuple(joint.at_rate(rate) for joint in self.joints))
 
     def stands_at(self, position: Position, goal: Position) -> bool:
         assert isinstance(position, tuple) and isinstance(goal, tuple)

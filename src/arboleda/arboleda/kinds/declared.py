@@ -7,7 +7,7 @@ refuses to break.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import ClassVar
@@ -77,6 +77,10 @@ class DeviceVerb:
     on_stop: OnStop = OnStop.HALT
     holds: bool = False  # what it sets says whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
+
+    def at_rate(self, rate: float) -> DeviceVerb:
+        """The same verb of a faster device, or of a slower one, which is waited for longer."""
+        return replace(self, takes_s=self.takes_s / rate, at_most_s=self.at_most_s / min(rate, 1.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,6 +187,10 @@ class Device(Robot):
 
     kind: DeviceKind
     position_key: ClassVar[str | None] = None
+
+    def at_rate(self, rate: float) -> Device:
+        verbs = {name: verb.at_rate(rate) for name, verb in self.kind.verbs.items()}
+        return replace(self, kind=replace(self.kind, verbs=verbs))
 
     @property
     def kind_name(self) -> str:

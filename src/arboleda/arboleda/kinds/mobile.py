@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from arboleda.core.commands import Motion, Position
@@ -82,6 +82,9 @@ class Mobile(Robot):
         nodes = [list(self.grid.position(node)) for node in range(self.grid.size)]
         at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]
         return {"at": at, "speeds": speeds, "reference": nodes[0], "nodes": nodes}
+
+    def at_rate(self, rate: float) -> Mobile:
+        return replace(self, speed=self.speed * rate)
 
     def objection(self, report: Report) -> str | None:
         for key in ("q", "effector", "piece"):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -92,6 +92,11 @@ class StorageCell(Cell):
     @cached_property
     def roles(self) -> dict[str, Robot]:
         return {"arm": self.arm, "mobile": self.mobile}
+
+    def with_robots(self, change: Callable[[Robot], Robot]) -> StorageCell:
+        arm, mobile = change(self.arm), change(self.mobile)
+        assert isinstance(arm, Arm) and isinstance(mobile, Mobile)
+        return replace(self, arm=arm, mobile=mobile)
 
     @cached_property
     def workspaces(self) -> dict[str, Workspace]:

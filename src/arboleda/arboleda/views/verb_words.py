@@ -84,8 +84,8 @@ ABOUT: dict[Verb, VerbWords] = {
     Verb.HOME: VerbWords(
         scopes=("cell", "robot"),
         brief="Run a robot's homing routine.",
-        does="runs the homing routine, of a cell without what is only drawn. `--by-hand`: nothing "
-        "moves, you declare that the robot stands at its reference",
+        does="runs the homing routine, of a cell without what is only drawn or has no homing. `--by-hand`: "
+        "nothing moves, you declare that the robot stands at its reference",
         refused="while its cell works on a task, the robot is latched, in fault, offline or only drawn, "
         "or another robot holds a zone that the arm may cross on its way; while it is being "
         "homed; by hand where the robot reports itself whether it is homed (not with "

@@ -2,6 +2,7 @@
 
 A robot's topic `command` carries all its commands, each with its id, so that none overtakes another.
 Beside it stand the plain topics, one per kind, for nodes that know no ids: UInt8 has no place for one.
+A device of a declared kind has `order` in place of `command`: that names verbs and values, for everybody.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ PLAIN: dict[type[Command], str] = {
     SetEffector: "effector_cmd",
     Stop: "stop_cmd",
     Home: "home_cmd",
+    Told: ORDER,
 }
 """The plain topic of each kind of command, below the robot's name."""
 
@@ -51,7 +53,12 @@ def command_topic(command: Command) -> str:
 
 def plain_topic(command: Command) -> str:
     """Where it goes for nodes that know no ids."""
-    return f"{command.robot}/{PLAIN[type(command)]}"
+    return f"{command.robot}/{PLAIN[kind_of(command)]}"
+
+
+def kind_of(command: Command) -> type[Command]:
+    """The class that has a plain topic: the command's own, or its nearest base."""
+    return next(base for base in type(command).__mro__ if base in PLAIN)
 
 
 def is_stop(command: Command | Heartbeat) -> bool:
@@ -74,7 +81,7 @@ def shown(command: Command) -> str:
     if isinstance(command, Told):
         values = (f"{name}={shown_value(value)}" for name, value in command.values)
         return " ".join((ORDER, command.verb, *values))
-    name = PLAIN[type(command)]
+    name = PLAIN[kind_of(command)]
     if isinstance(command, Stop):
         return f"{name} {int(command.mode)}"
     return f"{name} {int(command.on)}" if isinstance(command, SetEffector) else name

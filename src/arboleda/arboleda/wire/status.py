@@ -1,7 +1,8 @@
 """A Report as `/{robot}/status` carries it, and the label that carries a command id over ROS 2.
 
 The values are strings: integers in decimal, `q` in rad or m separated by commas, flags as true or
-false; what the robot did not say has no key. Keys this version does not know are allowed.
+false, facts and answers of devices as JSON; what the robot did not say has no key. Keys this version does
+not know are allowed.
 """
 
 from __future__ import annotations
@@ -13,11 +14,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from arboleda.core.errors import PayloadError
+from arboleda.core.facts import Facts, Value
 from arboleda.core.messages import Report
 from arboleda.core.model import MotionState, Robot
 from arboleda.core.outside import quoted
 from arboleda.core.sentence import OWN, Sentence, from_data
 
+from . import strict
 from .rejections import SAID_OF_OTHERS
 from .strict import UINT32
 
@@ -82,7 +85,7 @@ def from_label(label: str) -> str:
     """The command id of a label; "" for a label that is not ours, PayloadError for a broken id."""
     if not label.startswith(_LABEL):
         return ""
-    return _id("label", label[len(_LABEL) :])
+    return command_id("label", label[len(_LABEL) :])
 
 
 def _name(robot: Robot) -> str:
@@ -98,9 +101,14 @@ def _fits(robot: Robot, report: Report) -> None:
         raise PayloadError(objection)
     if (report.rejected is None) != (report.refusal is None):
         raise PayloadError("rejected and reason go together")
+    if (report.failed is None) != (report.failure is None):
+        raise PayloadError("failed and failure go together")
+    if (report.answered is None) != (report.answer is None):
+        raise PayloadError("answered and answer go together")
 
 
-def _id(key: str, text: str) -> str:
+def command_id(key: str, text: str) -> str:
+    """An id as it may be written; PayloadError for any other text."""
     if not _ID.fullmatch(text):
         raise PayloadError(f"{key} is {quoted(text)}; 1 to 64 of A-Z a-z 0-9 _ . - are needed")
     return text
@@ -158,6 +166,30 @@ def _flag(key: str, text: str) -> bool:
     return _FLAGS[text]
 
 
+def _word(key: str, text: str) -> str:
+    return strict.name(key, text, strict.LONGEST_WORD)
+
+
+def _answer(key: str, text: str) -> Value:
+    return strict.fact(key, _in_json(key, text))
+
+
+def _facts(key: str, text: str) -> Facts:
+    return strict.facts(key, _in_json(key, text))
+
+
+def _in_json(key: str, text: str) -> object:
+    """What a value holds that is JSON, no longer than a message of a device."""
+    try:
+        return strict.parse(text.encode())
+    except PayloadError as error:
+        raise PayloadError(f"{key}: {error}") from None
+
+
+def _write_facts(facts: Facts) -> str:
+    return json.dumps(dict(facts), separators=(",", ":"))
+
+
 def _write_state(state: MotionState) -> str:
     return str(state.value)
 
@@ -174,16 +206,21 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "epoch": ("epoch", _count, str),
     "plant": ("plant", _count, str),
     "boot_id": ("boot_id", _count, str),
-    "accepted": ("accepted", _id, str),
-    "done": ("done", _id, str),
-    "rejected": ("rejected", _id, str),
-    "reason": ("refusal", _id, str),
+    "accepted": ("accepted", command_id, str),
+    "done": ("done", command_id, str),
+    "rejected": ("rejected", command_id, str),
+    "reason": ("refusal", command_id, str),
+    "failed": ("failed", command_id, str),
+    "failure": ("failure", _word, str),
+    "answered": ("answered", command_id, str),
+    "answer": ("answer", _answer, json.dumps),
     "state": ("state", _state, _write_state),
     "q": ("q", _joints, _write_joints),
     "node": ("node", _count, str),
     "homed": ("homed", _flag, _write_flag),
     "effector": ("effector", _flag, _write_flag),
     "piece": ("piece", _flag, _write_flag),
+    "facts": ("facts", _facts, _write_facts),
     "foreign_refused": ("foreign_refused", _count, str),
     "foreign_obeyed": ("foreign_obeyed", _count, str),
 }

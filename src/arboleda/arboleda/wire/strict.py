@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.facts import Facts, Value
@@ -22,22 +22,27 @@ _TEXT = re.compile(r"[ !#-\[\]-~]{0,32}", re.ASCII)  # each of them one byte in 
 
 def read(raw: bytes) -> Fields:
     """The object that `raw` holds; PayloadError says what is wrong with the bytes."""
+    value = parse(raw)
+    if not isinstance(value, dict):
+        raise PayloadError('the message is not a JSON object, e.g. {"estado": 0}')
+    return Fields(value)
+
+
+def parse(raw: bytes) -> object:
+    """The value that `raw` holds, of at most as many bytes as a message has; else PayloadError."""
     if len(raw) > LIMIT_BYTES:
         raise PayloadError(f"the message has {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
     try:
         text = raw.decode("utf-8")
         if text.startswith("\ufeff"):
             raise json.JSONDecodeError("Unexpected UTF-8 BOM (decode using utf-8-sig)", text, 0)
-        value = _from_json(text)
+        return _from_json(text)
     except UnicodeDecodeError:
         raise PayloadError("the message is not UTF-8") from None
     except RecursionError:
         raise PayloadError("the message is nested too deeply") from None
     except ValueError as error:
         raise PayloadError(f"the message is not JSON: {error}") from None
-    if not isinstance(value, dict):
-        raise PayloadError('the message is not a JSON object, e.g. {"estado": 0}')
-    return Fields(value)
 
 
 def write(values: dict[str, object]) -> bytes:
@@ -137,6 +142,13 @@ class Fields:
 
     def name(self, key: str) -> str:
         return name(key, self._get(key))
+
+    def matching(self, key: str, check: Callable[[str, str], str]) -> str:
+        """A text that `check`, called with key and text, lets through."""
+        value = self._get(key)
+        if not isinstance(value, str):
+            raise PayloadError(f"{key} is {_shown(value)}; a text is needed")
+        return check(key, value)
 
     def fact(self, key: str) -> Value | None:
         """A value that may be absent."""

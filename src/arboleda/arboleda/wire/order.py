@@ -1,0 +1,43 @@
+"""The text of a device's topic `order`: a verb with its values, or a stop, with the id of the command.
+
+`{"id": "7-1", "verb": "run", "values": {"program": 1001}}`, `{"id": "7-2", "stop": 2}`. What has no id is of
+somebody else. All commands of a device go on this one topic, so that no stop overtakes what it ends.
+"""
+
+from __future__ import annotations
+
+import json
+
+from arboleda.core.commands import Command, Stop, StopMode
+from arboleda.core.errors import PayloadError
+from arboleda.kinds.declared import Device, Told, UseError
+
+from . import strict
+from .status import command_id
+
+
+def write(command: Command, *, copied: bool = False) -> str:
+    """The text of a command; `copied`: whether a copy without its id comes on its plain topic."""
+    said: dict[str, object] = {"id": command.id} if command.id else {}
+    if isinstance(command, Told):
+        said |= {"verb": command.verb, "values": dict(command.values)}
+    elif isinstance(command, Stop):
+        said |= {"stop": int(command.mode)}
+    else:
+        raise TypeError(f"{type(command).__name__} is no command of a device")
+    return json.dumps(said | ({"copied": 1} if copied else {}))
+
+
+def read(device: Device, text: str) -> tuple[Command, bool]:
+    """The command in a text, its id "" where it has none, and whether a copy comes; else PayloadError."""
+    fields = strict.read(text.encode())
+    id = fields.matching("id", command_id) if "id" in fields else ""
+    copied = fields.flag("copied") is True
+    if "stop" in fields:
+        fields.refuse("a stop", "verb", "values")
+        return Stop(id=id, robot=device.name, mode=StopMode(fields.integer("stop", 2))), copied
+    verb, values = fields.name("verb"), dict(fields.facts("values") or ())
+    try:
+        return device.kind.command(id=id, robot=device.name, verb=verb, values=values), False
+    except UseError as error:
+        raise PayloadError(str(error)) from error

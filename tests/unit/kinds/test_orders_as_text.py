@@ -1,0 +1,112 @@
+"""What goes between plant and bridge of a device over ROS 2: orders and reports as text."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from arboleda.core.commands import Command, Home, Stop, StopMode
+from arboleda.core.errors import PayloadError
+from arboleda.core.messages import Report
+from arboleda.core.model import MotionState
+from arboleda.kinds.declared import Device
+from arboleda.wire import order
+from arboleda.wire.status import from_status, to_status
+
+from .station import STATION, plant
+
+STATION_1 = plant().robots["station"]
+assert isinstance(STATION_1, Device)
+WARM = STATION.command(id="7-1", robot="station", verb="warm", values={"celsius": 40.5})
+GO = STATION.command(id="", robot="station", verb="go", values={})
+HALT = Stop(id="7-2", robot="station", mode=StopMode.HALT)
+
+
+@pytest.mark.parametrize(
+    ("command", "copied", "text"),
+    [
+        (WARM, False, {"id": "7-1", "verb": "warm", "values": {"celsius": 40.5}}),
+        (GO, False, {"verb": "go", "values": {}}),
+        (HALT, False, {"id": "7-2", "stop": 2}),
+        (HALT, True, {"id": "7-2", "stop": 2, "copied": 1}),
+    ],
+    ids=["work", "of somebody else", "halt", "halt with a copy"],
+)
+def test_a_command_comes_back_from_its_text(command: Command, copied: bool, text: dict[str, object]) -> None:
+    written = order.write(command, copied=copied)
+    assert json.loads(written) == text
+    assert order.read(STATION_1, written) == (command, copied)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("go", "the message is not JSON"),
+        ('["go"]', "not a JSON object"),
+        ("{}", "verb is missing"),
+        ('{"verb": "fly"}', "a station has no verb 'fly'"),
+        ('{"verb": "light", "values": {"on": 1}}', "on of light is 1; a station takes true or false"),
+        ('{"verb": "go", "values": []}', "values is []; an object is needed"),
+        ('{"id": "a b", "verb": "go"}', "id is 'a b'; 1 to 64 of"),
+        ('{"id": 7, "verb": "go"}', "id is 7; a text is needed"),
+        ('{"stop": 3}', "stop is 3; allowed: 0 to 2"),
+        ('{"stop": 2, "verb": "go"}', "verb is 'go'; a stop has none"),
+    ],
+)
+def test_a_text_that_is_no_order_is_refused_in_a_sentence(text: str, why: str) -> None:
+    with pytest.raises(PayloadError) as refused:
+        order.read(STATION_1, text)
+    assert why in str(refused.value)
+
+
+def test_a_device_has_no_text_for_a_homing() -> None:
+    with pytest.raises(TypeError, match="Home is no command of a device"):
+        order.write(Home(id="7-1", robot="station"))
+
+
+WORKING = Report(
+    at=0.0,
+    robot="station",
+    epoch=9,
+    boot_id=4,
+    accepted="7-5",
+    done="7-1",
+    failed="7-2",
+    failure="atasco",
+    answered="7-3",
+    answer="a b/c",
+    state=MotionState.MOVING,
+    facts=(("at", "left"), ("lamp", True), ("held", False), ("celsius", 40.0)),
+)
+
+
+@pytest.mark.parametrize("answer", ["a b/c", "", True, 3, 2.5], ids=repr)
+def test_a_report_of_a_device_comes_back_from_its_status(answer: object) -> None:
+    said = replace(WORKING, answer=answer)  # type: ignore[arg-type]
+    status = to_status(STATION_1, said)
+    heard = from_status(0.0, STATION_1, status)
+    assert heard == said
+    assert type(heard.answer) is type(answer)
+    assert [type(value) for _, value in heard.facts or ()] == [str, bool, bool, float]
+
+
+@pytest.mark.parametrize(
+    ("values", "why"),
+    [
+        ({"facts": '{"at": "left"'}, "facts: the message is not JSON"),
+        ({"facts": '{"at": "left"}, {}'}, "facts: the message is not JSON"),
+        ({"facts": "[]"}, "facts is []; an object is needed"),
+        ({"facts": '{"speed": 1}'}, "'speed' is no fact of station"),
+        ({"facts": '{"at": "up"}'}, "at is 'up'; station knows left, right"),
+        ({"failed": "7-2"}, "failed and failure go together"),
+        ({"answer": '"good"'}, "answered and answer go together"),
+        ({"answered": "7-3", "answer": "{}"}, "answer is {}; a number is needed"),
+    ],
+)
+def test_a_status_that_no_bridge_says_is_refused(values: dict[str, str], why: str) -> None:
+    status = replace(to_status(STATION_1, replace(WORKING, facts=None)), values=values)
+    with pytest.raises(PayloadError) as refused:
+        from_status(0.0, STATION_1, status)
+    assert why in str(refused.value)
