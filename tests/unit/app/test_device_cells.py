@@ -194,6 +194,24 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "25:35: ",
         "look of eye is a query, and its answer has to name",
     ),
+    "more facts than a message holds": (
+        "facts: {lid:",
+        "facts: {a: text, b: text, c: text, d: text, e: text, f: text, lid:",
+        "24:20: ",
+        "all that a oven can say at once: the message would have 549 bytes; at most 512 are allowed",
+    ),
+    "a word that is too long for its board": (
+        "answers: [good, bad]",
+        f"answers: [good, {'b' * 33}]",
+        "25:20: ",
+        "an answer to look of eye: it is 'bbb",
+    ),
+    "a switch that nothing confirms": (
+        "      look: {",
+        "      blink: {effect: switch}\n      look: {",
+        "26:20: ",
+        "blink of eye is a switch that sets no fact: nothing would say that it is done",
+    ),
     "same name": (
         "{kind: eye,",
         "{kind: eye, name: oven,",

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 
 from arboleda.core.errors import PayloadError
 from arboleda.core.facts import Value
-from arboleda.core.model import Evidence, MotionState
-from arboleda.core.outside import quoted
+from arboleda.core.model import MotionState
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
 
 from . import strict
@@ -19,9 +18,9 @@ SMALLEST = -2.2250738585072014e-300  # no number takes more characters
 TEXT = "x" * LONGEST
 
 
-def objections(kind: DeviceKind, evidence: Evidence) -> list[str]:
-    """What keeps a kind of device at this level of evidence from MQTT, a sentence each."""
-    found = [*_names(kind), *_proofs(kind, evidence)]
+def objections(kind: DeviceKind) -> list[str]:
+    """What keeps a kind of device from MQTT, a sentence each."""
+    found = [*_names(kind), *_silent(kind)]
     return found or [*_lengths(kind)]
 
 
@@ -44,13 +43,11 @@ def _values(whose: str, values: tuple[Value, ...]) -> Iterator[str]:
         yield from _refused(whose, strict.fact, "it", value)
 
 
-def _proofs(kind: DeviceKind, evidence: Evidence) -> Iterator[str]:
+def _silent(kind: DeviceKind) -> Iterator[str]:
     for verb in kind.verbs.values():
-        what = f"{quoted(verb.name)} of {kind.name}"
-        if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:
-            yield f"{what} is a query: an answer names its question, which needs evidence: ids"
         if verb.effect is Effect.SWITCH and not verb.sets:
-            yield f"{what} is a switch that sets no fact: nothing would ever say that it is done"
+            what = f"{verb.name} of {kind.name} is a switch that sets no fact"
+            yield f"{what}: nothing would say that it is done"
 
 
 def _lengths(kind: DeviceKind) -> Iterator[str]:

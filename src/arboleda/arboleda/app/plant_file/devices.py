@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from arboleda.core.model import Cell, Evidence, Link, Retry
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
+from arboleda.wire import fit
 
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
@@ -55,7 +56,7 @@ def _device(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
     name = shape.name or role
     proven = [_is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
-    if not all(proven):
+    if not all(proven) or not _fits(document, (*place, "kind"), kind):
         return None
     return Device(
         name=name,
@@ -84,6 +85,14 @@ def _kind(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> 
     else:
         document.problem(place, f"must be {choice(declared)}, is {shown(name)}{nearest(name, declared)}")
     return None
+
+
+def _fits(document: Document, place: Place, kind: DeviceKind) -> bool:
+    """Whether its board can be told and can say all that the kind has, in messages as MQTT has them here."""
+    objections = fit.objections(kind)
+    for objection in objections:
+        document.problem(place, objection)
+    return not objections
 
 
 def _is_proven(
