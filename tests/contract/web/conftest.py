@@ -26,7 +26,13 @@ TASK = QUEUED | {"reason": None, "elapsed_s": None}
 VIEW = {"plant": "demo", "epoch": 7, "at": 1.0, "ending": False, "cells": [], "robots": [], "zones": []}
 VIEW |= {"tasks": [TASK]}
 WIDTH = {"name": "width", "called": "width", "type": "choice", "choices": ["5"]}
-OFFER = {"name": "cut", "default": False, "form": "<cell> cut <width>", "example": "saw cut 5"}
+OFFER = {
+    "name": "cut",
+    "about": "Cut it.",
+    "default": False,
+    "form": "<cell> cut <width>",
+    "example": "saw cut 5",
+}
 OFFERS = [{"cell": "saw", "recipes": [OFFER | {"parameters": [WIDTH]}]}]
 TOKENS = {Role.VIEWER: "v" * 32, Role.OPERATOR: "o" * 32}
 

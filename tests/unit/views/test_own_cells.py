@@ -118,6 +118,10 @@ def test_what_a_cell_offers_is_a_form() -> None:
     (bench,) = forms.offers(model())
     bake, careless = bench["recipes"]
     assert (bake["form"], bake["example"], bake["default"]) == ("<cell> bake <dose>", "bench bake 10", False)
+    assert (bake["about"], careless["about"]) == (
+        "Look at the sample; bake a good one.",
+        "Bake with the lid open.",
+    )
     (dose,) = bake["parameters"]
     assert (str(dose["called"]), dose["type"], dose["choices"]) == ("dose", "choice", ["5", "10"])
     assert careless["parameters"] == []

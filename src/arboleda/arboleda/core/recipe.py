@@ -72,13 +72,15 @@ class Parameter:
 class Recipe:
     """Work that cells offer; a task has a word for each parameter, in their order.
 
-    `is_default`: a task that names no recipe means this one. `alone`: the role of the one robot that works in
-    it, whose name may stand for that of the cell; None where the whole cell works.
+    `about`: what it does, in a line. `is_default`: a task that names no recipe means this one. `alone`: the
+    role of the one robot that works in it, whose name may stand for that of the cell; None where the whole
+    cell works.
     """
 
     name: str
     build: Build
     parameters: tuple[Parameter, ...] = ()
+    about: str = ""
     is_default: bool = False
     alone: str | None = None
 

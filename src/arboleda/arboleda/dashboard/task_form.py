@@ -53,6 +53,8 @@ def _fields(cell: Row, recipe: Row, words: Words) -> None:
         data_parameters=json.dumps(names),
         **({"data_maps": cell["name"]} if drawn else {}),
     ):
+        if recipe["about"]:
+            tag("p", recipe["about"], classes="hint")
         for parameter in recipe["parameters"]:
             _control(cell, parameter, words)
         for parameter in recipe["parameters"]:
@@ -93,9 +95,7 @@ def _control(cell: Row, parameter: Row, words: Words) -> None:
 
 def _label(parameter: Row, words: Words) -> str:
     """As our words have it, else as the recipe says it."""
-    known = words.of("field", parameter["name"])
-    said = words.say(parameter["called"]) if known == parameter["name"] else known
-    return said[:1].upper() + said[1:].replace("_", " ")
+    return words.flat.get(f"field.{parameter['name']}") or words.say(parameter["called"]).replace("_", " ")
 
 
 def _number(parameter: Row, label: str, words: Words) -> None:

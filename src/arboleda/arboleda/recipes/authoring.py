@@ -44,7 +44,10 @@ class WrittenRecipe(Recipe):
 
 
 def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
-    """Makes a recipe of a function of a Kit and parameters that are annotated with what they can be."""
+    """Makes a recipe of a function of a Kit and parameters that are annotated with what they can be.
+
+    The first line of its docstring is shown to whoever asks for it.
+    """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
         notes = inspect.get_annotations(function, eval_str=True)
@@ -59,7 +62,8 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
             return _build(name, function, order, context)
 
         known = tuple(each for each in read.values() if each is not None)
-        return WrittenRecipe(name=name, build=build, parameters=known, function=function)
+        about = (inspect.getdoc(function) or "").partition("\n")[0]
+        return WrittenRecipe(name=name, build=build, parameters=known, about=about, function=function)
 
     return made
 

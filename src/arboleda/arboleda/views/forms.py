@@ -25,6 +25,7 @@ def recipes(cell: Cell) -> list[Row]:
 def _recipe(cell: Cell, recipe: Recipe) -> Row:
     return {
         "name": recipe.name,
+        "about": recipe.about,
         "default": recipe.is_default,
         "form": recipe.form(),
         "example": example(cell, recipe).text,

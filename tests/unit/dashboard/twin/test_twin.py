@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from arboleda.core.messages import Report, TaskRequest, Verb
-from arboleda.core.model import Evidence, MotionState, PlantModel
+from arboleda.core.model import Cell, Evidence, MotionState, PlantModel
 from arboleda.core.plant import Plant
+from arboleda.dashboard.twin import kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
 from arboleda.views.places import places
+
+from ...kinds import lab
 
 
 class Watched:
@@ -143,3 +147,28 @@ def test_zones_say_who_has_them(watched: Watched) -> None:
         "robot": "ra1",
         "waiting": [],
     }
+
+
+def test_robots_of_a_cell_without_a_rack_are_drawn_and_others_are_not(drawings: dict[str, Body]) -> None:
+    """Two arms, one with a zone at its home, and an oven."""
+    first, second, third = shipped().cells
+    left, right = first.workspaces["ra1"], second.workspaces["ra2"]
+    zoned = replace(left.home, zones=frozenset({"middle"}))
+    left = replace(left, home=zoned, poses=(zoned, *left.poses[1:]))
+    oven = lab.model().robots["oven"]
+    members = (("left", left.robot), ("right", right.robot), ("oven", oven))
+    pair = Cell(name="pair", queue_limit=5, members=members, spaces=(left, right))
+    plant = PlantModel(name="two", cells=(pair, third), zones=("middle",))
+    twin = Twin(places(plant), drawings)
+    frame = twin.frame(twin_view.positions(Plant(plant, epoch=7, now=0.0)), 0.0)
+    assert set(frame) == {
+        *(f"robot/{name}" for name in ("ra1", "ra2", "ra3", "rm_sis_c")),
+        "part/sis_c",
+        "stored/sis_c",
+        "zone/middle",
+    }
+    tool = kinematics.tool(drawings["ra1"], (0.0, 0.0, 0.0), kinematics.floor(left.robot.base.on_floor))
+    (low_x, low_y, _), (high_x, high_y, _) = twin.scene["bounds"]
+    x, y, _ = kinematics.at(tool)
+    assert low_x < x < high_x and low_y < y < high_y
+    assert twin.scene["zones"][0]["outline"]

@@ -77,6 +77,7 @@ class Parameter(_Told):
 
 class Recipe(_Told):
     name: str
+    about: str = Field(description="What it does, in a line.")
     default: bool = Field(description="A task that names no recipe means this one.")
     form: str = Field(examples=["<cell> <path> <station>"], description="How its task text is written.")
     example: str = Field(examples=["sis_a 0A 8"])

@@ -28,7 +28,7 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
         "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
         "cells": cells,
         "zones": zones,
-        "bounds": _bounds(places, cells),
+        "bounds": _bounds(places, cells, drawings),
     }
 
 
@@ -110,12 +110,17 @@ def _between(path: list[list[float]]) -> list[list[float]]:
     return [[a + (b - a) * share for a, b in zip(start, end, strict=True)] for share in shares]
 
 
-def _bounds(places: Row, cells: list[Row]) -> list[list[float]]:
-    """The lowest and the highest x, y, z of all that matters."""
+def _bounds(places: Row, cells: list[Row], drawings: Mapping[str, Body]) -> list[list[float]]:
+    """The lowest and the highest x, y, z of all that matters; where nothing else says how far a robot goes,
+    its tool at its reference does."""
     points = [kinematics.at(kinematics.floor(robot["at"])) for robot in places["robots"]]
     for robot in places["robots"]:
         frame = kinematics.floor(robot["at"])
         points += [kinematics.at(frame, (x, y, 0.0)) for x, y in robot.get("nodes", ())]
+    told = {cell["name"] for cell in cells}
+    for robot in (robot for robot in places["robots"] if robot["cell"] not in told):
+        frame, body = kinematics.floor(robot["at"]), drawings[robot["name"]]
+        points.append(kinematics.at(kinematics.tool(body, robot["reference"], frame)))
     points += [
         (frame[3], frame[7], frame[11]) for cell in cells for frame in [*cell["pickups"], *cell["stations"]]
     ]

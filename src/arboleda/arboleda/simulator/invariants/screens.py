@@ -107,6 +107,7 @@ def _cell(look: Look, cell: KnownCell) -> Row:
         "state": cell.state.value,
         "arm": cell.cell.arm.name,
         "mobile": cell.cell.mobile.name,
+        "devices": [_device("arm", cell.cell.arm, "effector"), _device("mobile", cell.cell.mobile, None)],
         "queue": list(tasks.queues[cell.name]),
         "paused": cell.paused,
     }
@@ -128,6 +129,10 @@ def _cell(look: Look, cell: KnownCell) -> Row:
         began = {"started_at": running.since, "elapsed_s": now - running.since, "ended_at": None}
         expected["task"] = {**shown, **began, "id": running.id, "cell": cell.name, "state": "running"}
     return expected
+
+
+def _device(role: str, robot: Arm | Mobile, holds: str | None) -> Row:
+    return {"role": role, "name": robot.name, "kind": role, "position": robot.position_key, "holds": holds}
 
 
 def _tasks(look: Look, shown: Row) -> Iterator[str]:
@@ -195,12 +200,18 @@ def _robot(look: Look, known: KnownRobot) -> Row:
         "latched": known.stop is Stopped.LATCHED,
         "effector": known.effector,
         "piece": known.piece,
+        "facts": _facts(known) if is_arm else {},
         "boot_id": known.boot,
         "bridge_epoch": known.epoch,
         "holding": kept != "off" if is_arm else None,
         "units": [_unit(joint) for joint in robot.joints] if isinstance(robot, Arm) else None,
         "goal": _goal(last),
     }
+
+
+def _facts(known: KnownRobot) -> Row:
+    """What an arm has said of its tool."""
+    return {"effector": known.effector, **({} if known.piece is None else {"piece": known.piece})}
 
 
 def _unit(joint: Any) -> str:
