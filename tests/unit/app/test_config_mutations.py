@@ -73,11 +73,16 @@ def read_model(folder: Path, text: str) -> None:
     assert not any("nobody has looked" in warning for warning in warned), "what is taken can be drawn"
 
 
-def read(folder: Path, text: str) -> None:
+@cache
+def bench() -> str:
+    return (EXAMPLES / "lab_bench/plant.yaml").read_text("utf-8")
+
+
+def read(folder: Path, text: str, *, recipes: bool = True) -> None:
     file = folder / "plant.yaml"
     file.write_bytes(text.encode("utf-8"))
     try:
-        plant: PlantModel | None = config.load(file)
+        plant: PlantModel | None = config.load(file, recipes=recipes)
         problems: tuple[str, ...] = ()
     except ConfigError as error:
         plant, problems = None, error.problems
@@ -108,6 +113,24 @@ def test_lost_lines(folder: Path, data: st.DataObject) -> None:
 def test_text_put_anywhere(folder: Path, data: st.DataObject, value: str) -> None:
     place = data.draw(st.integers(0, len(shipped())))
     read(folder, shipped()[:place] + value + shipped()[place:])
+
+
+@given(
+    data=st.data(),
+    value=VALUES
+    | st.sampled_from(["motion", "query", "bool", "part", "$on", "[1, 2.5]", "[a, a]", "{a: $b}"]),
+)
+def test_a_replaced_word_of_a_plant_of_devices(folder: Path, data: st.DataObject, value: str) -> None:
+    found = data.draw(st.sampled_from(list(TOKEN.finditer(bench()))))
+    read(folder, bench()[: found.start()] + value + bench()[found.end() :], recipes=False)
+
+
+@given(data=st.data())
+def test_lost_lines_of_a_plant_of_devices(folder: Path, data: st.DataObject) -> None:
+    lines = bench().splitlines(keepends=True)
+    start = data.draw(st.integers(0, len(lines) - 1))
+    del lines[start : start + data.draw(st.integers(1, 4))]
+    read(folder, "".join(lines), recipes=False)
 
 
 @given(

@@ -82,6 +82,7 @@ MISTAKES = {  # id: (what the function `heat` is, the line of the problem, what 
     ),
 }
 FILES = {  # id: (the whole file, the line of the problem, what is told)
+    "class": (HEAD + "@recipe('x')\nclass F: ...\n", 0, 'the recipe "x" is no function'),
     "no recipe": ("import os\n", 0, "has no recipe; one is a function with @recipe"),
     "syntax": (HEAD + "def f(:\n", 3, "cannot be imported: SyntaxError: "),
     "name": (HEAD + "@recipee('x')\ndef f(cell): ...\n", 3, "NameError: name 'recipee' is not defined"),
@@ -93,6 +94,7 @@ FILES = {  # id: (the whole file, the line of the problem, what is told)
         3,
         "cannot be the name of a recipe",
     ),
+    "number as name": (HEAD + "@recipe(5)\ndef f(cell): ...\n", 3, "cannot be the name of a recipe"),
     "shipped name": (HEAD + "@recipe('storage')\ndef f(cell): ...\n", 3, "comes with Arboleda"),
     "twice": (
         HEAD + "@recipe('x')\ndef f(cell): ...\n@recipe('x')\ndef g(cell): ...\n",

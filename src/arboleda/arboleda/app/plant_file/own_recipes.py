@@ -52,9 +52,7 @@ class Used:
 
     def spot(self, recipe: Recipe) -> Spot:
         """Where the function of a recipe begins."""
-        code = getattr(inspect.unwrap(recipe.build), "__code__", None)
-        if code is None:
-            return Spot(file=recipe.name)
+        code = inspect.unwrap(recipe.build).__code__
         return Spot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
 
     def where(self, error: BaseException, otherwise: Spot) -> Spot:
@@ -94,7 +92,10 @@ def said(error: BaseException) -> str:
         return str(error)
     if isinstance(error, SystemExit):
         return f"it ends the program (SystemExit: {error})"
-    text = error.msg if isinstance(error, SyntaxError) else str(error)
+    try:
+        text = str(error.msg if isinstance(error, SyntaxError) else error)
+    except Exception:  # noqa: BLE001 - an error of the user's may have no words
+        text = ""
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
@@ -184,19 +185,28 @@ def _collect(document: Document, place: Place, module: ModuleType, used: Used) -
     if not found:
         document.problem(place, 'has no recipe; one is a function with @recipe("its name") before it')
     for each in found.values():
-        spot, other = used.spot(each), used.recipes.get(each.name)
-        problem = None
-        if not is_name(each.name):
-            problem = f"{shown(each.name)} cannot be the name of a recipe; it must be {NAME_RULE}"
-        elif each.name in TAKEN:
-            problem = f"the recipe {shown(each.name)} comes with Arboleda; give this one another name"
-        elif other is not None and other is not each:
-            first = used.spot(other)
-            place_of_first = f"line {first.line} of {first.file}"
-            problem = f"the recipe {shown(each.name)} is there twice; the other is on {place_of_first}"
-        if problem is not None:
-            document.keep_those_of(ConfigError((spot.problem(problem),)))
-        used.recipes.setdefault(each.name, each)
+        problem = _objection(each, used)
+        if not inspect.isfunction(inspect.unwrap(each.build)):
+            document.problem(place, f"the recipe {shown(each.name)} is no function")
+        elif problem is None:
+            used.recipes[each.name] = each
+        else:
+            document.keep_those_of(ConfigError((used.spot(each).problem(problem),)))
+
+
+def _objection(recipe: Recipe, used: Used) -> str | None:
+    """Why it cannot be a recipe beside those that there are."""
+    if not isinstance(recipe.name, str) or not is_name(recipe.name):
+        return f"{shown(recipe.name)} cannot be the name of a recipe; it must be {NAME_RULE}"
+    if recipe.name in TAKEN:
+        return f"the recipe {shown(recipe.name)} comes with Arboleda; give this one another name"
+    other = used.recipes.get(recipe.name)
+    if other is None or other is recipe:
+        return None
+    first = used.spot(other)
+    return (
+        f"the recipe {shown(recipe.name)} is there twice; the other is on line {first.line} of {first.file}"
+    )
 
 
 def _check_twice(document: Document, known_as: str, source: bytes) -> None:
