@@ -310,8 +310,9 @@ def test_check_and_tree_take_the_same_way_in(tmp_path: Path) -> None:
     file = write(tmp_path, GOOD)
     said = CliRunner().invoke(cli, ["check", str(file)])
     assert said.exit_code == 0 and said.output == f"{file}: good: plant lab; cells bench\n"
-    drawn = CliRunner().invoke(cli, ["tree", "heat", "--plant", str(file)])
-    assert drawn.exit_code == 0 and "oven heat 60" in drawn.output
+    for drawn, celsius in (("heat", 60), ("bench heat 40", 40)):
+        outcome = CliRunner().invoke(cli, ["tree", drawn, "--plant", str(file)])
+        assert outcome.exit_code == 0 and f"oven heat {celsius}" in outcome.output
     file = write(tmp_path, GOOD.replace('"oven"', '"ovne"'))
     for command in (
         ["check", str(file)],

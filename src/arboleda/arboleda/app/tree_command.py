@@ -12,6 +12,7 @@ from arboleda.core import text
 from arboleda.core.errors import ArboledaError
 from arboleda.core.model import Cell, PlantModel
 from arboleda.core.plant import Plant
+from arboleda.core.task import Order
 from arboleda.views import tree_view
 
 from . import config
@@ -23,7 +24,9 @@ Live = Annotated[bool, typer.Option("--live", help="The tree that runs now, with
 
 
 def tree(
-    recipe: Annotated[str, typer.Argument(help="The recipe to draw: storage, palletizing.")],
+    recipe: Annotated[
+        str, typer.Argument(help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'.")
+    ],
     plant: PlantFile = None,
     cell: Annotated[str | None, typer.Option(help="Whose tree. [default: the first cell]")] = None,
     format: Drawn = Format.ASCII,
@@ -39,16 +42,23 @@ def tree(
 
 
 def _planned(recipe: str, cell: str | None, model: PlantModel) -> list[dict[str, Any]]:
-    """The tree of an example of its tasks."""
+    """The tree of a task, or of an example of the tasks of a recipe."""
+    if " " in recipe.strip():
+        return _rows(model, text.parse(recipe, model))
     names = [each.name for each in model.cells]
     name = _cell(cell, [each.name for each in model.cells if cell is None and _offers(each, recipe)] or names)
     where = model.cell(name)
     if not _offers(where, recipe):
         there = ", ".join(each.name for each in where.recipes)
         raise typer.BadParameter(f"'{recipe}' is not a recipe of {name}; there are {there}")
-    plant, chosen = Plant(model, epoch=0, now=0.0), where.recipe(recipe)
-    order = text.example(where, chosen)
-    return tree_view.rows(chosen.build(order, plant.cells[name].context), plant.now)
+    return _rows(model, text.example(where, where.recipe(recipe)))
+
+
+def _rows(model: PlantModel, order: Order) -> list[dict[str, Any]]:
+    plant = Plant(model, epoch=0, now=0.0)
+    cell = plant.cells[order.cell]
+    tree = cell.cell.recipe(order.recipe).build(order, cell.context)
+    return tree_view.rows(tree, plant.now)
 
 
 def _offers(cell: Cell, recipe: str) -> bool:
