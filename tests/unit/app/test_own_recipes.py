@@ -75,6 +75,11 @@ MISTAKES = {  # id: (what the function `heat` is, the line of the problem, what 
         3,
         "heat has a py_trees Retry (again), which nothing wakes; take ",
     ),
+    "two at once": (
+        '    oven = cell.device("oven")\n    return parallel(work(oven.close()), oven.heat(celsius=40))',
+        3,
+        "heat has oven do two things at once, in a parallel; it does one after the other: work(...)",
+    ),
     "a timer": (
         "    import py_trees\n    return py_trees.timers.Timer('rest', 3.0)",
         3,

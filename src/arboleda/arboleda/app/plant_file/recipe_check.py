@@ -6,12 +6,15 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations as pairs
 
-from py_trees import behaviours, decorators, timers
+from py_trees import behaviours, composites, decorators, timers
 from py_trees.behaviour import Behaviour
 
+from arboleda.core.commands import Work
 from arboleda.core.context import Context
 from arboleda.core.errors import ConfigError
+from arboleda.core.leaves import Act
 from arboleda.core.model import Cell, PlantModel
 from arboleda.core.plant import Plant
 from arboleda.core.recipe import Recipe
@@ -124,15 +127,38 @@ class Trial:
             raise
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
             return self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")
-        for node in tree.iterate():
-            for kind, instead in NOT_WOKEN.items():
-                if isinstance(node, kind):
-                    what = f"{recipe.name} has a py_trees {kind.__name__} ({node.name}), which nothing wakes"
-                    return spot.problem(f"{what}; take {instead}")
-        return None
+        objection = _objection(tree)
+        return None if objection is None else spot.problem(f"{recipe.name} {objection}")
 
     def _keep(self, problems: Sequence[str]) -> None:
         self.document.keep_those_of(ConfigError(tuple(problems)))
+
+
+def _objection(tree: Behaviour) -> str | None:
+    """Why a tree that could be built would never end, or always fail."""
+    for device in _at_once(tree):
+        return f"has {device} do two things at once, in a parallel; it does one after the other: work(...)"
+    for node in tree.iterate():
+        for kind, instead in NOT_WOKEN.items():
+            if isinstance(node, kind):
+                return f"has a py_trees {kind.__name__} ({node.name}), which nothing wakes; take {instead}"
+    return None
+
+
+def _at_once(tree: Behaviour) -> Iterator[str]:
+    """The devices that are given work by two branches of a parallel: the second would be refused."""
+    for node in tree.iterate():
+        branches = (
+            [_at_work(child) for child in node.children] if isinstance(node, composites.Parallel) else []
+        )
+        for one, other in pairs(branches, 2):
+            yield from sorted(one & other)
+
+
+def _at_work(branch: Behaviour) -> set[str]:
+    """The devices that a part of a tree has move, or work by themselves."""
+    commands = [node.make(id="") for node in branch.iterate() if isinstance(node, Act)]
+    return {command.robot for command in commands if isinstance(command, Work)}
 
 
 def combinations(cell: Cell, recipe: Recipe) -> int:
