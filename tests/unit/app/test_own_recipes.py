@@ -342,3 +342,17 @@ def test_a_task_of_the_only_recipe_may_name_it(tmp_path: Path) -> None:
 def test_a_value_that_is_the_name_of_the_only_recipe_stays_a_value(tmp_path: Path) -> None:
     recipes = HEAD + '@recipe("heat")\ndef heat(cell, what: Choice["heat", "cool"]):\n    return work()\n'
     assert parse("bench heat", load(tmp_path, recipes)).values == {"what": "heat"}
+
+
+def test_a_file_that_is_good_only_once_is_a_problem_too(tmp_path: Path) -> None:
+    once = f"from pathlib import Path\nPath({str(tmp_path / 'been')!r}).touch(exist_ok=False)\n"
+    (found,) = refused(write(tmp_path, once + GOOD))
+    assert found.startswith("recipes.py:2:1: cannot be imported: FileExistsError: ")
+
+
+def test_who_only_looks_for_a_running_plant_runs_no_recipes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    told = CliRunner().invoke(cli, ["status", "--plant", str(write(tmp_path, "raise SystemExit\n"))])
+    assert f"No plant is running on {tmp_path}/arboleda/lab" in str(told.exception)

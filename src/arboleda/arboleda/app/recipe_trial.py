@@ -60,6 +60,8 @@ def offered(document: Document, content: bytes, cells: Sequence[Cell]) -> dict[s
     if any(document.kept):
         return {}
     recipes = own_recipes.imported(document, words, lambda spot, doing: None).recipes
+    if any(document.kept):  # a file may do another thing the second time
+        return {}
     of_cell = {cell.name: [recipes[each] for each in found.offers[cell.name]] for cell in cells}
     return {name: _marked(document, name, each) for name, each in of_cell.items()}
 
