@@ -399,7 +399,7 @@ def test_all_mistakes_are_told_at_once(folder: Path) -> None:
     [
         (
             ["simulate", "--seeds", "1", "--plant"],
-            "bench is a cell of devices, which the simulator has no boards",
+            "bench is a cell of devices, which the simulator cannot judge yet",
         ),
         (["urdf", "oven", "--plant"], '"oven" is neither an arm nor a mobile robot'),
         (["urdf", "ovn", "--plant"], 'there are oven, eye; did you mean "oven"?'),

@@ -25,7 +25,8 @@ def write(command: Command, *, copied: bool = False) -> str:
         said |= {"stop": int(command.mode)}
     else:
         raise TypeError(f"{type(command).__name__} is no command of a device")
-    return json.dumps(said | ({"copied": 1} if copied else {}))
+    text = said | ({"copied": 1} if copied else {})
+    return json.dumps(text, separators=(",", ":"))  # never longer than what the board is told
 
 
 def read(device: Device, text: str) -> tuple[Command, bool]:

@@ -60,6 +60,6 @@ def notes(plants: Iterable[Plant]) -> list[str]:
 
 def _on_boards(cell: Cell) -> StorageCell:
     if not isinstance(cell, StorageCell):
-        what = "is a cell of devices, which the simulator has no boards for yet"
+        what = "is a cell of devices, which the simulator cannot judge yet"
         raise ConfigError((f"{cell.name} {what}; `arboleda check` and `arboleda tree` look at it",))
     return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))
