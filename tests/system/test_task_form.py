@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from .page import PATIENCE_MS, connected, running
+from .page import PATIENCE_MS, connected, running, show
 
+BENCH = Path(__file__).parents[2] / "examples" / "lab_bench" / "plant.yaml"
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 
 
@@ -21,6 +24,12 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture
 def page(browser: Any, address: str) -> Iterator[Any]:
+    with opened(browser, address) as made:
+        yield made
+
+
+@contextmanager
+def opened(browser: Any, address: str) -> Iterator[Any]:
     """The form of tasks; a script that fails fails the test."""
     context = browser.new_context(viewport={"width": 360, "height": 740}, locale="es")
     made = context.new_page()
@@ -76,3 +85,24 @@ def test_another_cell_forgets_what_was_chosen(page: Any) -> None:
     page.click("#task-form [data-value=sis_b]")
     assert page.input_value("#task-text") == "sis_b"
     assert "0B" not in pressed(page)
+
+
+def test_a_bench_of_declared_devices_is_worked_by_its_form(browser: Any, tmp_path: Path) -> None:
+    with running(tmp_path, "--rate", "4", "--plant", str(BENCH)) as address, opened(browser, address) as page:
+        assert page.locator("[data-tab=twin]").count() == 0
+        page.click("#task-form [data-value=incubate]")
+        page.click("[data-recipe=incubate] [data-set='40']")
+        page.click("[data-recipe=incubate] [data-set='5']")
+        assert page.input_value("#task-text") == "bench incubate 5 40"
+        assert "Fill what the reader knows" in page.inner_text("[data-recipe=incubate] .hint")
+        task = sent(page)
+        show(page, "cells")
+        heater = '[data-rows="devices.bench"] [data-row=heater]'
+        page.wait_for_selector(f"{heater}:has-text('clamped sí, celsius 40')")
+        page.wait_for_selector(".cell.chosen g.node.current:has-text('heater heat 20')")
+        show(page, "tasks")
+        page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
+        show(page, "links")
+        page.wait_for_selector(
+            "[data-rows=links] [data-row=heater]:has-text('lid open, clamped no, celsius 20')"
+        )

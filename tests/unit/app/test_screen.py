@@ -191,3 +191,4 @@ def test_devices_that_go_nowhere_are_told_with_their_facts() -> None:
     assert "bench execute bake 10 oven bake 10 2.7 s" in rows
     assert "bench oven oven at work lid closed, clamped yes, dose ? doing bake 10: running" in rows
     assert "bench eye eye still doing look: done, good" in rows
+    assert parting(view.snapshot(bench.plant)) == ["oven: NOT confirmed still, clamped yes", "eye: still"]

@@ -28,7 +28,8 @@ from arboleda.views import view
 REFRESH_HZ = 5
 LONGEST = 1000  # characters of one text
 OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
-EFFECTOR = "effector"  # is on or off, where other facts are so or not
+EFFECTOR = "effector"
+SWITCHED = {True: "on", False: "off"}  # as an effector is, where other facts are so or not
 ROLES = 3  # so many columns of robots a row of a cell may have; more are told below, a row for each
 SHORT = ("cell", "state", "task", "time")  # columns that take one line, however narrow the terminal is
 STATES = {
@@ -169,15 +170,12 @@ def _told(robot: dict[str, Any]) -> str:
     if command is None:
         return ""
     said = f"{command['what']}: {command['state']}"
-    return said if answer is None else f"{said}, {fact(answer)}"
+    return said if answer is None else f"{said}, {answered(answer)}"
 
 
 def says(robot: dict[str, Any]) -> str:
     """Where it is, and each of its facts by name."""
-    facts = [
-        f"{name} {switched(value) if name == EFFECTOR else fact(value)}"
-        for name, value in robot["facts"].items()
-    ]
+    facts = [f"{name} {fact(name, value)}" for name, value in robot["facts"].items()]
     return ", ".join([*place(robot), *facts])
 
 
@@ -188,10 +186,14 @@ def place(robot: dict[str, Any]) -> list[str]:
     return [] if robot["node"] is None else [f"node {robot['node']}"]
 
 
-def fact(value: Value | None) -> str:
+def fact(name: str, value: Value | None) -> str:
     """A fact for a person; `?` where it was not said yet."""
     if value is None:
         return "?"
+    return SWITCHED[value] if name == EFFECTOR and isinstance(value, bool) else answered(value)
+
+
+def answered(value: Value) -> str:
     return ("yes" if value else "no") if isinstance(value, bool) else shown(value)
 
 
@@ -239,7 +241,7 @@ def _row(cell: dict[str, Any], robots: dict[str, dict[str, Any]], *, told: bool)
 def _of(robot: dict[str, Any], holds: str | None) -> Text:
     """Where a robot is and how its effector stands, dim where it is no longer heard."""
     said = place(robot) or ["?"]
-    said += [switched(robot["facts"][holds])] if holds else []
+    said += [fact(holds, robot["facts"][holds])] if holds else []
     return Text(", ".join(said), style="" if robot["online"] else "dim")
 
 
@@ -276,11 +278,6 @@ def joints(robot: dict[str, Any]) -> str:
     return " ".join(filter(None, (turns and f"{turns}°", slides)))
 
 
-def switched(value: bool | None) -> str:
-    """How an effector stands, or whatever else holds a part."""
-    return {None: "?", True: "on", False: "off"}[value]
-
-
 def parting(snapshot: dict[str, Any]) -> list[str]:
     """How each robot that was ever heard was left."""
     holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
@@ -289,11 +286,8 @@ def parting(snapshot: dict[str, Any]) -> list[str]:
 
 
 def _left(robot: dict[str, Any], holds: str | None) -> str:
-    grip = (
-        ""
-        if holds is None or robot["facts"][holds] is None
-        else f", {holds} {switched(robot['facts'][holds])}"
-    )
+    held = robot["facts"][holds] if holds else None
+    grip = f", {holds} {fact(holds, held)}" if holds and held is not None else ""
     if not robot["online"]:
         return f"{robot['name']}: offline, not known to be still{grip}"
     still = robot["state"] in (MotionState.STOPPED, MotionState.NOT_HOMED, MotionState.STOP_LATCHED)

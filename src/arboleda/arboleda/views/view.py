@@ -281,8 +281,11 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
 
 
 def _facts(belief: Belief) -> dict[str, Value | None]:
-    """What its kind reports, None where it was not said yet; and what else it said."""
-    found = {name: belief.fact(name) for name in belief.robot.fact_names}
+    """What its kind reports and whether it holds a part, None for what was not said; and all else it said."""
+    robot = belief.robot
+    found = {name: belief.fact(name) for name in robot.fact_names}
+    if robot.held_fact is not None:
+        found.setdefault(robot.held_fact, belief.fact(robot.held_fact))
     if belief.effector is not None:
         found.setdefault("effector", belief.effector)
     if belief.piece is not None:
