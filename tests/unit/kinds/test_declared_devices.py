@@ -242,7 +242,7 @@ def test_a_wait_names_the_fact_that_never_came() -> None:
 
 
 def test_a_parameter_says_what_it_can_be() -> None:
-    with pytest.raises(RecipeError, match="dose needs an annotation"):
+    with pytest.raises(RecipeError, match="dose needs what it can be"):
 
         @recipe("blank")
         def blank(cell: Kit, dose):  # type: ignore[no-untyped-def]

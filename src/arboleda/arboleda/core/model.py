@@ -304,6 +304,16 @@ class Cell:
         """Whose own cycle keeps start signals of machines away, while tasks of these recipes run or wait."""
         return None
 
+    def start_of(self, robot: str) -> Position | None:
+        """Where a virtual robot stands at first; None where it has no place."""
+        space = self.workspaces.get(robot)
+        return space.home.q if space else None
+
+    def supplies(self, robot: str) -> tuple[Pose, ...]:
+        """Where parts lie ready for a virtual robot."""
+        space = self.workspaces.get(robot)
+        return space.poses if space else ()
+
     def back(self, robot: str, positions: Positions) -> Pose | None:
         """Where a recovery brings a part whose origin nobody knows; None: the robot keeps it."""
         return None

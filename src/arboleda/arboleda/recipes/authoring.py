@@ -21,7 +21,7 @@ from py_trees.behaviour import Behaviour
 from arboleda.core import steps
 from arboleda.core.context import Context
 from arboleda.core.facts import Value, shown
-from arboleda.core.leaves import RETRYABLE, Dwell, Require, Unless
+from arboleda.core.leaves import Dwell, Require, Unless
 from arboleda.core.messages import Failure, Reason
 from arboleda.core.outside import among, quoted
 from arboleda.core.recipe import Recipe
@@ -33,6 +33,7 @@ from .errors import RecipeError, RoleError
 from .handles import Ask, Step, flat, handle, named, said
 from .parameters import parameter
 
+FINAL = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.PART_LOST, Reason.INTERRUPTED, Reason.INTERNAL})
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
 
 
@@ -50,12 +51,13 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
-        notes = inspect.get_annotations(function, eval_str=True)
-        names = list(inspect.signature(function).parameters)[1:]
-        read = {each: parameter(each, notes.get(each)) for each in names}
+        notes = _annotations(name, function)
+        declared = list(inspect.signature(function).parameters.values())[1:]
+        read = {each.name: parameter(each.name, notes.get(each.name, each.default)) for each in declared}
         missing = next((each for each, found in read.items() if found is None), None)
         if missing is not None:
-            raise RecipeError(f"{name}: {missing} needs an annotation, e.g. {missing}: Choice[1, 2]")
+            forms = f"{missing}: Choice[1, 2] or {missing}=Choice(1, 2)"
+            raise RecipeError(f"{name}: {missing} needs what it can be, e.g. {forms}")
 
         @wraps(function)
         def build(order: Order, context: Context) -> Step:
@@ -68,12 +70,29 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     return made
 
 
+def _annotations(name: str, function: Callable[..., Step]) -> dict[str, Any]:
+    """What the parameters are annotated with."""
+    try:
+        return inspect.get_annotations(function, eval_str=True)
+    except (NameError, SyntaxError) as error:
+        hint = 'words in brackets are read as names: write target=Target("pallet"), side=Choice("a", "b")'
+        raise RecipeError(f"{name}: an annotation cannot be read ({error}); {hint}") from error
+
+
 def _build(name: str, function: Callable[..., Step], order: Order, context: Context) -> Step:
     context.back, context.brings_to = {}, set()
     step = function(Kit(context), **order.values)
     if not isinstance(step, Behaviour):
         raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
     return steps.task(name, [step], context)
+
+
+def _reason(word: Reason | str) -> Reason:
+    try:
+        return Reason(word)
+    except ValueError:
+        known = among(str(word), [each.value for each in Reason])
+        raise RecipeError(f"retry knows no cause {quoted(word)}; {known}") from None
 
 
 def work(*parts: Step | Sequence[Step]) -> Step:
@@ -149,10 +168,13 @@ class Kit:
         *,
         times: int = 2,
         pause_s: float = 1.0,
-        causes: Collection[Reason | str] = RETRYABLE,
+        causes: Collection[Reason | str] | None = None,
     ) -> Step:
-        """The step again, `times` more at most and after a pause, where it fails for one of the causes."""
-        reasons = [Reason(each) for each in causes]
+        """The step again, `times` more at most and after a pause, where it fails for one of the causes.
+
+        Without `causes` after any failure that another try may mend: not a stop, not a part that is lost.
+        """
+        reasons = set(Reason) - FINAL if causes is None else {_reason(each) for each in causes}
         return Again(step, self._context, times=times, pause_s=pause_s, causes=reasons)
 
     def repeat(self, step: Step, times: int) -> Step:

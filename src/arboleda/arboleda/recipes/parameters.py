@@ -1,6 +1,8 @@
 """What the parameters of a recipe can be: one of some values, a number, a target of the cell.
 
-dose: Choice[5, 10], force: Number[1, 40], blank: Target["pallet"]
+    def load(cell, dose: Choice[5, 10], force: Number[1, 40], blank=Target("pallet")): ...
+
+An annotation in brackets or a default in parentheses: checkers of types read words in brackets as names.
 """
 
 from __future__ import annotations
@@ -49,9 +51,9 @@ class Number:
 
 
 class Target:
-    """One of a group of targets, or that of this name: `Target["pallet"]`; `Target[...]` is any."""
+    """One of a group of targets, or that of this name: `Target("pallet")`; `Target()` is any."""
 
-    def __init__(self, group: str | None) -> None:
+    def __init__(self, group: str | None = None) -> None:
         self.group = group
 
     def __class_getitem__(cls, group: object) -> Target:
@@ -71,5 +73,5 @@ class Target:
 def parameter(name: str, note: object) -> Parameter | None:
     """The parameter of that annotation; None where it is none."""
     if note is Target:
-        note = Target(None)
+        note = Target()
     return note.parameter(name) if isinstance(note, (Choice, Number, Target)) else None

@@ -83,6 +83,12 @@ class StorageCell(Cell):
         own_cycle = "palletizing" in at_work
         return self.arm.name if own_cycle and not self.arm.queue_triggers else None
 
+    def start_of(self, robot: str) -> Position:
+        return self.paths[0].nodes[0] if robot == self.mobile.name else self.home.q
+
+    def supplies(self, robot: str) -> tuple[Pose, ...]:
+        return (*self.every_pickup, self.palletizing.pick)
+
     def back(self, robot: str, positions: Positions) -> Pose:
         return self.pickup_over(positions(self.mobile.name))
 

@@ -6,11 +6,10 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
-from arboleda.core.model import Cell, Link, PlantModel, Robot
+from arboleda.core.model import Link, PlantModel, Robot
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import Mobile
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .arm import ArmBody
@@ -105,27 +104,17 @@ class Devices:
 
 
 def _body(model: PlantModel, robot: Robot) -> Body:
-    """The body of an arm standing at its home pose, of a mobile at the start of its first path, or of a
-    device as its facts begin."""
+    """The body of a robot standing where its cell has it begin, or of a device as its facts begin."""
+    cell = model.cell_of[robot.name]
+    start = cell.start_of(robot.name)
+    if isinstance(robot, Arm):
+        pickups = [pose.joints for pose in cell.supplies(robot.name)]
+        return ArmBody(robot, start=start if isinstance(start, tuple) else robot.reference, pickups=pickups)
+    if isinstance(robot, Mobile):
+        return MobileBody(robot, start_node=start if isinstance(start, int) else 0)
     if isinstance(robot, Device):
         return MachineBody(robot.kind)
-    cell = model.cell_of[robot.name]
-    space = cell.workspaces.get(robot.name)
-    home = None if space is None else space.home.q
-    if isinstance(robot, Arm):
-        start = home if isinstance(home, tuple) else robot.reference
-        return ArmBody(robot, start=start, pickups=_pickups(cell))
-    if isinstance(robot, Mobile):
-        start_node = cell.paths[0].nodes[0] if isinstance(cell, StorageCell) else home
-        return MobileBody(robot, start_node=start_node if isinstance(start_node, int) else 0)
     raise TypeError(f"{robot.name} is neither an arm, a mobile robot nor a device of a declared kind")
-
-
-def _pickups(cell: Cell) -> list[tuple[float, ...]]:
-    """Where parts lie ready for an arm, as a rack's cell says."""
-    if not isinstance(cell, StorageCell):
-        return []
-    return [pose.joints for pose in (*cell.every_pickup, cell.palletizing.pick)]
 
 
 def _us(seconds: float) -> int:

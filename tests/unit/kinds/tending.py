@@ -1,0 +1,86 @@
+"""A cell whose recipes send robots to targets: two loaders, one of them with a gripper, and a shuttle."""
+
+from __future__ import annotations
+
+from arboleda.core.model import Cell, Evidence, Link, PlantModel, Pose, Robot, Workspace
+from arboleda.core.recipe import Recipe
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
+from arboleda.kinds.floor import Placement
+from arboleda.kinds.mobile import Grid, Mobile
+
+HELD = FactType(type=bool, first=False)
+GRIPPER = DeviceKind(
+    name="gripper",
+    facts={"gripped": HELD},
+    verbs={
+        "close": DeviceVerb(
+            name="close", effect=Effect.SWITCH, sets=(("gripped", True),), at_most_s=2.0, holds=True
+        ),
+        "open": DeviceVerb(
+            name="open", effect=Effect.SWITCH, sets=(("gripped", False),), at_most_s=2.0, holds=True
+        ),
+    },
+)
+LAMP = DeviceKind(
+    name="lamp",
+    facts={"lit": HELD},
+    verbs={
+        "light": DeviceVerb(
+            name="light",
+            effect=Effect.SWITCH,
+            parameters=(("on", HELD),),
+            sets=(("lit", Slot(name="on")),),
+            at_most_s=2.0,
+        )
+    },
+)
+IDS = {"link": Link.MQTT, "evidence": Evidence.IDS}
+HOME, FEED, FEED_2, VISE = (0.0, 0.0), (0.5, 0.2), (0.5, 0.4), (-0.5, 0.3)
+
+
+def arm(name: str) -> Arm:
+    joints = tuple(
+        Joint(name=f"q{number}", lower=-1.0, upper=1.0, speed=1.0, acceleration=4.0, step=0.001)
+        for number in (1, 2)
+    )
+    base = Placement(x=0.0, y=0.0)
+    return Arm(name=name, mqtt=name, **IDS, timeout_s=5.0, model="two", twin=name, base=base, joints=joints)
+
+
+def plant(*recipes: Recipe) -> PlantModel:
+    """Both loaders reach the vise, which lies in the zone `vise`; the left one holds with its gripper."""
+    left, right = arm("left"), arm("right")
+    jaw = Device(name="jaw", mqtt="jaw", **IDS, timeout_s=5.0, kind=GRIPPER)
+    lamp = Device(name="lamp", mqtt="lamp", **IDS, timeout_s=5.0, kind=LAMP)
+    grid = Grid(origin=Placement(x=0.0, y=0.0), pitch=0.2)
+    shuttle = Mobile(name="shuttle", mqtt="shuttle", **IDS, timeout_s=5.0, model="m", grid=grid, speed=0.5)
+    members: tuple[tuple[str, Robot], ...] = (
+        ("left", left),
+        ("right", right),
+        ("jaw", jaw),
+        ("lamp", lamp),
+        ("shuttle", shuttle),
+    )
+    cell = Cell(
+        name="tending",
+        queue_limit=5,
+        members=members,
+        spaces=(_space(left, tool=jaw), _space(right), _grid(shuttle)),
+        arrays=(("pallet", ("feed", "feed_2")),),
+        zone_wait_s=10.0,
+        recipes=recipes,
+    )
+    return PlantModel(name="shop", cells=(cell,), zones=("vise",))
+
+
+def _grid(robot: Mobile) -> Workspace:
+    dock = Pose(name="dock", q=0)
+    return Workspace(robot=robot, home=dock, poses=(dock, Pose(name="store", q=8)))
+
+
+def _space(robot: Arm, tool: Robot | None = None) -> Workspace:
+    home = Pose(name="home", q=HOME)
+    vise = Pose(name="vise", q=VISE, zones=frozenset({"vise"}))
+    feeds = (Pose(name="feed", q=FEED, above=(0.5, 0.0)), Pose(name="feed_2", q=FEED_2))
+    return Workspace(robot=robot, tool=tool, home=home, poses=(home, *feeds, vise))

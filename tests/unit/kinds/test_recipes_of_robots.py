@@ -1,0 +1,261 @@
+"""Recipes that send robots to targets: visits, zones, tools, recovery; and steps around steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from arboleda.core.errors import TextError
+from arboleda.core.messages import Reason, Verb
+from arboleda.core.text import parse
+from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
+
+from .lab import Bench
+from .tending import HOME, VISE, plant
+
+
+def moved(bench: Bench) -> list[str]:
+    """What each robot was told, in order, without stops: `left 0.5 0.2`, `jaw close`."""
+    lines = []
+    for each in bench.sent:
+        where = getattr(each, "q", None) or getattr(each, "nodes", None)
+        words = " ".join(map(str, where)) if where else getattr(each, "verb", None)
+        if words:
+            lines.append(f"{each.robot} {words}")
+    return lines
+
+
+@recipe("load")
+def load(cell: Kit, blank=Target("pallet")):  # type: ignore[no-untyped-def]
+    """Bring a blank from the pallet to the vise."""
+    left, jaw = cell.devices("left", "jaw")
+    return work(left.visit(blank, jaw.close()), left.visit("vise", jaw.open()), left.home())
+
+
+def test_a_visit_goes_there_works_and_leaves_the_zone() -> None:
+    here = Bench(plant(load))
+    here.submit("tending load feed_2")
+    assert here.outcome().state.value == "done"
+    assert moved(here) == ["left 0.5 0.4", "jaw close", "left -0.5 0.3", "jaw open", *["left 0.0 0.0"] * 2]
+    assert here.plant.zones.holder("vise") is None
+
+
+def test_an_approach_height_is_kept_on_the_way_there_and_back() -> None:
+    here = Bench(plant(load))
+    here.submit("tending load feed")
+    here.outcome()
+    assert moved(here)[:4] == ["left 0.5 0.0", "left 0.5 0.2", "jaw close", "left 0.5 0.0"]
+
+
+def test_a_zone_that_somebody_else_holds_is_waited_for_as_long_as_the_cell_says() -> None:
+    @recipe("long")
+    def long(cell: Kit):  # type: ignore[no-untyped-def]
+        left, right = cell.devices("left", "right")
+        return parallel(left.visit("vise", cell.wait(60.0)), work(cell.wait(1.0), right.visit("vise")))
+
+    here = Bench(plant(long))
+    here.submit("tending long")
+    assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
+    assert not [each for each in moved(here) if each == "right -0.5 0.3"]
+
+
+@pytest.mark.parametrize(
+    ("blank", "way_back"),
+    [
+        ("feed", ["left 0.5 0.0", "left 0.5 0.2", "jaw open", "left 0.5 0.0"]),
+        ("feed_2", ["left 0.5 0.4", "jaw open"]),
+    ],
+    ids=["with an approach", "without one"],
+)
+def test_what_the_gripper_holds_is_brought_back_where_it_was_taken(blank: str, way_back: list[str]) -> None:
+    @recipe("spoil")
+    def spoil(cell: Kit, blank=Target("pallet")):  # type: ignore[no-untyped-def]
+        left, jaw = cell.devices("left", "jaw")
+        return work(left.visit(blank, jaw.close()), left.home(), cell.fail("the blank is bad"))
+
+    here = Bench(plant(spoil))
+    here.submit(f"tending spoil {blank}")
+    assert str(here.outcome().sentence) == "the blank is bad"
+    assert here.wait(30.0, lambda: here.plant.cells["tending"].state.value == "idle")
+    back = moved(here)[moved(here).index("left 0.0 0.0") + 1 :]
+    print(back)
+    assert [each for each in back if each in way_back] == way_back
+
+
+def test_a_recipe_says_where_a_recovery_brings_what_a_robot_holds() -> None:
+    @recipe("reject")
+    def reject(cell: Kit):  # type: ignore[no-untyped-def]
+        left, jaw = cell.devices("left", "jaw")
+        left.brings_back_to("feed_2")
+        return work(left.visit("feed", jaw.close()), cell.fail("bad"))
+
+    here = Bench(plant(reject))
+    here.submit("tending reject")
+    here.outcome()
+    here.wait(30.0, lambda: here.plant.cells["tending"].state.value == "idle")
+    opened = moved(here).index("jaw open")
+    assert moved(here)[opened - 1] == "left 0.5 0.4"
+
+
+def test_two_arms_work_at_the_same_time_and_take_turns_in_a_zone() -> None:
+    @recipe("both")
+    def both(cell: Kit):  # type: ignore[no-untyped-def]
+        left, right = cell.devices("left", "right")
+        return parallel(left.visit("vise"), right.visit("vise"))
+
+    here = Bench(plant(both))
+    holders = set()
+    here.submit("tending both")
+    while here.changes[-1].state.value not in ("done", "failed"):
+        here.wait(0.1)
+        holders.add(here.plant.zones.holder("vise"))
+    assert here.changes[-1].state.value == "done"
+    assert {"left", "right"} <= holders
+
+
+def test_a_mobile_robot_goes_to_its_targets_over_its_grid() -> None:
+    @recipe("drive")
+    def drive(cell: Kit):  # type: ignore[no-untyped-def]
+        shuttle = cell.device("shuttle")
+        return work(shuttle.go("store"), shuttle.home())
+
+    here = Bench(plant(drive))
+    here.submit("tending drive")
+    assert here.outcome().state.value == "done"
+    assert moved(here) == ["shuttle 0 1 2 5 8", "shuttle 8 5 2 1 0"]
+
+
+def test_numbers_and_names_in_the_text_of_a_task() -> None:
+    @recipe("press")
+    def press(cell: Kit, force: Number[1, 40], speed: Number[0.5, 2.0], side=Choice("a", "b")):  # type: ignore[no-untyped-def,valid-type]
+        return cell.wait(0.1)
+
+    model = plant(press)
+    assert parse("tending press 7 1.5 b", model).values == {"force": 7, "speed": 1.5, "side": "b"}
+    named = parse("tending press side=a 7 speed=2", model)
+    assert named.text == "tending press 7 2.0 a"
+    for text, sentence in (
+        ("tending press 41 1 a", "'41' is no force; it is a whole number from 1 to 40"),
+        ("tending press 7 fast a", "'fast' is no speed; it is a number from 0.5 to 2"),
+        ("tending press force=1 force=2 a", "force is named twice"),
+        ("tending press force=1 speed=1 side=c", "'c' is not a side of tending"),
+    ):
+        with pytest.raises(TextError) as caught:
+            parse(text, model)
+        assert sentence in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda cell: cell.device("left").visit("vice"), "left has no target 'vice'"),
+        (lambda cell: cell.device("jaw").opne(), "a gripper has no verb 'opne'"),
+        (lambda cell: cell.device("lamp").light(True, False), "light of a lamp takes on"),
+    ],
+    ids=["target", "verb", "too many values"],
+)
+def test_words_that_are_wrong_are_named(make: Callable[[Kit], Any], sentence: str) -> None:
+    @recipe("wrong")
+    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
+        return make(cell)
+
+    here = Bench(plant(wrong))
+    here.submit("tending wrong")
+    assert sentence in str(here.outcome().sentence)
+    assert moved(here) == []
+
+
+def attempts(make: Callable[[Kit, Any], Any], times: int) -> tuple[Bench, list[float]]:
+    """A task with a step that the lamp gives up so many times; when it did it, or gave it up."""
+
+    @recipe("try")
+    def tries(cell: Kit):  # type: ignore[no-untyped-def]
+        return make(cell, cell.device("lamp").light(on=True))
+
+    here, asked = Bench(plant(tries)), []
+
+    def fails(order: Any) -> str | None:
+        asked.append(here.now)
+        return "roto" if len(asked) <= times else None
+
+    here.machines["lamp"].fails = fails
+    here.submit("tending try")
+    return here, asked
+
+
+def test_a_retry_waits_and_tries_again() -> None:
+    here, asked = attempts(lambda cell, step: cell.retry(step, times=3, pause_s=2.0), times=2)
+    assert here.outcome().state.value == "done"
+    assert [round(b - a, 1) for a, b in pairwise(asked)] == [2.0, 2.0]
+
+
+def test_a_retry_ends_with_the_last_failure() -> None:
+    here, asked = attempts(lambda cell, step: cell.retry(step, times=1, pause_s=0.0), times=9)
+    assert here.outcome().state.value == "failed"
+    assert len(asked) == 2
+
+
+def test_a_retry_is_only_for_its_causes() -> None:
+    here, asked = attempts(lambda cell, step: cell.retry(step, causes=["deadline"]), times=9)
+    assert here.outcome().reason is Reason.DEVICE_FAULT
+    assert len(asked) == 1
+
+
+def test_a_fallback_is_what_is_done_instead() -> None:
+    here, _ = attempts(lambda cell, step: cell.fallback(step, cell.device("left").go("feed_2")), times=9)
+    assert here.outcome().state.value == "done"
+    assert moved(here)[-1] == "left 0.5 0.4"
+
+
+def test_a_repeat_does_it_so_often() -> None:
+    here, _ = attempts(lambda cell, step: cell.repeat(step, 3), times=0)
+    assert here.outcome().state.value == "done"
+    assert moved(here) == ["lamp light"] * 3
+
+
+def test_an_inverted_step_has_to_fail() -> None:
+    here, _ = attempts(lambda cell, step: cell.invert(step), times=9)
+    assert here.outcome().state.value == "done"
+    here, _ = attempts(lambda cell, step: cell.invert(step), times=0)
+    assert "was to fail, and did not" in str(here.outcome().sentence)
+
+
+def test_a_timeout_leaves_its_step() -> None:
+    @recipe("slow")
+    def slow(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.timeout(cell.device("left").go("feed_2"), 0.2)
+
+    here = Bench(plant(slow))
+    here.submit("tending slow")
+    assert here.outcome().reason is Reason.DEADLINE
+    assert str(here.changes[-1].sentence) == "visit feed_2 did not end within 0.2 s"
+
+
+def test_a_recipe_is_a_step_of_another() -> None:
+    @recipe("twice")
+    def twice(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(cell.run(load, blank="feed"), cell.run(load, blank="feed_2"))
+
+    here = Bench(plant(twice))
+    here.submit("tending twice")
+    assert here.outcome(240.0).state.value == "done"
+    assert moved(here).count("jaw close") == 2
+
+
+def test_a_number_needs_two_limits() -> None:
+    with pytest.raises(RecipeError, match="two limits"):
+        Number[5]  # type: ignore[misc]
+
+
+def test_a_held_task_of_robots_goes_on_where_it_was() -> None:
+    here = Bench(plant(load))
+    here.submit("tending load feed_2")
+    here.wait(0.5)
+    assert here.operate(Verb.HOLD, "tending") is None
+    here.wait(3.0)
+    assert here.operate(Verb.RESUME, "tending") is None
+    assert here.outcome().state.value == "done"
+    assert [HOME, VISE] == [(0.0, 0.0), (-0.5, 0.3)]
