@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 
 from . import zone_plan
 from .belief import Moment
-from .commands import Position
+from .commands import Command, Motion, Position
 from .dispatcher import Dispatcher, Make
 from .facts import Value
 from .grips import Grip
@@ -21,6 +21,9 @@ from .zones import Zones
 
 __all__ = ["Context", "Make"]
 PART_LOST = Phrase("part.lost", "{arm}: the part was lost on the way")
+NOT_HELD = Phrase(
+    "zone.not_held", "{robot} does not hold zone {zones}, into which this leads; nothing was sent"
+)
 ASTRAY = Phrase("zone.astray", "{arm} is not seen at a pose outside the shared zones; home {arm} mends that")
 ASTRAY_BY_HAND = Phrase(
     "zone.astray_by_hand",
@@ -54,6 +57,7 @@ class Context:
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
         self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
         self.brings_to: set[str] = set()  # the robots whose task says where a recovery brings what they hold
+        self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None
         self.last_failure: Failure | None = None
@@ -109,7 +113,23 @@ class Context:
     def send(self, make: Make, doing: Sentence) -> Entry:
         """Send the command that `make(id=...)` returns; an already failed entry where it may not leave."""
         self.sent += 1
-        return self._dispatcher.send(make, self.cell.name, doing, self._clock())
+        return self._dispatcher.send(make, self.cell.name, doing, self._clock(), barrier=self._barrier)
+
+    def _barrier(self, command: Command) -> Failure | None:
+        """Why a command must not leave, whatever the tree says: it leads into a zone that is not held."""
+        missing = self._zones_of(command) - self._zones.held_by(command.robot)
+        if not missing:
+            return None
+        sentence = NOT_HELD(robot=command.robot, zones=tuple(sorted(missing)))
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def _zones_of(self, command: Command) -> frozenset[str]:
+        """The zones that its robot has to hold for a command."""
+        space = self.cell.workspaces.get(command.robot)
+        if space is not None and isinstance(command, Motion) and command.way:
+            return zone_plan.entered(space, self._dispatcher.place(space), command.way[-1])
+        locks = self.cell.interlocks_of(command.robot)
+        return frozenset(each.zone for each in locks if each.is_ended_by(command))
 
     def cancel(self, entry: Entry) -> None:
         """Halt an open command."""
@@ -326,11 +346,40 @@ class Context:
         for zone in sorted(self._zones.held_by(robot)):
             self._dispatcher.remember(Fact.QUARANTINE, zone, robot)
 
+    def occupied_by(self, device: str) -> frozenset[str]:
+        """The zones that a device may be in the way of: it does not say the contrary, or was told to be."""
+        belief = self._dispatcher.beliefs[device]
+        told = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
+        return frozenset(
+            each.zone
+            for each in self.cell.interlocks_of(device)
+            if not belief.online
+            or any(belief.fact(name) != value for name, value in each.free_while)
+            or any(map(each.is_ended_by, told))
+        )
+
+    def keep_interlocks(self, device: str) -> None:
+        """A device in the way of a zone where nobody is has it; one that no longer is gives it back."""
+        occupied, before = self.occupied_by(device), self._occupied.get(device, frozenset())
+        self._occupied[device] = occupied
+        free = frozenset(zone for zone in occupied if self._zones.holder(zone) is None)
+        if free:
+            self._zones.claim(device, free)
+            self._keep_zones(device)
+        if before - occupied:
+            self.leave_zones(device)
+
+    def _is_outside(self, robot: str) -> bool:
+        space = self.cell.workspaces.get(robot)
+        if space is None:
+            return not self.occupied_by(robot)
+        return self._dispatcher.place(space) is not None
+
     def leave_zones(self, robot: str) -> bool:
         """Stop waiting for zones, and give them back if the robot is seen outside; whether it holds none."""
         granted = self._zones.withdraw(robot)
         held = self._zones.held_by(robot)
-        if held and self._dispatcher.place(self.cell.workspaces[robot]) is not None:
+        if held and self._is_outside(robot):
             granted += self._zones.restore(robot) + self._zones.release(robot)
             for zone in sorted(held):
                 self._dispatcher.remember(Fact.QUARANTINE, zone, None)

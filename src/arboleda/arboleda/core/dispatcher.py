@@ -22,6 +22,7 @@ from .underway import UnderWay
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
+Barrier = Callable[[Command], "Failure | None"]  # why a command must not leave its cell
 Memory = Mapping[Fact, Mapping[str, str]]
 HOMING = Phrase("doing.home", "homing")
 NOT_GIVEN = Phrase("command.not_given", "{why}: no {doing}")
@@ -52,6 +53,10 @@ KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPE
 def unguarded(cell: str, act: Callable[[], None]) -> None:
     """What it raises is for the caller to handle."""
     act()
+
+
+def _open(command: Command) -> None:
+    """Nothing is in the way of a command."""
 
 
 class Dispatcher:
@@ -91,15 +96,24 @@ class Dispatcher:
         stale_at = min(self._stale_at.values()) if self._stale_at else math.inf
         return min(self.ledger.next_deadline, stale_at)
 
-    def send(self, make: Make, cell: str, doing: Sentence, now: float, *, by_hand: bool = False) -> Entry:
-        """Give a command its id and let it go, unless its robot is not ready for one.
+    def send(
+        self,
+        make: Make,
+        cell: str,
+        doing: Sentence,
+        now: float,
+        *,
+        by_hand: bool = False,
+        barrier: Barrier = _open,
+    ) -> Entry:
+        """Give a command its id and let it go, unless its robot is not ready for one or `barrier` objects.
 
         By hand, on an operator's word, an effector is opened even while its arm is stopped.
         """
         command = make(id=self._new_id())
         deadline = now + self._allowed_s(command)
         entry = Entry(command, cell=cell, doing=doing, sent_at=now, deadline=deadline)
-        obstacle = self._obstacle_to(command, by_hand=by_hand, was=True)
+        obstacle = self._obstacle_to(command, by_hand=by_hand, was=True) or barrier(command)
         if obstacle is not None:
             failure = replace(obstacle, sentence=NOT_GIVEN(why=obstacle.sentence, doing=doing))
             entry.refuse(failure, too_early=self._may_be_the_end_of_its_last_move(command.robot))

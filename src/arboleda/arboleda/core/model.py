@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from .commands import Command, Position
+from .facts import Facts
 from .recipe import Recipe
 from .sentence import NOTHING, OWN, Sentence
 
@@ -250,6 +251,22 @@ class Workspace:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Interlock:
+    """A zone that a device occupies whenever it does not say all of `free_while`: a mill whose door is not
+    open, a lift that is not down.
+    """
+
+    device: str
+    zone: str
+    free_while: Facts
+
+    def is_ended_by(self, command: Command) -> bool:
+        """Whether a command may make the device occupy the zone."""
+        free = dict(self.free_while)
+        return any(free.get(name, value) != value for name, value in command.sets)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Cell:
     """Robots that carry out one task at a time, each in a role of its own."""
 
@@ -260,6 +277,7 @@ class Cell:
     retry: Retry = Retry()
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()
+    interlocks: tuple[Interlock, ...] = ()
     stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
     arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
     keyed_roles: ClassVar[tuple[str, ...]] = ()  # in data for clients these are keys of the cell as well
@@ -338,6 +356,15 @@ class Cell:
     def holders(self) -> tuple[str, ...]:
         """The robots that can hold a part."""
         return tuple(robot.name for robot in self.robots if robot.held_fact is not None)
+
+    def interlocks_of(self, device: str) -> tuple[Interlock, ...]:
+        """Those of one device."""
+        return tuple(each for each in self.interlocks if each.device == device)
+
+    @cached_property
+    def interlocked(self) -> tuple[str, ...]:
+        """The devices that may occupy shared zones."""
+        return tuple(dict.fromkeys(each.device for each in self.interlocks))
 
     @cached_property
     def zone_users(self) -> tuple[str, ...]:

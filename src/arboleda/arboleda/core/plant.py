@@ -86,6 +86,7 @@ class Plant:
             self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now, self._break_down
         )
         self._advisor = Advisor(self.cells, self._operator.refusal)
+        self._interlocked = [(name, run) for name, run in self.cells.items() if run.cell.interlocks]
         self._to_home = {name for name, robot in model.robots.items() if robot.home_at_start}
         self._runs = {robot.name: run for run in self.cells.values() for robot in run.cell.robots}
         self._order = {name: number for number, name in enumerate(self.cells)}
@@ -115,6 +116,7 @@ class Plant:
                 self._told_errors.clear()
                 HANDLERS[type(event)](self, event)
         self._expire(now)
+        self._watch_interlocks()
         self._watch_zones()
         self._advance()
         self._beat()
@@ -269,10 +271,15 @@ class Plant:
                 cell.context.pause(at=left)
             self._guard(name, partial(cell.hold_after_absence, failure))
 
+    def _watch_interlocks(self) -> None:
+        for name, cell in self._interlocked:
+            for device in cell.cell.interlocked:
+                self._guard(name, partial(cell.context.keep_interlocks, device))
+
     def _watch_zones(self) -> None:
         inside = self.zones.robots
         for name, cell in self.cells.items() if inside else ():
-            for robot in cell.cell.zone_users:
+            for robot in (*cell.cell.zone_users, *cell.cell.interlocked):
                 if robot in inside:
                     self._guard(name, partial(self._watch_zones_of, cell, robot))
 

@@ -137,6 +137,13 @@ def visit_from_anywhere(
     return [TakeZones(TAKE_ZONES(), context, robot, needed), *steps, *out, leave]
 
 
+def interlocked(context: Context, command: Command) -> list[Behaviour]:
+    """The steps before a command that makes its device occupy zones: nobody is in them then."""
+    locks = context.cell.interlocks_of(command.robot)
+    zones = frozenset(each.zone for each in locks if each.is_ended_by(command))
+    return [_take(context, command.robot, zones)] if zones else []
+
+
 def _note_origin(context: Context, robot: str, pose: Pose) -> None:
     """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
     if context.cell.workspaces[robot].hand.name not in context.holding and robot not in context.brings_to:

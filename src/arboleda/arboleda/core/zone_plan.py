@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
+from .commands import Position
 from .errors import ConfigError
 from .model import Pose, Workspace
 
@@ -36,6 +37,13 @@ def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
         Leg(start=start, end=end, zones=_zones(space, way[start : end + 1], back if start < left else None))
         for start, end in pairwise(free)
     ]
+
+
+def entered(space: Workspace, start: Pose | None, goal: Position) -> frozenset[str]:
+    """The zones that one motion gets into: where its goal lies and, from a known pose, those crossed."""
+    ends = [pose for pose in space.poses if goal in (pose.q, pose.above)]
+    inside = frozenset[str]().union(*(pose.zones for pose in ends))
+    return inside if start is None else inside | _crossed(space, [(start, end) for end in ends])
 
 
 def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:

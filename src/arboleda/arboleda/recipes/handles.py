@@ -95,12 +95,12 @@ class DeviceHandle(Handle):
         for name, value in facts.items():
             self._device.kind.check_fact(name, value)
 
-    def __getattr__(self, verb: str) -> Callable[..., Act]:
+    def __getattr__(self, verb: str) -> Callable[..., Step]:
         kind = self._device.kind
         if verb not in kind.verbs:
             raise UseError(f"a {kind.name} has no verb {quoted(verb)}; {among(verb, kind.verbs)}")
 
-        def step(*in_order: Value, **values: Value) -> Act:
+        def step(*in_order: Value, **values: Value) -> Step:
             names = [name for name, _ in kind.verbs[verb].parameters]
             if len(in_order) > len(names):
                 raise RecipeError(f"{verb} of a {kind.name} takes {', '.join(names) or 'no values'}")
@@ -111,9 +111,11 @@ class DeviceHandle(Handle):
                 return kind.command(id=id, robot=name, verb=verb, values=given)
 
             told = make("")  # wrong words are told at once
+            zones = steps.interlocked(self._context, told)
             words = " ".join([verb, *map(shown, given.values())])
             if not isinstance(told, ToldQuery):
-                return Act(f"{name} {words}", self._context, make, f"doing {words}")
+                act = Act(f"{name} {words}", self._context, make, f"doing {words}")
+                return steps.sequence(act.title, *zones, act) if zones else act
             asked = Ask(f"{name} {words}", self._context, make, f"doing {words}")
             asked.answers = told.told.answers
             return asked

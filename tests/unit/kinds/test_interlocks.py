@@ -1,0 +1,146 @@
+"""A machine occupies a shared zone unless it says the contrary: its door is an interlock of the arm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from arboleda.core.messages import Reason, Verb
+from arboleda.core.model import Interlock, Link, PlantModel
+from arboleda.core.recipe import Recipe
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.recipes import Kit, parallel, recipe, work
+
+from .lab import Bench
+from .tending import IDS, plant
+
+DOOR = FactType(type=str, words=("open", "closed"), first="open")
+MILL = DeviceKind(
+    name="mill",
+    facts={"door": DOOR},
+    verbs={
+        "open": DeviceVerb(
+            name="open", effect=Effect.MOTION, sets=(("door", "open"),), takes_s=2.0, at_most_s=8.0
+        ),
+        "close": DeviceVerb(
+            name="close", effect=Effect.MOTION, sets=(("door", "closed"),), takes_s=2.0, at_most_s=8.0
+        ),
+    },
+)
+
+
+def with_mill(*recipes: Recipe) -> PlantModel:
+    """The tending cell and a mill around its vise, into which arms reach only while its door is open."""
+    model = plant(*recipes)
+    (cell,) = model.cells
+    mill = Device(name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=MILL)
+    lock = Interlock(device="mill", zone="vise", free_while=(("door", "open"),))
+    cell = replace(cell, members=(*cell.members, ("mill", mill)), interlocks=(lock,))
+    assert mill.link is Link.MQTT
+    return replace(model, cells=(cell,))
+
+
+@recipe("machine")
+def machine(cell: Kit):  # type: ignore[no-untyped-def]
+    """The arm reaches in, the mill works behind its door, the arm reaches in again."""
+    left, mill = cell.devices("left", "mill")
+    return work(left.visit("vise"), mill.close(), cell.wait(1.0), mill.open(), left.visit("vise"))
+
+
+def test_a_door_is_closed_when_the_arm_is_out_and_the_arm_enters_when_it_is_open() -> None:
+    here = Bench(with_mill(machine))
+    here.submit("tending machine")
+    seen = set()
+    while here.changes[-1].state.value not in ("done", "failed"):
+        here.wait(0.05)
+        seen.add((here.plant.zones.holder("vise"), here.machines["mill"].facts["door"]))
+    assert here.changes[-1].state.value == "done"
+    assert ("left", "closed") not in seen
+    assert {("left", "open"), ("mill", "closed"), (None, "open")} <= seen
+
+
+def test_a_door_waits_for_an_arm_inside() -> None:
+    @recipe("hasty")
+    def hasty(cell: Kit):  # type: ignore[no-untyped-def]
+        left, mill = cell.devices("left", "mill")
+        return parallel(left.visit("vise", cell.wait(5.0)), work(cell.wait(1.5), mill.close()))
+
+    here = Bench(with_mill(hasty))
+    here.submit("tending hasty")
+    here.wait(4.0)
+    assert here.plant.zones.holder("vise") == "left"
+    assert here.machines["mill"].facts["door"] == "open"
+    assert here.outcome().state.value == "done"
+    assert here.machines["mill"].facts["door"] == "closed"
+
+
+def test_an_arm_does_not_reach_behind_a_door_that_nobody_knows_to_be_open() -> None:
+    here = Bench(with_mill(machine))
+    here.machines["mill"].facts["door"] = "closed"  # somebody shuts it by hand
+    here.wait(1.0)
+    assert here.plant.zones.holder("vise") == "mill"
+    here.submit("tending machine")
+    assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
+    assert here.machines["mill"].facts["door"] == "closed"
+
+
+def test_a_silent_machine_keeps_its_zone() -> None:
+    here = Bench(with_mill(machine))
+    here.machines["mill"].facts["door"] = "closed"
+    here.wait(1.0)
+    here.power_off("mill")
+    here.wait(5.0)
+    assert here.plant.zones.is_quarantined("vise")
+    here.machines["mill"].facts["door"] = "open"
+    here.power_on("mill")
+    here.wait(5.0)
+    assert here.plant.zones.holder("vise") is None
+
+
+def test_a_motion_into_a_zone_that_is_not_held_is_refused_whatever_the_tree_says() -> None:
+    @recipe("blind")
+    def blind(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(*without_zones(cell.device("left").visit("vise")))
+
+    here = Bench(with_mill(blind))
+    here.submit("tending blind")
+    assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
+    assert str(here.changes[-1].sentence).startswith("left does not hold zone vise")
+    here.wait(20.0)
+    assert not [each for each in here.sent if getattr(each, "q", None) == (-0.5, 0.3)]
+
+
+def test_a_door_that_may_hit_an_arm_is_not_closed_whatever_the_tree_says() -> None:
+    @recipe("blind")
+    def blind(cell: Kit):  # type: ignore[no-untyped-def]
+        left, mill = cell.devices("left", "mill")
+        return left.visit("vise", *without_zones(mill.close()))
+
+    here = Bench(with_mill(blind))
+    here.submit("tending blind")
+    assert here.outcome().reason is Reason.ZONE_UNAVAILABLE
+    assert here.machines["mill"].facts["door"] == "open"
+
+
+def test_after_a_stop_in_the_zone_the_cell_is_brought_back_to_work() -> None:
+    here = Bench(with_mill(machine))
+    here.submit("tending machine")
+    assert here.wait(20.0, lambda: here.plant.zones.holder("vise") == "left")
+    assert here.operate(Verb.STOP, "tending") is None
+    here.wait(5.0)
+    for verb in (Verb.CLEAR, Verb.RESET):
+        assert here.operate(verb, "tending") is None, verb
+        here.wait(5.0)
+    for advice in here.plant.advice("tending"):
+        here.operate(advice.do, advice.scope)
+    here.wait(20.0)
+    here.submit("tending machine")
+    assert here.outcome().state.value == "done"
+
+
+def without_zones(step: Any) -> list[Any]:
+    """The parts of a step that take and leave no zones."""
+    parts = [child for child in step.children if "zones" not in child.name]
+    for child in parts:
+        child.parent = None
+    return parts
