@@ -109,6 +109,8 @@ class Zones:
                 raise IllegalTransition(TAKEN(zone=zone, holder=self.holder(zone) or "", robot=robot))
         self._holders.update(dict.fromkeys(zones, robot))
         self._robbed.discard(robot)
+        if self._waiting.get(robot, zones) <= self.held_by(robot):
+            self._waiting.pop(robot, None)
 
     def regain(self, robot: str, zones: frozenset[str]) -> bool:
         """Whether a robot inside has all it needs to get out, `zones` at the most; it never waits.
