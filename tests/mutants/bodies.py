@@ -26,7 +26,7 @@ ZONES = (
         "An arm gives its zones back without being seen outside.",
         edit(
             Context.leave_zones,
-            "if held and self._dispatcher.place(self.cell.workspaces[robot]) is not None:",
+            "if held and self._is_outside(robot):",
             "if held:",
         ),
         seeds=SHARED,
@@ -34,8 +34,9 @@ ZONES = (
     ),
     mutant(
         "zone_entered_only_when_held",
-        "A leg's zones are taken one pose too late.",
+        "A leg's zones are taken one pose too late, and nothing guards them.",
         edit(steps.visit, "if leg.start == index and", "if leg.start + 1 == index and"),
+        edit(Context._barrier, "if not missing:", "if missing is not None:"),
         seeds=SHARED,
     ),
 )

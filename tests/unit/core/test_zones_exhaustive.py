@@ -113,7 +113,7 @@ def test_quarantine_begins_with_its_holder_and_ends_by_restore_or_override() -> 
 
 
 def test_who_is_granted_gets_all_it_asked_for_and_nobody_else_gets_anything() -> None:
-    for before, verb, arguments, after, granted in explored().steps:
+    for before, _, arguments, after, granted in explored().steps:
         asked = dict(before.waiting) | ({arguments[0]: arguments[1]} if len(arguments) == 2 else {})
         for robot in ROBOTS:
             gained = after.held_by(robot) - before.held_by(robot)
