@@ -93,7 +93,7 @@ FILES = {  # id: (the whole file, the line of the problem, what is told)
     "name": (HEAD + "@recipee('x')\ndef f(cell): ...\n", 3, "NameError: name 'recipee' is not defined"),
     "module": ("import nowhere_at_all\n", 1, "No module named 'nowhere_at_all'"),
     "exit": (HEAD + "\nraise SystemExit\n", 4, "it ends the program (SystemExit: )"),
-    "annotation": (HEAD + "@recipe('x')\ndef f(cell, dose): ...\n", 3, "dose needs an annotation"),
+    "annotation": (HEAD + "@recipe('x')\ndef f(cell, dose): ...\n", 3, "dose needs what it can be"),
     "name of a recipe": (
         HEAD + "@recipe('two words')\ndef f(cell): ...\n",
         3,

@@ -33,7 +33,7 @@ from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
 from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, RetryShape, TimingShape
 from .plant_file.yaml_marks import LARGEST
-from .plant_file.zones import with_zones, zones
+from .plant_file.zones import with_zones, with_zones_of_targets, zones
 from .recipe_trial import Verdict, offered
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
@@ -137,21 +137,23 @@ def _plant(document: Document, recipes: Offers) -> PlantModel | None:
     check_names(document)
     _check_sections(document)
     whole = [cell for cell in cells if cell is not None]
-    storage = [cell for cell in whole if isinstance(cell, StorageCell)]
-    regions = zones(document, storage)
-    zoned = {cell.name: with_zones(document, cell, regions) for cell in storage}
-    offers = recipes([cell for cell in whole if cell.name not in zoned])
+    regions = zones(document, whole)
+    zoned: dict[str, Cell] = {
+        cell.name: with_zones(document, cell, regions)
+        if isinstance(cell, StorageCell)
+        else with_zones_of_targets(document, cell, regions)
+        for cell in whole
+    }
+    offers = recipes([cell for cell in zoned.values() if not isinstance(cell, StorageCell)])
     if timing is None:
         return None
     times = Timing(**timing.model_dump())
-    check_arrivals_show(document, storage, times)
+    check_arrivals_show(document, whole, times)
     if shape is None or len(whole) < len(cells):
         return None
     return PlantModel(
         name=shape.name,
-        cells=tuple(
-            zoned.get(cell.name) or replace(cell, recipes=offers.get(cell.name, ())) for cell in whole
-        ),
+        cells=tuple(replace(cell, recipes=offers.get(cell.name, cell.recipes)) for cell in zoned.values()),
         timing=times,
         mqtt_version=MqttVersion(shape.mqtt_version),
         zones=tuple(region.name for region in regions),

@@ -143,6 +143,10 @@ class Robot:
         """Whether a reported position is that goal."""
         return position == goal
 
+    def confuses(self, position: Position, other: Position) -> bool:
+        """Whether it may stop at the one and count as standing at the other."""
+        return position == other
+
     def held_at(self, position: Position) -> Position:
         """The position as its motors can hold it."""
         return position

@@ -16,6 +16,8 @@ from arboleda.core.model import Robot
 
 from .floor import Placement
 
+ROUNDING = 1e-9  # rad or m, far below a motor step
+
 
 @dataclass(frozen=True, kw_only=True)
 class MoveJoints(Motion):
@@ -184,6 +186,12 @@ class Arm(Robot):
     def stands_at(self, position: Position, goal: Position) -> bool:
         assert isinstance(position, tuple) and isinstance(goal, tuple)
         return self.reached(position, self.quantised(goal))
+
+    def confuses(self, position: Position, other: Position) -> bool:
+        """It may stop its tolerance away from the one and count as standing as far from the other."""
+        assert isinstance(position, tuple) and isinstance(other, tuple)
+        rows = zip(self.quantised(position), self.quantised(other), self.tolerances, strict=True)
+        return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)
 
     def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
         """Time of a joint move; from an unknown start, or one that cannot be, the longest possible one."""

@@ -1,4 +1,4 @@
-"""Poses that an arm cannot tell apart, for it may stop at the one and count as standing at the other.
+"""Poses that a robot cannot tell apart, for it may stop at the one and count as standing at the other.
 
 An arm counts as standing at a pose within its tolerance of it, and may stop that far from its goal. So two
 poses that are no further apart than twice the tolerance, in every joint, look the same.
@@ -6,16 +6,14 @@ poses that are no further apart than twice the tolerance, in every joint, look t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from arboleda.core.model import Crossing, Pose
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.core.commands import Position
+from arboleda.core.model import Crossing, Pose, Workspace
 
-ROUNDING = 1e-9  # rad or m, far below a motor step
 WHY = "in every joint they are within twice the arm's tolerance of each other, so it cannot tell them apart"
-Position = tuple[float, ...]
 Pair = frozenset[str]  # of names of poses
 
 
@@ -28,46 +26,46 @@ class Confusion:
     sentence: str
 
 
-def with_alike_crossings(cell: StorageCell) -> StorageCell:
-    """The cell, a move of a pose crossing whatever that move crosses from a pose that looks the same."""
-    crossed = {frozenset({each.a, each.b}): each.zones for each in cell.crossings}
-    while (grown := _grown(cell, crossed)) != crossed:
+def alike_crossings(space: Workspace) -> tuple[Crossing, ...]:
+    """The crossings, a move of a pose crossing whatever that move crosses from a pose that looks the same."""
+    crossed = {frozenset({each.a, each.b}): each.zones for each in space.crossings}
+    while (grown := _grown(space, crossed)) != crossed:
         crossed = grown
     rows = sorted((tuple(sorted(pair)), zones) for pair, zones in crossed.items())
-    return replace(cell, crossings=tuple(Crossing(a=a, b=b, zones=zones) for (a, b), zones in rows))
+    return tuple(Crossing(a=a, b=b, zones=zones) for (a, b), zones in rows)
 
 
-def confusions(cell: StorageCell) -> list[Confusion]:
-    """Everything in the zones of a cell of which nobody would know whether the arm is in it."""
-    return list(_at_reference(cell)) or list(_between_poses(cell))
+def confusions(space: Workspace) -> list[Confusion]:
+    """Everything in the zones of a robot of which nobody would know whether it is in it."""
+    return list(_at_reference(space)) or list(_between_poses(space))
 
 
-def _between_poses(cell: StorageCell) -> Iterator[Confusion]:
-    for a, b in _alike(cell):
+def _between_poses(space: Workspace) -> Iterator[Confusion]:
+    for a, b in _alike(space):
         for inside, outside in permutations((a, b)):
             for zone in sorted(inside.zones - outside.zones):
                 what = f"{inside.name} lies in the zone and {outside.name} does not"
                 yield Confusion(zone=zone, named=(inside.name,), sentence=f"{what}; {WHY}")
-        for zone in sorted(_across(cell, a, b)):
+        for zone in sorted(_across(space, a, b)):
             what = f"a move between {a.name} and {b.name} crosses the zone"
             yield Confusion(zone=zone, named=(a.name, b.name), sentence=f"{what}; {WHY}")
 
 
-def _at_reference(cell: StorageCell) -> Iterator[Confusion]:
+def _at_reference(space: Workspace) -> Iterator[Confusion]:
     """Homing ends at the reference, so it lies outside all zones."""
-    reference = cell.arm.quantised(cell.arm.reference)
-    for pose in cell.poses:
-        if any(_same(cell, reference, q) for q in _own_spots(cell, pose)):
+    reference = space.robot.reference
+    for pose in space.poses if reference is not None else ():
+        if reference is not None and any(space.robot.confuses(reference, q) for q in _own_spots(pose)):
             for zone in sorted(pose.zones):
                 what = f"{pose.name} looks like the reference (all joints 0) to the arm"
                 rule = "homing ends there, so it must be outside all zones"
                 yield Confusion(zone=zone, named=(pose.name,), sentence=f"{what}; {rule}")
 
 
-def _grown(cell: StorageCell, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:
+def _grown(space: Workspace, crossed: dict[Pair, frozenset[str]]) -> dict[Pair, frozenset[str]]:
     """The zones by move, each move's also for those from a pose that looks like one of its ends."""
     grown = dict(crossed)
-    pairs = [(a.name, b.name) for alike in _alike(cell) for a, b in permutations(alike)]
+    pairs = [(a.name, b.name) for alike in _alike(space) for a, b in permutations(alike)]
     for (one, other), (ends, zones) in product(pairs, crossed.items()):
         if one in ends and other not in ends:
             move = ends - {one} | {other}
@@ -75,33 +73,28 @@ def _grown(cell: StorageCell, crossed: dict[Pair, frozenset[str]]) -> dict[Pair,
     return grown
 
 
-def _alike(cell: StorageCell) -> list[tuple[Pose, Pose]]:
+def _alike(space: Workspace) -> list[tuple[Pose, Pose]]:
     """The pairs of poses that look the same."""
-    spots = {pose.name: _spots(cell, pose) for pose in cell.poses}
+    spots = {pose.name: _spots(space, pose) for pose in space.poses}
     return [
         (a, b)
-        for a, b in combinations(cell.poses, 2)
-        if any(_same(cell, p, q) for p, q in product(spots[a.name], spots[b.name]))
+        for a, b in combinations(space.poses, 2)
+        if any(space.robot.confuses(p, q) for p, q in product(spots[a.name], spots[b.name]))
     ]
 
 
-def _across(cell: StorageCell, a: Pose, b: Pose) -> frozenset[str]:
+def _across(space: Workspace, a: Pose, b: Pose) -> frozenset[str]:
     ends = {a.name, b.name}
-    return frozenset[str]().union(*(each.zones for each in cell.crossings if {each.a, each.b} == ends))
+    return frozenset[str]().union(*(each.zones for each in space.crossings if {each.a, each.b} == ends))
 
 
-def _spots(cell: StorageCell, pose: Pose) -> list[Position]:
-    """Where an arm counts as standing at a pose; the reference counts as home where no pose is there."""
-    spots = _own_spots(cell, pose)
-    if pose.name == cell.home.name and all(each.q != cell.arm.reference for each in cell.poses):
-        spots.append(cell.arm.quantised(cell.arm.reference))
+def _spots(space: Workspace, pose: Pose) -> list[Position]:
+    """Where a robot counts as standing at a pose; the reference counts as home where no pose is there."""
+    spots, reference = _own_spots(pose), space.robot.reference
+    if reference is not None and pose.name == space.home.name:
+        spots += [reference] if all(each.q != reference for each in space.poses) else []
     return spots
 
 
-def _own_spots(cell: StorageCell, pose: Pose) -> list[Position]:
-    return [cell.arm.quantised(q) for q in (pose.q, pose.above) if q is not None]
-
-
-def _same(cell: StorageCell, p: Sequence[float], q: Sequence[float]) -> bool:
-    rows = zip(p, q, cell.arm.tolerances, strict=True)
-    return all(abs(a - b) <= 2 * within + ROUNDING for a, b, within in rows)
+def _own_spots(pose: Pose) -> list[Position]:
+    return [q for q in (pose.q, pose.above) if q is not None]

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from arboleda.core.belief import APART_S
 from arboleda.core.evidence import QUIET_S
-from arboleda.core.model import Evidence, Robot, Timing
+from arboleda.core.model import Cell, Evidence, Robot, Timing
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.recipes.storage_cell import StorageCell
@@ -23,15 +23,17 @@ SHOWN_S = {
 ROUNDING_S = 1e-6
 
 
-def check_arrivals_show(document: Document, cells: Iterable[StorageCell], timing: Timing) -> None:
+def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timing) -> None:
     """Keeps a problem for each robot whose moves may be given up or taken for done before they show."""
     for cell in cells:
-        for key, robot in (("arm", cell.arm), ("mobile", cell.mobile)):
+        for role, robot in cell.roles.items():
+            if not isinstance(robot, (Arm, Mobile)):
+                continue  # a verb of a declared kind has a time of its own
             _check_patience(document, robot, timing)
             spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), SHOWN_S[robot.evidence]
             if spare_s < needed_s - ROUNDING_S:
-                place: Place = ("cells", cell.name, key)
-                document.problem(place, _sentence(robot, timing, spare_s, needed_s))
+                key: Place = (role,) if isinstance(cell, StorageCell) else ("devices", role)
+                document.problem(("cells", cell.name, *key), _sentence(robot, timing, spare_s, needed_s))
 
 
 def _check_patience(document: Document, robot: Robot, timing: Timing) -> None:
@@ -50,12 +52,15 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
     return max(robot.timeout_s, even_s * factor + floor_s) - even_s
 
 
-def _longest_s(cell: StorageCell, robot: Robot) -> float:
+def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
     if isinstance(robot, Arm):
-        return robot.travel_s(None, [cell.home.q])
-    assert isinstance(robot, Mobile)
-    ways = [path.nodes for path in cell.paths]
-    ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
+        return robot.travel_s(None, [robot.reference])
+    if isinstance(cell, StorageCell):
+        ways = [path.nodes for path in cell.paths]
+        ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
+    else:
+        goals = [pose.q for pose in cell.workspaces[robot.name].poses if isinstance(pose.q, int)]
+        ways = [robot.grid.route(node, goal) for goal in goals for node in range(robot.grid.size)]
     return max(robot.travel_s(None, way) for way in ways)
 
 

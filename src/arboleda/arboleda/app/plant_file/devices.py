@@ -1,20 +1,30 @@
-"""Cells that are made of devices by role, each of a kind that the plant file declares."""
+"""Cells that are made of devices by role: robots, and devices of kinds that the plant file declares."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from arboleda.core.model import Cell, Evidence, Link, Retry
+from arboleda.core.model import Cell, Evidence, Link, Retry, Robot
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.wire import fit
 
+from . import targets
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
 from .kinds import RESERVED
-from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, is_name
+from .robots import arm, arm_model, mobile
+from .shapes import (
+    NAME_RULE,
+    ArmDeviceShape,
+    DeviceCellShape,
+    DeviceShape,
+    MobileDeviceShape,
+    RetryShape,
+    is_name,
+)
 
 CELLS: Place = ("cells",)
-OF_ROBOTS = ("arm", "mobile")
+OF_ROBOTS = ARM, MOBILE = ("arm", "mobile")
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
 
 
@@ -28,33 +38,71 @@ def device_cell(document: Document, place: Place, kinds: Mapping[str, DeviceKind
     """The cell, still without recipes; None, with its problems kept, where something is wrong with it."""
     both = [key for key in OF_ROBOTS if document.has((*place, key))]
     for key in both:
-        rule = f'a cell has either "{OF_ROBOTS[0]}" and "{OF_ROBOTS[1]}" or "devices"'
-        document.problem((*place, key), f"{rule}; both together are not possible yet", at=(*place, key))
+        rule = 'a cell has either "arm" and "mobile" or "devices"'
+        what = f'{rule}; as one of its devices, it is "{key}: {{kind: {key}, ...}}"'
+        document.problem((*place, key), what, at=(*place, key))
     shape = None if both else document.read(DeviceCellShape, place)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
-    roles = document.keys((*place, "devices"))
-    found = [(role, _device(document, (*place, "devices", role), kinds)) for role in roles]
-    members = tuple((role, device) for role, device in found if device is not None)
+    names = document.keys((*place, "devices"))
+    found = {role: _device(document, (*place, "devices", role), kinds) for role in names}
+    members = {role: device for role, device in found.items() if device is not None}
+    tools = _tools(document, (*place, "devices"), members)
     if shape is None or retry is None or len(members) < len(found):
+        return None
+    spaces = targets.workspaces(document, place, members, tools)
+    if spaces is None:
         return None
     return Cell(
         name=str(place[-1]),
-        members=members,
+        members=tuple(members.items()),
+        spaces=spaces,
+        arrays=targets.groups(document, place, spaces),
         queue_limit=shape.queue_limit,
+        zone_wait_s=shape.zone_wait_s,
         retry=Retry(**retry.model_dump()),
     )
 
 
-def _device(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Device | None:
-    role = str(place[-1])
+def _tools(document: Document, place: Place, members: Mapping[str, Robot]) -> dict[str, Robot]:
+    """The devices that robots carry, by the role of the robot."""
+    tools: dict[str, Robot] = {}
+    robots = [role for role in members if document.value((*place, role, "kind")) in OF_ROBOTS]
+    for role, device in members.items():
+        here = (*place, role, "tool_of")
+        carrier = document.value(here) if role not in robots and document.has(here) else None
+        if carrier is None:
+            continue
+        if carrier not in robots:
+            there = f"must be {choice(robots)}" if robots else "no device of this cell is a robot"
+            document.problem(here, f"{there}, is {shown(carrier)}{nearest(str(carrier), robots)}")
+        elif device.held_fact is None:
+            document.problem(here, f"{role} holds no part: none of its verbs has holds: part")
+        elif carrier in tools:
+            document.problem(here, f"{carrier} carries {tools[carrier].name} already")
+        else:
+            tools[carrier] = device
+    return tools
+
+
+def _device(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Robot | None:
+    role, kind = str(place[-1]), document.value((*place, "kind"))
     if not is_name(role):
         document.problem(place, f"a role must be {NAME_RULE}", at=place)
+        return None
+    if kind == ARM:
+        return arm(document, place, arm_model(document, place), ArmDeviceShape)
+    if kind == MOBILE:
+        return mobile(document, place, MobileDeviceShape)
+    return _declared(document, place, kinds)
+
+
+def _declared(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Device | None:
     shape = document.read(DeviceShape, place)
     kind = _kind(document, (*place, "kind"), kinds)
-    if shape is None or kind is None or not is_name(role):
+    if shape is None or kind is None:
         return None
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
-    name = shape.name or role
+    name = shape.name or str(place[-1])
     proven = [_is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
     if not all(proven) or not _fits(document, (*place, "kind"), kind):
         return None
@@ -74,16 +122,14 @@ def _kind(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> 
     name, declared = document.value(place), document.keys(("kinds",))
     if not isinstance(name, str) or name in declared:
         return kinds.get(name) if isinstance(name, str) else None
-    if name in RESERVED:
-        document.problem(
-            place, f'{shown(name)} is not possible under "devices" yet; write "{name}:" in the cell'
-        )
-    elif not declared:
+    known = [*declared, *RESERVED]
+    hint = nearest(name, known)
+    if not declared and not hint:
         document.problem(
             place, f'there is no kind {shown(name)}; declare it under "kinds" at the top of the file'
         )
     else:
-        document.problem(place, f"must be {choice(declared)}, is {shown(name)}{nearest(name, declared)}")
+        document.problem(place, f"must be {choice(known)}, is {shown(name)}{hint}")
     return None
 
 

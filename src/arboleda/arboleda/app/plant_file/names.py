@@ -11,9 +11,10 @@ RESERVED = ("plant", "system")  # first words of the plant's own ROS 2 topics
 def check_names(document: Document) -> None:
     """Keeps a problem for each cell name that is none, each reserved word and each name used twice."""
     cells: list[Place] = [("cells", name) for name in document.keys(("cells",))]
-    arms = [(*cell, "arm") for cell in cells]
+    arms: list[Place] = [(*cell, "arm") for cell in cells]
     robots = [place for cell in cells for place in ((*cell, "arm"), (*cell, "mobile"))]
     devices = [(*cell, "devices", role) for cell in cells for role in document.keys((*cell, "devices"))]
+    arms += [place for place in devices if document.value((*place, "kind")) == "arm"]
     own = _names(document, robots, "name") + _names(document, devices, "name")
     names = [(str(cell[-1]), cell) for cell in cells] + own
     for name, place in names:

@@ -21,7 +21,7 @@ from arboleda.recipes.storage import RECIPES
 
 from .. import user_file
 from .document import Document, Place, nearest, shown
-from .shapes import NAME_RULE, USES, is_name
+from .shapes import NAME_RULE, WORDS, is_name
 
 SECTION: Place = ("uses",)
 ENDING = ".py"
@@ -67,7 +67,7 @@ class Used:
 
 def listed(document: Document) -> tuple[str, ...]:
     """The files and modules that the plant file uses; none, with the problem kept, where that is no list."""
-    words = document.read_plain(USES, SECTION) or ()
+    words = document.read_plain(WORDS, SECTION) or ()
     for index, word in enumerate(words):
         if word in words[:index]:
             document.problem((*SECTION, index), f"{shown(word)} is there twice")

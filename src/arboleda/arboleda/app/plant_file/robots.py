@@ -41,18 +41,20 @@ def arm_model(document: Document, place: Place) -> ArmModel | None:
     return replace(model, joints=narrowed)
 
 
-def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
+def arm(
+    document: Document, place: Place, model: ArmModel | None, written: type[ArmShape] = ArmShape
+) -> Arm | None:
     """The arm of a cell; None, with its problems kept, where something is wrong with it."""
-    shape = document.read(ArmShape, place)
+    shape = document.read(written, place)
     base = _section(document, (*place, "base"), BaseShape)
     _check_homing(document, place, shape)
     tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
     if shape is None or base is None or model is None:
         return None
     return Arm(
-        **_common(shape),
+        **_common(shape, place),
         model=model.name,
-        twin=shape.twin or shape.name,
+        twin=shape.twin or shape.name or str(place[-1]),
         base=_placement(base),
         joints=model.joints,
         timeout_s=shape.timeout_s,
@@ -63,9 +65,9 @@ def arm(document: Document, place: Place, model: ArmModel | None) -> Arm | None:
     )
 
 
-def mobile(document: Document, place: Place) -> Mobile | None:
+def mobile(document: Document, place: Place, written: type[MobileShape] = MobileShape) -> Mobile | None:
     """The mobile robot of a cell; None, with its problems kept, where something is wrong with it."""
-    shape = document.read(MobileShape, place)
+    shape = document.read(written, place)
     grid = _section(document, (*place, "grid"), GridShape)
     _check_homing(document, place, shape)
     model = _model(document, (*place, "model"), mobile_models(), default="mobile")
@@ -76,7 +78,7 @@ def mobile(document: Document, place: Place) -> Mobile | None:
         fastest = f"{model.speed * 1000:g} mm/s, the speed of the model {model.name}"
         document.problem((*place, "speed_mm_s"), f"must be at most {fastest}, is {shape.speed_mm_s:g}")
     return Mobile(
-        **_common(shape),
+        **_common(shape, place),
         model=model.name,
         grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
         speed=speed,
@@ -94,10 +96,11 @@ def _check_homing(document: Document, place: Place, shape: RobotShape | None) ->
         document.problem((*place, "home_at_start"), needs)
 
 
-def _common(shape: RobotShape) -> dict[str, Any]:
+def _common(shape: RobotShape, place: Place) -> dict[str, Any]:
+    name = shape.name or str(place[-1])
     return {
-        "name": shape.name,
-        "mqtt": shape.mqtt or shape.name,
+        "name": name,
+        "mqtt": shape.mqtt or name,
         "link": shape.link,
         "evidence": shape.evidence,
         "assume_homed": shape.assume_homed,

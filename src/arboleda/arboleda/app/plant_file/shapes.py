@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAda
 from pydantic_core import PydanticCustomError
 
 from arboleda.core.commands import OnStop
-from arboleda.core.model import Evidence, Link, Retry, Timing
+from arboleda.core.model import Cell, Evidence, Link, Retry, Timing
 from arboleda.kinds.declared import Effect
 from arboleda.recipes.storage_cell import StorageCell
 
@@ -109,6 +109,9 @@ class DeviceCellShape(Shape):
     default_recipe: str = ""
     queue_limit: QueueLimit = QUEUE_LIMIT
     retry: Any = None
+    targets: Any = None
+    groups: Any = None
+    zone_wait_s: Duration = Cell.zone_wait_s
 
 
 class KindShape(Shape):
@@ -140,6 +143,7 @@ class DeviceShape(Shape):
     mqtt: Name = ""
     evidence: Literal["ids", "facts", "joints", "state"] = "ids"
     stop: Literal["supported", "none"] = "supported"
+    tool_of: str = ""
 
 
 class RetryShape(Shape):
@@ -194,6 +198,15 @@ class ModelShape(Shape):
     steps: Any = None
 
 
+class ArmDeviceShape(ArmShape):
+    """An arm in a role; an empty `name` is the role."""
+
+    kind: Literal["arm"]
+    name: Name = ""
+    link: Annotated[Link, Field(strict=False)] = Link.MQTT
+    evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
+
+
 class MobileShape(RobotShape):
     """`mobile:`; without `speed_mm_s` it drives at the model's speed."""
 
@@ -201,6 +214,21 @@ class MobileShape(RobotShape):
     grid: Any = None
     timeout_s: Duration = 20.0
     speed_mm_s: Speed = 0.0
+
+
+class MobileDeviceShape(MobileShape):
+    """A mobile robot in a role; an empty `name` is the role."""
+
+    kind: Literal["mobile"]
+    name: Name = ""
+    link: Annotated[Link, Field(strict=False)] = Link.MQTT
+    evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
+
+
+class NodeShape(Shape):
+    """Where a mobile robot stands at a target."""
+
+    node: Annotated[int, Field(ge=0)]
 
 
 class BaseShape(Shape):
@@ -246,14 +274,18 @@ class PalletizingShape(Shape):
 
 
 class ZoneShape(Shape):
-    """One zone under `zones:`; a pose is written `<cell> <pose>`, a move as its two ends."""
+    """One zone under `zones:`; a pose is written `<cell> <pose>`, a move as its two ends.
+
+    `free_while` has the devices that occupy it by themselves, and what they say while they do not.
+    """
 
     poses: list[str] = Field(default_factory=list)
     moves: list[Annotated[list[str], Field(min_length=2, max_length=2)]] = Field(default_factory=list)
+    free_while: dict[str, Any] = Field(default_factory=dict)
 
 
 STRICT = ConfigDict(strict=True)
-USES: TypeAdapter[list[str]] = TypeAdapter(Annotated[list[str], Field(min_length=1)], config=STRICT)
+WORDS: TypeAdapter[list[str]] = TypeAdapter(Annotated[list[str], Field(min_length=1)], config=STRICT)
 NODES: TypeAdapter[list[int]] = TypeAdapter(
     Annotated[list[int], Field(min_length=1, max_length=64)], config=STRICT
 )

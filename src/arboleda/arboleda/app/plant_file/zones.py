@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from arboleda.core.model import Crossing, Pose
+from arboleda.core.model import Cell, Crossing, Interlock, Pose, Workspace
+from arboleda.kinds.declared import Device, UseError
 from arboleda.recipes.storage import plan_problems
 from arboleda.recipes.storage_cell import StorageCell
 
-from .alike import confusions, with_alike_crossings
-from .document import Document, Place, nearest, shown
+from .alike import alike_crossings, confusions
+from .document import Document, Place, choice, nearest, shown
 from .pickups import pickup_names
 from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
 
 SECTION: Place = ("zones",)
+WAITS = "home lies in a zone; robots wait there, so it must be outside all zones"
 T = TypeVar("T")
 
 
@@ -34,6 +36,7 @@ class Zone:
     name: str
     poses: dict[Spot, int]
     moves: dict[frozenset[Spot], int]
+    interlocks: tuple[Interlock, ...] = ()
 
     def place(self, *spots: Spot) -> Place:
         """Where the file names this pose, or the move between these two; it may not name that itself."""
@@ -44,7 +47,7 @@ class Zone:
         return (*SECTION, self.name, "poses", self.poses[spots[0]])
 
 
-def zones(document: Document, cells: Sequence[StorageCell]) -> tuple[Zone, ...]:
+def zones(document: Document, cells: Sequence[Cell]) -> tuple[Zone, ...]:
     """Every zone of the file; parts that are wrong are left out, with the problems kept.
 
     `cells` are those that could be read; poses of the others are not looked at.
@@ -59,8 +62,7 @@ def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone])
     """The cell with the zones of its poses and moves; a problem is kept where no way can be planned."""
 
     def placed(pose: Pose) -> Pose:
-        spot = Spot(cell=cell.name, pose=pose.name)
-        return replace(pose, zones=frozenset(zone.name for zone in all_zones if spot in zone.poses))
+        return _placed(cell, pose, all_zones)
 
     palletizing = replace(
         cell.palletizing, pick=placed(cell.palletizing.pick), place=placed(cell.palletizing.place)
@@ -74,20 +76,64 @@ def with_zones(document: Document, cell: StorageCell, all_zones: Sequence[Zone])
         palletizing=palletizing,
         crossings=_crossings(cell, all_zones),
     )
-    zoned = with_alike_crossings(zoned) if zoned.zones else zoned
+    if zoned.zones:
+        zoned = replace(zoned, crossings=alike_crossings(zoned.workspaces[zoned.arm.name]))
     unplanned = plan_problems(zoned)
+    _keep_unplanned(document, cell, unplanned, all_zones)
+    if not unplanned:
+        _keep_confusions(document, cell, zoned.workspaces[zoned.arm.name], all_zones)
+    return zoned
+
+
+def with_zones_of_targets(document: Document, cell: Cell, all_zones: Sequence[Zone]) -> Cell:
+    """A cell of devices with the zones of its targets, and with what of it occupies zones by itself."""
+    spaces = []
+    for space in cell.spaces:
+        poses = tuple(_placed(cell, pose, all_zones) for pose in space.poses)
+        names = {pose.name for pose in poses}
+        crossings = tuple(each for each in _crossings(cell, all_zones) if {each.a, each.b} <= names)
+        home = next(pose for pose in poses if pose.name == space.home.name)
+        zoned = replace(space, home=home, poses=poses, crossings=crossings)
+        zoned = replace(zoned, crossings=alike_crossings(zoned)) if zoned.zones else zoned
+        if not home.zones:
+            _keep_confusions(document, cell, zoned, all_zones)
+        spaces.append(zoned)
+    lying = {space.home.name: f"cell {cell.name}: {WAITS}" for space in spaces if space.home.zones}
+    _keep_unplanned(document, cell, lying, all_zones)
+    locks = tuple(
+        lock for zone in all_zones for lock in zone.interlocks if lock.device in _device_names(cell)
+    )
+    return replace(cell, spaces=tuple(spaces), interlocks=locks)
+
+
+def _device_names(cell: Cell) -> set[str]:
+    return {device.name for device in cell.robots}
+
+
+def _keep_unplanned(
+    document: Document, cell: Cell, unplanned: Mapping[str, str], all_zones: Sequence[Zone]
+) -> None:
+    """Keeps why no way can be planned, by pose."""
     for pose, sentence in unplanned.items():
         spot = Spot(cell=cell.name, pose=pose)
         zone = next(zone for zone in all_zones if spot in zone.poses)
         document.problem(zone.place(spot), sentence)
-    for found in confusions(zoned) if zoned.zones and not unplanned else ():
+
+
+def _keep_confusions(document: Document, cell: Cell, space: Workspace, all_zones: Sequence[Zone]) -> None:
+    """Keeps a problem for each zone of which nobody would know whether the robot is in it."""
+    for found in confusions(space) if space.zones else ():
         zone = next(zone for zone in all_zones if zone.name == found.zone)
         spots = [Spot(cell=cell.name, pose=name) for name in found.named]
         document.problem(zone.place(*spots), f"cell {cell.name}: {found.sentence}")
-    return zoned
 
 
-def _zone(document: Document, name: str, cells: Sequence[StorageCell]) -> Zone:
+def _placed(cell: Cell, pose: Pose, all_zones: Sequence[Zone]) -> Pose:
+    spot = Spot(cell=cell.name, pose=pose.name)
+    return replace(pose, zones=frozenset(zone.name for zone in all_zones if spot in zone.poses))
+
+
+def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
     place: Place = (*SECTION, name)
     if not is_name(name):
         document.problem(place, f"a zone's name must be {NAME_RULE}", at=place)
@@ -101,16 +147,48 @@ def _zone(document: Document, name: str, cells: Sequence[StorageCell]) -> Zone:
     ends = [_spots(document, (*place, "moves", i), pair, cells) for i, pair in enumerate(shape.moves)]
     moves = [_move(document, (*place, "moves", i), pair, poses) for i, pair in enumerate(ends)]
     twice = "the move is there twice; a direction makes no difference"
-    return Zone(name=name, poses=poses, moves=_once(document, (*place, "moves"), moves, twice))
+    return Zone(
+        name=name,
+        poses=poses,
+        moves=_once(document, (*place, "moves"), moves, twice),
+        interlocks=_interlocks(document, place, cells),
+    )
 
 
-def _spots(
-    document: Document, place: Place, texts: list[str], cells: Sequence[StorageCell]
-) -> list[Spot | None]:
+def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tuple[Interlock, ...]:
+    """The devices of `free_while`, each with the facts that it says while it is not in the zone."""
+    here = (*place, "free_while")
+    devices = {device.name: device for cell in cells for device in cell.robots if isinstance(device, Device)}
+    found = []
+    for name in document.keys(here):
+        if name not in devices:
+            if name not in _named_devices(document):  # else what is wrong with it is told there
+                there = f"must be {choice(devices)}" if devices else "there is no declared device"
+                sentence = f"{there}, is {shown(name)}{nearest(name, devices)}"
+                document.problem(here, sentence, at=(*here, name))
+            continue
+        facts = document.read_plain(MAPPING, (*here, name)) or {}
+        for fact, value in facts.items():
+            try:
+                devices[name].kind.check_fact(fact, value)
+            except UseError as error:
+                document.problem((*here, name, fact), str(error))
+        found.append(Interlock(device=name, zone=str(place[-1]), free_while=tuple(facts.items())))
+    return tuple(found)
+
+
+def _named_devices(document: Document) -> list[str]:
+    """The names of all devices that the file has, right or wrong."""
+    cells: list[Place] = [("cells", name, "devices") for name in document.keys(("cells",))]
+    places = [(*cell, role) for cell in cells for role in document.keys(cell)]
+    return [str(document.value((*place, "name")) or place[-1]) for place in places]
+
+
+def _spots(document: Document, place: Place, texts: list[str], cells: Sequence[Cell]) -> list[Spot | None]:
     return [_spot(document, (*place, index), text, cells) for index, text in enumerate(texts)]
 
 
-def _spot(document: Document, place: Place, text: str, cells: Sequence[StorageCell]) -> Spot | None:
+def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) -> Spot | None:
     """`sis_a pickup` -> its spot; None where it is none, or where its cell could not be read."""
     name, *words = text.lower().split() or [""]
     names = document.keys(("cells",))
@@ -120,12 +198,14 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[StorageCe
         document.problem(place, f"{example}, is {shown(text)}; there is no cell {shown(name)}{hint}")
         return None
     cell = next((cell for cell in cells if cell.name == name), None)
-    if document.has(("cells", name, "devices")):
-        document.problem(place, f"{name} is a cell of devices; zones are not possible for it yet")
     if cell is None:
         return None
     poses, pose = _poses(cell), " ".join(words)
-    if pose not in poses:
+    if pose not in poses and not isinstance(cell, StorageCell):
+        known = f"targets of {name} are {choice(poses)}" if poses else f"{name} has no targets"
+        document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
+        return None
+    if pose not in poses and isinstance(cell, StorageCell):
         stations = f'"station 0" to "station {len(cell.stations) - 1}"'
         pickups = ", ".join(f'"{word}"' for word in pickup_names(cell.pickup, cell.pickups))
         known = f'poses of {name} are "home", {pickups} and {stations}'
@@ -134,8 +214,10 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[StorageCe
     return Spot(cell=name, pose=poses[pose].name)
 
 
-def _poses(cell: StorageCell) -> dict[str, Pose]:
+def _poses(cell: Cell) -> dict[str, Pose]:
     """The poses of a cell by the names they have in a plant file."""
+    if not isinstance(cell, StorageCell):
+        return {pose.name: pose for space in cell.spaces for pose in space.poses}
     pickups = pickup_names(cell.pickup, cell.pickups)
     return {"home": cell.home} | pickups | {pose.name: pose for pose in cell.stations}
 
@@ -170,7 +252,7 @@ def _once(document: Document, place: Place, values: Iterable[T | None], sentence
     return found
 
 
-def _crossings(cell: StorageCell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:
+def _crossings(cell: Cell, all_zones: Sequence[Zone]) -> tuple[Crossing, ...]:
     """One crossing for each pair of poses, with all the zones that lie between them."""
     crossed: dict[tuple[str, ...], set[str]] = {}
     for zone in all_zones:
