@@ -22,7 +22,7 @@ from arboleda.core.messages import TaskState
 from arboleda.core.model import PlantModel
 from arboleda.core.outside import plain
 
-from . import bench_command, config, layout_check, session, token_command, tree_command, verbs
+from . import bench_command, config, layout_check, new_command, session, token_command, tree_command, verbs
 from .build import OF_BOARDS, PARTS, Options, build
 from .client import Refused
 from .conformance import command as conformance
@@ -249,6 +249,7 @@ def check(
 
 
 cli.command()(tree_command.tree)
+cli.command()(new_command.new)
 
 
 @cli.command()

@@ -33,8 +33,13 @@ def _name(text: str) -> str:
     return text
 
 
+def is_plant_name(text: str) -> bool:
+    """Whether a plant can be called so."""
+    return len(text) <= 64 and PLANT_NAME.fullmatch(text) is not None
+
+
 def _plant_name(text: str) -> str:
-    if len(text) > 64 or not PLANT_NAME.fullmatch(text):
+    if not is_plant_name(text):
         raise PydanticCustomError("name", "must be " + PLANT_NAME_RULE)
     return text
 

@@ -1,0 +1,61 @@
+"""The command `arboleda new`: a folder with a plant of one's own that runs."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.core.errors import ConfigError, StartError
+from arboleda.core.outside import quoted
+
+from .plant_file.shapes import PLANT_NAME_RULE, is_plant_name
+
+WRITTEN = ("plant.yaml", "recipes.py", "test_plant.py")
+NAMED = "PLANT"  # stands for the plant's name in what is written
+
+
+def new(
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the plant.")
+    ],
+) -> None:
+    """Write a plant of your own: an arm, a device, a recipe and a test; e.g. `arboleda new my_plant`."""
+    written = write(folder)
+    for file in written:
+        typer.echo(f"wrote {file}")
+    typer.echo(
+        f"""
+Next:
+  cd {folder}
+  arboleda check plant.yaml                             says what is wrong with it, line by line
+  arboleda up "cell press feed 3" --plant plant.yaml    runs it on virtual devices, with a page
+  pytest                                                tries it with faults (pip install pytest)
+
+What the devices can do is in plant.yaml, what they do together in recipes.py: change them, and check again."""
+    )
+
+
+def write(folder: Path) -> list[Path]:
+    """The files of a new plant; ConfigError, and nothing written, where they cannot be.
+
+    StartError where the machine does not take them.
+    """
+    name = folder.resolve().name
+    if not is_plant_name(name):
+        raise ConfigError((f"{quoted(name)} cannot be the name of a plant; it must be {PLANT_NAME_RULE}",))
+    targets = [folder / each for each in WRITTEN]
+    there = next((each for each in targets if each.exists()), None)
+    if there is not None:
+        raise ConfigError((f"{there} is there already; nothing was written. Choose another folder",))
+    starter = files("arboleda").joinpath("starter")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for target in targets:
+            text = starter.joinpath(target.name).read_text("utf-8")
+            target.write_text(text.replace(NAMED, name), "utf-8")
+    except OSError as error:
+        raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
+    return targets

@@ -1,0 +1,62 @@
+"""`arboleda new`: the folder that it writes is a plant that runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from arboleda.app import config
+from arboleda.app.cli import cli
+from arboleda.app.command import main
+
+from ..kinds.lab import Bench
+
+
+def new(folder: Path) -> Result:
+    return CliRunner().invoke(cli, ["new", str(folder)])
+
+
+def test_the_folder_is_a_plant_that_does_its_task(tmp_path: Path) -> None:
+    folder = tmp_path / "my_plant"
+    result = new(folder)
+    assert result.exit_code == 0 and f"wrote {folder / 'plant.yaml'}" in result.output
+    assert "arboleda up" in result.output
+    plant = config.load(folder / "plant.yaml")
+    assert plant.name == "my_plant"
+    here = Bench(plant)
+    here.submit("cell press spare 5")
+    assert here.outcome().state.value == "done"
+
+
+def test_what_is_there_is_never_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "recipes.py").write_text("mine", "utf-8")
+    assert _status("new", str(folder)) == 2
+    assert "is there already; nothing was written" in capsys.readouterr().err
+    assert [each.name for each in folder.iterdir()] == ["recipes.py"]
+
+
+@pytest.mark.parametrize("name", ["My Plant", "9th", "a" * 65])
+def test_a_folder_whose_name_is_no_plant_s_is_refused(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _status("new", str(tmp_path / name)) == 2
+    assert "cannot be the name of a plant" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("", "utf-8")
+    assert _status("new", str(tmp_path / "file" / "plant")) == 1
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def _status(*words: str) -> int:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sys.argv", ["arboleda", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+    return int(ended.value.code or 0)
