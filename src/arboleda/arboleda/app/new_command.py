@@ -34,7 +34,7 @@ Next:
   arboleda up "cell press feed 3" --plant plant.yaml    runs it on virtual devices, with a page
   pytest                                                tries it with faults (pip install pytest)
 
-What the devices can do is in plant.yaml, what they do together in recipes.py: change them, and check again."""
+What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again."""
     )
 
 

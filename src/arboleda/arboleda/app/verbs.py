@@ -27,7 +27,7 @@ LABELS = {Verb.STOP: "stop (software)"}
 
 def add_to(cli: typer.Typer) -> None:
     """Add a command per verb."""
-    makers = {Verb.HOME: _home, Verb.OVERRIDE: _override}
+    makers = {Verb.HOME: _home, Verb.OVERRIDE: _override, Verb.ANSWER: _answer}
     for verb, words in ABOUT.items():
         act = makers.get(verb, _plain)(verb, _argument(words.scopes))
         cli.command(verb.value, help=about(words), short_help=words.brief)(act)
@@ -79,6 +79,18 @@ def _override(verb: Verb, argument: Any) -> Callable[..., None]:
         if not yes:
             typer.confirm(question, abort=True)
         _ask(verb, scope, plant, state)
+
+    return act
+
+
+def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
+    def act(
+        person: Annotated[str, typer.Argument(help="Who is asked.", callback=_named)],
+        answer: Annotated[list[str], typer.Argument(help="One of the answers that are offered.")],
+        plant: PlantFile = None,
+        state: StateFolder = None,
+    ) -> None:
+        _ask(verb, " ".join([person, *answer]), plant, state)
 
     return act
 

@@ -56,7 +56,7 @@ class Belief:
         self.robot = robot
         self.stale_after_s = stale_after_s
         self.plant_epoch = plant_epoch
-        self.supervised = robot.evidence is not Evidence.STATE
+        self.supervised = robot.evidence is not Evidence.STATE and robot.link is not Link.SCREEN
         self.position_in = _position_under(robot.position_key)  # of a report, or of this
         self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
         self.drawn = robot.link is Link.NONE

@@ -92,6 +92,20 @@ class Query(Command):
     """Asks for an answer, one at a time; forgotten when its step is left, even while its robot is stopped."""
 
 
+class Question(Query):
+    """A query that somebody answers who sees it on the plant's own screens."""
+
+    @property
+    def text(self) -> str:
+        """What is asked."""
+        raise NotImplementedError
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """All that can be answered."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True, kw_only=True)
 class Stop(Command):
     """Halt the running move, stop and latch, or clear the latch."""

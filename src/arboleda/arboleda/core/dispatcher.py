@@ -9,7 +9,7 @@ from functools import partial
 
 from . import evidence
 from .belief import Belief
-from .commands import Command, Home, Motion, Position, Query, Stop, StopMode, Switch, Work
+from .commands import Command, Home, Motion, Position, Query, Question, Stop, StopMode, Switch, Work
 from .evidence import Before, Verdict
 from .facts import shown
 from .grips import Grip, Grips
@@ -45,6 +45,7 @@ NOT_FINISHED = Phrase("command.not_finished", "{robot}: did not finish within {s
 NOT_STOPPED = Phrase(
     "command.not_stopped", "{robot}: did not confirm that it stopped within {seconds:.1f} s while {doing}"
 )
+UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
 HOMING_S = 30.0  # a slow search for the switch, and back off it
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
@@ -280,6 +281,17 @@ class Dispatcher:
         for entry in self.ledger.of_robot(robot) if obeyed else ():
             entry.interference = sentence
 
+    def question(self, robot: str) -> Entry | None:
+        """What a person is being asked; None where that is nothing, or this is no person."""
+        asked = (e for e in self.ledger.of_robot(robot) if isinstance(e.command, Question) and e.open)
+        return next(asked, None)
+
+    def answer(self, robot: str, answer: str, now: float) -> None:
+        """A person has answered what is being asked."""
+        entry = self.question(robot)
+        if entry is not None:
+            self.report(Report(at=now, robot=robot, answered=entry.command.id, answer=answer), now)
+
     def _hear_of_others(self, report: Report) -> None:
         """A bridge counts the commands of others; each count that rose is news."""
         refused, obeyed = self.interference.rise(report)
@@ -349,7 +361,7 @@ class Dispatcher:
         self._leave(Stop(id=self._new_id(), robot=robot, mode=mode))
 
     def _leave(self, command: Command) -> None:
-        if self.model.robots[command.robot].link is Link.NONE:
+        if self.model.robots[command.robot].link in UNSENT:
             return
         self.outbox.append(command)
         self.under_way.left(command)

@@ -69,6 +69,7 @@ class Verb(str, Enum):
     HOME = "home"
     OVERRIDE = "override"
     UNLOAD = "unload"
+    ANSWER = "answer"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -265,6 +266,8 @@ class Shutdown:
 @dataclass(frozen=True, kw_only=True)
 class OperatorRequest:
     """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override) or a task (cancel).
+
+    The scope of `unload` may be a cell and a station, that of `answer` is a person and the answer.
 
     `by_hand` (home) declares a robot homed that stands at its reference. `client` (cancel): who asks is no
     operator but the client of the task itself.

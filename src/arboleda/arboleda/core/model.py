@@ -29,11 +29,15 @@ class Evidence(str, Enum):
 
 
 class Link(str, Enum):
-    """How a robot is reached: MQTT through the bridge, directly on ROS 2 topics, or not: it is only drawn."""
+    """How a robot is reached: MQTT through the bridge, directly on ROS 2 topics, or not: it is only drawn.
+
+    Who is reached by SCREEN is a person, who answers on the page, on the command line, over HTTP or ROS 2.
+    """
 
     MQTT = "mqtt"
     ROS = "ros"
     NONE = "none"
+    SCREEN = "screen"
 
 
 class ForeignCommands(str, Enum):

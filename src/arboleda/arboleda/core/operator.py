@@ -11,12 +11,14 @@ from .advice import DO, OR
 from .belief import ONLY_DRAWN
 from .cell import STILL_DOING, CellRun
 from .cell_states import Cause, CellState
+from .commands import Question
 from .dispatcher import Dispatcher
 from .errors import ArboledaError, IllegalTransition
 from .intake import Intake
 from .messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
-from .model import Evidence
+from .model import Evidence, Link
 from .outside import quoted
+from .recipe import known
 from .sentence import Phrase, Sentence, Value
 from .zones import NONE, Zones
 
@@ -79,6 +81,9 @@ NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
 OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cell that is {allowed}")
 NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
+NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
+NOT_ASKED = Phrase("refusal.not_asked", "nobody asks {person} anything now")
+NO_ANSWER = Phrase("refusal.no_answer", "{word} is no answer to what {person} is asked; answers: {known}")
 NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
 ACTS_KEPT = 20  # what a screen shows of them; the journal has all
@@ -144,6 +149,8 @@ class Operator:
             return self._planned_override(scope)
         if request.verb is Verb.UNLOAD:
             return self._planned_unloading(scope)
+        if request.verb is Verb.ANSWER:
+            return self._planned_answer(scope)
         if request.verb is Verb.CANCEL and scope.lstrip("#") in self._intake.tasks:
             return self._planned_cancel(scope.lstrip("#"), _cancelled_by(request))
         if request.verb is Verb.CANCEL:
@@ -260,6 +267,24 @@ class Operator:
     def _unload(self, cells: list[CellRun], number: int | None) -> None:
         for cell in cells:
             cell.context.unload(number)
+
+    def _planned_answer(self, scope: str) -> Callable[[], None]:
+        """`operator good`: a person, and one of the answers to what is being asked."""
+        person, _, word = scope.partition(" ")
+        people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
+        if person not in people:
+            raise Refused(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
+        entry = self._dispatcher.question(person)
+        if entry is None:
+            raise Refused(NOT_ASKED(person=person))
+        assert isinstance(entry.command, Question)
+        answer = known(word.strip(), entry.command.answers)
+        if answer is None:
+            raise Refused(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
+        return partial(self._answer, person, answer)
+
+    def _answer(self, person: str, answer: str) -> None:
+        self._dispatcher.answer(person, answer, self._clock())
 
     def _planned_cancel(self, id: str, failure: Failure) -> Callable[[], None]:
         task = self._intake.tasks[id]

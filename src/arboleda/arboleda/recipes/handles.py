@@ -17,10 +17,12 @@ from arboleda.core.model import Pose, Robot
 from arboleda.core.outside import among, quoted
 from arboleda.core.sentence import Phrase
 from arboleda.kinds.declared import Device, ToldQuery, UseError
+from arboleda.kinds.person import PATIENCE_S, Person
 
 from .errors import RecipeError
 
 Step = Behaviour
+LONGEST_QUESTION = 300
 NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is needed")
 NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
 VISIT = Phrase("step.visit", "visit {pose}")
@@ -123,6 +125,27 @@ class DeviceHandle(Handle):
         return step
 
 
+class PersonHandle(Handle):
+    """A person, who answers on the page, on the command line, over HTTP or ROS 2."""
+
+    _device: Person
+
+    def ask(self, question: str, answers: Sequence[str] = ("done",), *, at_most_s: float = PATIENCE_S) -> Ask:
+        """Ask them, and wait for one of the answers; the step of `cell.choose`."""
+        if not question.strip() or len(question) > LONGEST_QUESTION:
+            raise RecipeError(f"a question has 1 to {LONGEST_QUESTION} characters; this one {len(question)}")
+        wrong = [each for each in answers if each != " ".join(each.split()) or not each]
+        if not answers or wrong or len(set(map(str.lower, answers))) < len(answers):
+            raise RecipeError(f"the answers to {quoted(question)} must be different words, each not empty")
+
+        def make(id: str) -> Any:
+            return self._device.ask(id=id, question=question, answers=answers, at_most_s=at_most_s)
+
+        asked = Ask(f"ask {self._device.name}", self._context, make, f"asking {self._device.name}")
+        asked.answers = tuple(answers)
+        return asked
+
+
 class RobotHandle(Handle):
     """A robot that goes from target to target: an arm, or a mobile robot."""
 
@@ -169,6 +192,8 @@ def handle(device: Robot, context: Context) -> Any:
         return RobotHandle(device, context)
     if isinstance(device, Device):
         return DeviceHandle(device, context)
+    if isinstance(device, Person):
+        return PersonHandle(device, context)
     raise RecipeError(f"{device.name} has no verbs, and no targets in {context.cell.name}")
 
 

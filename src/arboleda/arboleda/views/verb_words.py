@@ -104,4 +104,10 @@ ABOUT: dict[Verb, VerbWords] = {
         does="says that parts were taken out of the rack; they are no longer drawn there, and nothing moves",
         refused="where no part is known to be",
     ),
+    Verb.ANSWER: VerbWords(
+        scopes=("person and answer",),
+        brief="Answer what a task asks a person, e.g. `operator done`.",
+        does="answers what a running task asks a person; the task goes on with it",
+        refused="where that person is asked nothing, and for an answer that was not offered",
+    ),
 }

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from arboleda.core.model import Cell, Evidence, Link, Retry, Robot
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
+from arboleda.kinds.person import person
 from arboleda.wire import fit
 
 from . import targets
@@ -19,11 +20,13 @@ from .shapes import (
     DeviceCellShape,
     DeviceShape,
     MobileDeviceShape,
+    PersonShape,
     RetryShape,
     is_name,
 )
 
 CELLS: Place = ("cells",)
+PERSON = "person"
 OF_ROBOTS = ARM, MOBILE = ("arm", "mobile")
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
 
@@ -91,6 +94,9 @@ def _device(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -
         return None
     if kind == ARM:
         return arm(document, place, arm_model(document, place), ArmDeviceShape)
+    if kind == PERSON:
+        named = document.read(PersonShape, place)
+        return None if named is None else person(named.name or role)
     if kind == MOBILE:
         return mobile(document, place, MobileDeviceShape)
     return _declared(document, place, kinds)

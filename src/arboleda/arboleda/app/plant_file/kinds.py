@@ -23,7 +23,7 @@ PLAIN = {
     "text": FactType(type=str, first=""),
     "bool": FactType(type=bool, first=False),
 }
-RESERVED = ("arm", "mobile")
+RESERVED = ("arm", "mobile", "person")
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )

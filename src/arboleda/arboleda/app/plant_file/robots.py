@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from arboleda.core.model import Evidence
+from arboleda.core.model import Evidence, Link
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
@@ -101,7 +101,7 @@ def _common(shape: RobotShape, place: Place) -> dict[str, Any]:
     return {
         "name": name,
         "mqtt": shape.mqtt or name,
-        "link": shape.link,
+        "link": Link(shape.link),
         "evidence": shape.evidence,
         "assume_homed": shape.assume_homed,
         "home_at_start": shape.home_at_start,

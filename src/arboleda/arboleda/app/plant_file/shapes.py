@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAda
 from pydantic_core import PydanticCustomError
 
 from arboleda.core.commands import OnStop
-from arboleda.core.model import Cell, Evidence, Link, Retry, Timing
+from arboleda.core.model import Cell, Evidence, Retry, Timing
 from arboleda.kinds.declared import Effect
 from arboleda.recipes.storage_cell import StorageCell
 
@@ -53,6 +53,7 @@ Name = Annotated[str, AfterValidator(_name)]
 Duration = Annotated[float, Field(gt=0, le=DAY_S, allow_inf_nan=False)]
 Wait = Annotated[float, Field(ge=0, le=DAY_S, allow_inf_nan=False)]
 Speed = Annotated[float, Field(ge=0.1, allow_inf_nan=False)]
+Reach = Literal["mqtt", "ros", "none"]
 QUEUE_LIMIT = 100
 QueueLimit = Annotated[int, Field(ge=1, le=10_000)]
 Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
@@ -163,7 +164,7 @@ class RobotShape(Shape):
 
     name: Name
     mqtt: Name = ""
-    link: Annotated[Link, Field(strict=False)]
+    link: Reach
     evidence: Annotated[Evidence, Field(strict=False)]
     assume_homed: bool = False
     home_at_start: bool = False
@@ -208,7 +209,7 @@ class ArmDeviceShape(ArmShape):
 
     kind: Literal["arm"]
     name: Name = ""
-    link: Annotated[Link, Field(strict=False)] = Link.MQTT
+    link: Reach = "mqtt"
     evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
 
 
@@ -226,8 +227,15 @@ class MobileDeviceShape(MobileShape):
 
     kind: Literal["mobile"]
     name: Name = ""
-    link: Annotated[Link, Field(strict=False)] = Link.MQTT
+    link: Reach = "mqtt"
     evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
+
+
+class PersonShape(Shape):
+    """A person in a role; an empty `name` is the role."""
+
+    kind: Literal["person"]
+    name: Name = ""
 
 
 class NodeShape(Shape):
