@@ -182,7 +182,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "kind: oven",
         "kind: ovn",
         "24:20: ",
-        'must be oven, eye, arm or mobile, is "ovn"; did you mean "oven"?',
+        'must be oven, eye, arm, mobile or person, is "ovn"; did you mean "oven"?',
     ),
     "an arm": ("kind: oven", "kind: arm", "24:13: ", 'the key "model" is missing'),
     "no kind": ("{kind: oven}", "{mqtt: oven_1}", "24:13: ", 'the key "kind" is missing'),

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.core.errors import ConfigError
+from arboleda.core.messages import Verb
 from arboleda.core.model import Interlock, PlantModel
 
 from ..kinds.lab import Bench
@@ -33,6 +34,7 @@ cells:
       jaw:     {kind: gripper, tool_of: loader}
       mill:    {kind: mill}
       shuttle: {kind: mobile}
+      ana:     {kind: person}
     targets:
       home:   {loader: {deg: [0, 0], mm: 0}, shuttle: {node: 0}}
       feed_1: {loader: {deg: [60, 10], mm: 80, approach_mm: 40}}
@@ -49,6 +51,7 @@ from arboleda.recipes import Target, recipe, work
 def load(cell, blank=Target("pallet")):
     loader, jaw, mill, shuttle = cell.devices("loader", "jaw", "mill", "shuttle")
     return work(
+        cell.device("ana").ask("Is the mill free?"),
         shuttle.go("feed_2"),
         loader.visit(blank, jaw.close()),
         loader.visit("vise", jaw.open()),
@@ -61,20 +64,20 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "no target": (
         "shuttle: {node: 8}",
         "shutle: {node: 8}",
-        "24:49: ",
+        "25:49: ",
         'must be loader or shuttle, is "shutle"',
     ),
-    "no such node": ("node: 8", "node: 9", "24:65: ", "must be 0 to 8, is 9"),
-    "no home": ("home:   {loader", "start:  {loader", "22:7: ", 'loader needs a target "home"'),
-    "outside the limits": ("deg: [60, 10]", "deg: [999, 10]", "23:31: ", "is outside the limits of q1"),
-    "no targets at all": ("    targets:", "    tragets:", "21:5: ", 'did you mean "targets"?'),
+    "no such node": ("node: 8", "node: 9", "25:65: ", "must be 0 to 8, is 9"),
+    "no home": ("home:   {loader", "start:  {loader", "23:7: ", 'loader needs a target "home"'),
+    "outside the limits": ("deg: [60, 10]", "deg: [999, 10]", "24:31: ", "is outside the limits of q1"),
+    "no targets at all": ("    targets:", "    tragets:", "22:5: ", 'did you mean "targets"?'),
     "group of what is no target": (
         "[feed_1, feed_2]}",
         "[feed_1, feed]}",
-        "26:31: ",
+        "27:31: ",
         'is "feed"; did you mean',
     ),
-    "group named as a target": ("{pallet:", "{vise:", "26:14: ", "a target has this name already"),
+    "group named as a target": ("{pallet:", "{vise:", "27:14: ", "a target has this name already"),
     "tool of nobody": (
         "tool_of: loader",
         "tool_of: lodaer",
@@ -91,16 +94,16 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "interlock of nobody": (
         "free_while: {mill",
         "free_while: {mil",
-        "28:48: ",
+        "29:48: ",
         'is "mil"; did you mean "mill"?',
     ),
-    "fact of an interlock": ("{door: open}}}", "{dor: open}}}", "28:", "did you mean door?"),
-    "home in a zone": ("[tending vise]", "[tending home]", "28:20: ", "robots wait there"),
-    "no such target in a zone": ("[tending vise]", "[tending vice]", "28:20: ", 'did you mean "vise"?'),
+    "fact of an interlock": ("{door: open}}}", "{dor: open}}}", "29:", "did you mean door?"),
+    "home in a zone": ("[tending vise]", "[tending home]", "29:20: ", "robots wait there"),
+    "no such target in a zone": ("[tending vise]", "[tending vice]", "29:20: ", 'did you mean "vise"?'),
     "poses that look the same": (
         "deg: [60, 30], mm: 80",
         "deg: [-60, 10], mm: 80",
-        "28:20: ",
+        "29:20: ",
         "cannot tell",
     ),
 }
@@ -128,6 +131,8 @@ def test_what_the_file_describes_works(tmp_path: Path) -> None:
     here = Bench(read(tmp_path))
     for blank in ("feed_1", "feed_2"):
         here.submit(f"tending load {blank}")
+        here.wait(1.0)
+        assert here.operate(Verb.ANSWER, "ana done") is None
         assert here.outcome().state.value == "done"
     assert here.machines["mill"].facts["door"] == "open"
 

@@ -12,7 +12,7 @@ from arboleda.app.cli import cli
 from arboleda.core.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
-NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE]
+NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
 PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
 
 
@@ -64,10 +64,16 @@ def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) ->
     assert acts == []
 
 
-@pytest.mark.parametrize("verb", [verb for verb in Verb if verb is not Verb.OVERRIDE])
+@pytest.mark.parametrize("verb", [verb for verb in Verb if verb not in (Verb.OVERRIDE, Verb.ANSWER)])
 def test_a_scope_is_passed_on(acts: Notes, verb: Verb) -> None:
     assert arboleda(verb.value, "sis_a")[0] == 0
     assert acts == [(verb, "sis_a", False)]
+
+
+def test_a_person_and_an_answer_are_passed_on(acts: Notes) -> None:
+    assert arboleda("answer", "ana", "not", "yet")[0] == 0
+    assert acts == [(Verb.ANSWER, "ana not yet", False)]
+    assert arboleda("answer", "ana")[0] == 2
 
 
 @pytest.mark.parametrize("scope", ["", " "])

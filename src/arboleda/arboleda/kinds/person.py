@@ -38,6 +38,10 @@ class Person(Robot):
     """Somebody who is there as far as the plant knows; nothing of them can be lost, homed or held."""
 
     @property
+    def kind_name(self) -> str:
+        return "person"
+
+    @property
     def homes(self) -> bool:
         return False
 

@@ -9,6 +9,7 @@ from arboleda.core.advice import Advice, Hand, in_words, sentence
 from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
+from arboleda.core.commands import Question
 from arboleda.core.facts import Value
 from arboleda.core.ledger import Entry
 from arboleda.core.messages import OperatorRequest, TaskChanged, Verb
@@ -268,6 +269,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "piece": belief.piece,
         "facts": _facts(belief),
         "answer": last.answer if last is not None else None,
+        "question": _question(plant.dispatcher.question(robot.name), now),
         "boot_id": belief.boot_id,
         "bridge_epoch": belief.epoch,
         "still": belief.still,
@@ -277,6 +279,19 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
         "command": _command(last, now),
         "rejected": _rejected(plant.dispatcher.rejected.get(robot.name)),
         "refused": _refused(plant, robot.name, OF_ROBOTS),
+    }
+
+
+def _question(entry: Entry | None, now: float) -> dict[str, Any] | None:
+    """What a person is being asked, what can be answered, and for how long."""
+    if entry is None or not isinstance(entry.command, Question):
+        return None
+    asked = entry.command
+    return {
+        "id": asked.id,
+        "text": asked.text,
+        "answers": list(asked.answers),
+        "left_s": max(entry.deadline - now, 0.0),
     }
 
 

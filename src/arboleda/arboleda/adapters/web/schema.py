@@ -136,6 +136,15 @@ class Cell(_Told):
     tree: list[dict[str, Any]] = Field(description="The behavior tree, depth first.")
 
 
+class Asking(_Told):
+    """What a person is being asked; `POST /api/cells/<person> <answer>/answer` answers it."""
+
+    id: str
+    text: str
+    answers: list[str]
+    left_s: float = Field(description="Until the question ends unanswered.")
+
+
 class Robot(_Told):
     """A device of any kind."""
 
@@ -153,6 +162,7 @@ class Robot(_Told):
         description="What it reports besides, by name; null where it was not said yet."
     )
     answer: bool | int | float | str | None = Field(description="To its last command, where that asked.")
+    question: Asking | None = Field(default=None, description="What a person is being asked now.")
     homed: bool | None
     latched: bool
     refused: dict[str, str] = Field(description="The verbs that would be refused for it now, and why.")

@@ -1,0 +1,141 @@
+"""A person is asked by a recipe, and answers as an operator does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.core.messages import Reason, Verb
+from arboleda.core.model import PlantModel
+from arboleda.core.recipe import Recipe
+from arboleda.kinds.person import person
+from arboleda.recipes import Kit, RecipeError, recipe, work
+from arboleda.views import view
+
+from .lab import Bench
+from .tending import plant
+
+
+def attended(*recipes: Recipe) -> PlantModel:
+    model = plant(*recipes)
+    (cell,) = model.cells
+    return replace(model, cells=(replace(cell, members=(*cell.members, ("ana", person("ana")))),))
+
+
+@recipe("refill")
+def refill(cell: Kit):  # type: ignore[no-untyped-def]
+    left, ana = cell.devices("left", "ana")
+    asked = ana.ask("Is the pallet full again?", ["yes", "no parts left"], at_most_s=60.0)
+    ways = {"yes": left.go("feed_2"), "no parts left": cell.fail("there are no parts left")}
+    return work(asked, cell.choose(asked, ways))
+
+
+def asking(*recipes: Recipe) -> Bench:
+    here = Bench(attended(*(recipes or (refill,))))
+    here.submit("tending refill")
+    assert here.wait(10.0, lambda: question(here) is not None)
+    return here
+
+
+def question(here: Bench) -> Any:
+    robots = {row["name"]: row for row in view.snapshot(here.plant)["robots"]}
+    return robots["ana"]["question"]
+
+
+def test_screens_show_what_is_asked_and_how_long() -> None:
+    here = asking()
+    here.wait(10.0)
+    shown = question(here)
+    assert (shown["text"], shown["answers"]) == ("Is the pallet full again?", ["yes", "no parts left"])
+    assert shown["left_s"] == pytest.approx(50.0)
+
+
+def test_the_task_goes_on_with_the_answer() -> None:
+    here = asking()
+    assert here.operate(Verb.ANSWER, "ana Yes") is None
+    assert question(here) is None
+    assert here.outcome().state.value == "done"
+    assert str(here.plant.acts[-1].sentence) == "answer ana yes"
+
+
+def test_another_answer_is_another_way() -> None:
+    here = asking()
+    assert here.operate(Verb.ANSWER, "ana no parts left") is None
+    assert str(here.outcome().sentence) == "there are no parts left"
+
+
+@pytest.mark.parametrize(
+    ("scope", "sentence"),
+    [
+        ("ana maybe", "'maybe' is no answer to what ana is asked; answers: yes, no parts left"),
+        ("ana", "'' is no answer to what ana is asked; answers: yes, no parts left"),
+        ("left yes", "'left' is no person of this plant; people: ana"),
+    ],
+)
+def test_a_wrong_answer_changes_nothing_and_says_what_is_allowed(scope: str, sentence: str) -> None:
+    here = asking()
+    assert here.operate(Verb.ANSWER, scope) == sentence
+    assert question(here) is not None
+
+
+def test_who_is_asked_nothing_answers_nothing() -> None:
+    here = Bench(attended(refill))
+    assert here.operate(Verb.ANSWER, "ana yes") == "nobody asks ana anything now"
+
+
+def test_a_question_that_nobody_answers_ends() -> None:
+    here = asking()
+    assert here.outcome().reason is Reason.DEADLINE
+    assert here.operate(Verb.ANSWER, "ana yes") == "nobody asks ana anything now"
+
+
+def test_a_question_is_forgotten_when_its_task_is_cancelled() -> None:
+    here = asking()
+    assert here.operate(Verb.CANCEL, "tending") is None
+    here.wait(5.0)
+    assert question(here) is None
+
+
+def test_a_question_stays_while_the_cell_is_held() -> None:
+    here = asking()
+    assert here.operate(Verb.HOLD, "tending") is None
+    here.wait(1.0)
+    assert question(here) is not None
+    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.operate(Verb.RESUME, "tending") is None
+    assert here.outcome().state.value == "done"
+
+
+def test_a_stop_of_the_plant_counts_for_people_and_is_cleared_with_the_others() -> None:
+    here = asking()
+    assert here.operate(Verb.STOP) is None
+    here.wait(5.0)
+    assert question(here) is None
+    for verb in (Verb.CLEAR, Verb.RESET, Verb.RESUME):
+        assert here.operate(verb) is None, verb
+        here.wait(3.0)
+    here.submit("tending refill")
+    assert here.wait(10.0, lambda: question(here) is not None)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("", ["yes"]), "1 to 300 characters"),
+        (("Full?", []), "must be different words"),
+        (("Full?", ["yes", "Yes"]), "must be different words"),
+        (("Full?", ["yes", ""]), "must be different words"),
+    ],
+)
+def test_a_question_that_nobody_could_answer_is_refused(words: tuple[str, list[str]], sentence: str) -> None:
+    @recipe("refill")
+    def wrong(cell: Kit):  # type: ignore[no-untyped-def]
+        with pytest.raises(RecipeError, match=sentence):
+            cell.device("ana").ask(*words)
+        return cell.wait(0.1)
+
+    here = Bench(attended(wrong))
+    here.submit("tending refill")
+    assert here.outcome().state.value == "done"
