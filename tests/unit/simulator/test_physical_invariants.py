@@ -143,6 +143,7 @@ def test_nothing_is_found_when_a_fault_is_handled(fault: str, after_s: float) ->
 
 def everybody_gets_it(patch: Patch) -> Watch:
     patch.setattr(Context, "take_zones", lambda self, robot, zones, *, inside=False: True)
+    patch.setattr(Context, "_barrier", lambda self, command: None)
     watch = Watch(zoned())
     for cell in watch.world.model.cells:
         watch.world.request_task(f"{cell.name} palletizing")
@@ -159,6 +160,7 @@ def freed_at_a_stop(patch: Patch) -> Watch:
 
 
 def entered_unasked(patch: Patch) -> Watch:
+    patch.setattr(Context, "_barrier", lambda self, command: None)
     patch.setattr(Zones, "request", lambda self, robot, zones: True)
     watch = Watch(zoned())
     watch.task()
