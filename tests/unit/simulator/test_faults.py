@@ -16,6 +16,7 @@ from arboleda.core.plant import HEARTBEAT_S
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
+from arboleda.simulator.faults.operators import SAID
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing import shipped
 from arboleda.wire.payloads import decode
@@ -245,7 +246,7 @@ def test_two_at_once_have_their_effect_until_both_have_ended(world, kind, first)
 
 def test_every_kind_is_in_one_of_the_tables():
     instants = {
-        *(f"operator_{verb.value}" for verb in Verb if verb is not Verb.UNLOAD),
+        *(f"operator_{verb.value}" for verb in SAID),
         "reboot",
         "lost_steps",
         "lost_part",
@@ -599,7 +600,7 @@ def asked(world: World, fault: Fault) -> list[Any]:
     return events
 
 
-@pytest.mark.parametrize("verb", [verb for verb in Verb if verb is not Verb.UNLOAD])
+@pytest.mark.parametrize("verb", SAID)
 def test_an_operator_says_what_he_says(world, verb):
     for target in ("", "sis_a", "ra1", "nowhere"):
         (event,) = asked(world, fault(f"operator_{verb.value}", target))

@@ -23,7 +23,8 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
-SAID = tuple(verb for verb in Verb if verb is not Verb.UNLOAD)  # that one changes only what is drawn
+# one changes only what is drawn, the other answers people, of whom these plants have none
+SAID = tuple(verb for verb in Verb if verb not in (Verb.UNLOAD, Verb.ANSWER))
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
