@@ -391,6 +391,14 @@ FOUND = {
                 stations: {0: {deg: [-31.7, -74.0], mm: 83.8}}
         """,
     ),
+    "an arm that somebody put at its reference, before a frozen plant heard of its end, had not moved": Found(
+        seed=45,
+        faults=(
+            Fault(kind="plant_freeze", at=5.6, seconds=3.6, target="plant", amount=0.001, word="plant"),
+            Fault(kind="operator_home", at=8.6, target="arm_1", word="by hand"),
+        ),
+        file=ASSUMES_HOMED,
+    ),
     "an arm that stood a motor step beyond its limit was told to rise there, which its board refuses": Found(
         seed=3658,
         faults=tuple(

@@ -8,10 +8,10 @@ import pytest
 
 from arboleda.core.commands import StopMode
 from arboleda.core.messages import Verb
-from arboleda.core.model import Crossing, PlantModel
+from arboleda.core.model import Crossing, Evidence, PlantModel
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
-from arboleda.simulator.world import World
+from arboleda.simulator.world import PLANT, World
 from arboleda.testing import shipped, slowed
 from arboleda.wire.payloads import HomeGoal, JointsGoal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
@@ -293,3 +293,18 @@ def test_who_came_home_before_its_board_hears_a_stop_is_homed(
     world.advance(60.0)
     robot = next(each for each in stage.truth.cells["sis_a"].cell.robots if each.mqtt == board)
     assert stage.truth.robot(robot.name).homed is at_home is world.boards[board].homed
+
+
+@pytest.mark.parametrize("asks", [False, True])
+def test_what_was_asked_may_have_come_before_a_boot_of_which_the_plant_hears_in_the_same_step(asks):
+    stage = Stage(shipped("sis_a", evidence=Evidence.JOINTS))
+    told: list[bool] = []  # after each step in which the plant heard something
+    stage.world.watchers.append(
+        lambda: told.append(stage.truth.boots.told("ra1")) if stage.world.moment.heard else None
+    )
+    stage.world.stall(PLANT, 1.0)
+    stage.world.crash(ARM)
+    if asks:
+        stage.world.request_verb(Verb.RESUME)
+    stage.world.advance(2.0)
+    assert (told[0], told[-1]) == (not asks, True)

@@ -84,11 +84,11 @@ def _unprovable(truth: Truth, booked: Booked, robot: RobotTruth) -> bool:
         return lies("homed")
     if robot.blind:
         return True
+    if robot.put_right_at >= booked.sent_at and robot.at_reference:
+        return True
     if evidence is Evidence.IDS:
         return lies("done") and lies(place)
-    taken_away = robot.put_right_at >= booked.sent_at and robot.at_reference
-    unseen = booked.late or taken_away
-    return unseen or lies(place) or lies("state")
+    return booked.late or lies(place) or lies("state")
 
 
 DONE = (done_is_true, tiny_moves_succeed)

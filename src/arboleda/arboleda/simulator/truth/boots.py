@@ -19,14 +19,17 @@ class Boots:
         self.mute = {each.robot.name: each for each in robots if _boots_show(each.robot)}
         self._last: dict[str, tuple[int | None, int | None]] = {}
         self._told: set[str] = set()
+        self._known: set[str] = set()  # those of them that a command of this step cannot have come before
 
-    def look(self, heard: Iterable[Report]) -> None:
-        """Take in what the plant heard in this step."""
+    def look(self, heard: Iterable[Report], *, asked: bool) -> None:
+        """Take in what the plant heard in this step; what was `asked` in it may have come before that."""
+        before = self._told.copy() if asked else None
         for report in heard:
             if report.robot in self.mute and report.boot_id is not None:
                 self._hear(report)
         if self._told:
             self._told = {name for name in self._told if not self.mute[name].homed}
+        self._known = self._told if before is None else self._told & before
 
     def _hear(self, report: Report) -> None:
         said, last = (report.epoch, report.boot_id), self._last.get(report.robot, NEVER)
@@ -38,7 +41,7 @@ class Boots:
 
     def told(self, robot: str) -> bool:
         """Whether the plant knows that it booted, and nobody has put it right since."""
-        return robot in self._told
+        return robot in self._known
 
 
 def _boots_show(robot: Robot) -> bool:

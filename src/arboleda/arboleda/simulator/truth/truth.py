@@ -133,7 +133,7 @@ class Truth:
         """What the plant heard, was deceived about and sent."""
         world, moment = self.world, self.world.moment
         if self.boots.mute:
-            self.boots.look(moment.heard)
+            self.boots.look(moment.heard, asked=bool(moment.asked))
         if world.deceptions and world.now >= self._sampled_at + SAMPLE_S:
             self._sampled_at = world.now
             self._deceived.update({key: world.now for key, number in world.deceptions.items() if number})
