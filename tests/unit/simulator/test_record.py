@@ -386,3 +386,23 @@ def test_a_refusal_that_is_heard_after_the_end_of_a_halted_move_is_not_held_agai
     world.advance(3.5)
     assert record.robots["rm_sis_a"].barred is world.plant.dispatcher.beliefs["rm_sis_a"].barred
     assert record.robots["rm_sis_a"].barred is (refused_after_s < 0.1)
+
+
+@pytest.mark.parametrize("by_hand", [(False, True), (True, False), (True,)])
+@pytest.mark.parametrize("boots_again", [False, True])
+def test_whom_an_operator_put_right_is_known_by_the_request_that_was_granted(by_hand, boots_again):
+    world = World(shipped("sis_a", assume_homed=True))
+    record = Record(world)
+    world.watchers.append(record.look)
+    world.advance(1.0)
+    world.crash("ra_1")
+    world.advance(0.5)
+    assert record.robots["ra1"].displaced
+    world.stall(PLANT, 1.0)
+    for each in by_hand:
+        world.request_verb(Verb.HOME, "ra1", by_hand=each)
+    if boots_again:
+        world.crash("ra_1")
+    world.advance(1.01)
+    assert record.robots["ra1"].displaced is world.plant.dispatcher.beliefs["ra1"].displaced
+    assert record.robots["ra1"].displaced is boots_again, "the routine, too, ends at once where it stands"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from copy import copy
 from typing import Any
@@ -106,6 +107,8 @@ class Record:
         self.unasked: list[Command] = []
         self._verbs: dict[str, set[Verb]] = {}
         self._cancels_a_task = False
+        self._unanswered: deque[OperatorRequest] = deque()  # of this step, in the order of asking
+        self._booted: set[str] = set()  # robots that told of a boot in this step
         self._earlier: dict[str, list[KnownRobot]] = {}
         self._plant = world.plant
         self._begin(world.plant)
@@ -192,6 +195,7 @@ class Record:
         if self.born:
             self._begin(plant)
         self._earlier.clear()
+        self._booted.clear()
         self.away = not self.born and plant.now - self.stepped_at > plant.away_after_s
         if self.away:
             self.unattended = {cell.name: self._has_work(cell) for cell in self._cells}
@@ -293,11 +297,14 @@ class Record:
             if report.robot in commanded and (asked or known.robot.home_at_start):
                 self._earlier.setdefault(report.robot, []).append(copy(known))
             self.proofs.hear(report, known)
+            if report.boot_id not in (None, known.boot):
+                self._booted.add(report.robot)
             if known.hear(report):
                 self.anew.append(report)
                 self.commands.hear(report, known)
 
     def _ask(self, asked: list[Any]) -> None:
+        self._unanswered = deque(event for event in asked if isinstance(event, OperatorRequest))
         for event in asked:
             if isinstance(event, OperatorRequest):
                 self._cancels_a_task |= event.verb is Verb.CANCEL and event.scope not in self.scopes
@@ -399,11 +406,14 @@ class Record:
 
     def _on_answer(self, answer: OperatorAnswer) -> None:
         self.answers.append(answer)
+        request = self._unanswered.popleft()
         if answer.refusal is None and answer.verb in GETS_GOING:
             self._attend(answer.scope)
         done = DONE.get(answer.verb)
         if answer.refusal is None and done is not None:
             done(self, answer.scope)
+        if answer.refusal is None and request.verb is Verb.HOME and request.by_hand:
+            self._put_right(answer.scope)
 
     def _on_error(self, error: InternalError) -> None:
         self.errors.append(error)
@@ -439,11 +449,11 @@ class Record:
             if sent.rejected and sent.state is State.CANCELLED:
                 self.robots[sent.robot].barred = plant.dispatcher.beliefs[sent.robot].barred
 
-    def _homed(self, scope: str) -> None:
-        asked = self.world.moment.asked
-        if any(isinstance(each, OperatorRequest) and each.by_hand for each in asked):
-            for name in self.scopes.robots(scope):
-                self.robots[name].displaced = False
+    def _put_right(self, scope: str) -> None:
+        """An operator says so; a boot that a robot tells in the same step may have come after that."""
+        beliefs = self._plant.dispatcher.beliefs
+        for name in self.scopes.robots(scope):
+            self.robots[name].displaced = name in self._booted and beliefs[name].displaced
 
     def _cancelled(self, scope: str) -> None:
         """A task by its id, or what runs in each cell of the scope that could be cancelled."""
@@ -476,7 +486,6 @@ DONE: dict[Verb, Callable[[Record, str], None]] = {
     Verb.RESET: Record._reset,
     Verb.RESUME: Record._again,
     Verb.RETRY: Record._again,
-    Verb.HOME: Record._homed,
     Verb.CANCEL: Record._cancelled,
 }
 
