@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.commands import StopMode
-from arboleda.core.messages import Verb
+from arboleda.core.messages import Report, Verb
 from arboleda.core.model import Crossing, Evidence, PlantModel
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
@@ -308,3 +308,14 @@ def test_what_was_asked_may_have_come_before_a_boot_of_which_the_plant_hears_in_
         stage.world.request_verb(Verb.RESUME)
     stage.world.advance(2.0)
     assert (told[0], told[-1]) == (not asks, True)
+
+
+def test_who_was_put_right_after_a_told_boot_may_have_booted_unseen_since():
+    stage = Stage(shipped("sis_a", evidence=Evidence.JOINTS))
+    stage.arm.homed, stage.arm.put_right_at = False, 5.0
+    told = []
+    for number, at in enumerate((1.0, 4.0, 6.0), start=1):
+        heard = [Report(at=at, robot="ra1", epoch=1, plant=1000, boot_id=number)]
+        stage.truth.boots.look(heard, asked=False)
+        told.append(stage.truth.boots.told("ra1"))
+    assert told == [False, False, True]

@@ -36,7 +36,8 @@ class Boots:
         if said != last:
             self._last[report.robot] = said
             known = last is not NEVER and self.mute[report.robot].robot.evidence is Evidence.IDS
-            if said[0] == last[0] or (known and said[1] != last[1]):
+            put_right = report.at < self.mute[report.robot].put_right_at  # before a boot that nobody saw
+            if not put_right and (said[0] == last[0] or (known and said[1] != last[1])):
                 self._told.add(report.robot)
 
     def told(self, robot: str) -> bool:
