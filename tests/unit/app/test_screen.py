@@ -19,6 +19,7 @@ from arboleda.testing import Rig, shipped
 from arboleda.views import view
 
 from ..kinds.lab import Bench, model
+from ..kinds.test_people import asking
 
 
 @pytest.fixture
@@ -79,6 +80,34 @@ def test_a_cell_that_is_stopped_is_told_to_be_reset(rig: Rig) -> None:
         rig.operate(verb, "sis_a")
         rig.wait(3.0)
     assert "sis_a is stopped; reset sis_a" in drawn(rig.snapshot(), 80)
+
+
+def test_a_question_is_told_with_the_command_of_each_answer() -> None:
+    here = asking()
+    here.wait(10.0)
+    lines = [line.strip() for line in drawn(here.snapshot(), 100).splitlines()]
+    at = lines.index("ana is asked, 50 s left: Is the pallet full again?")
+    assert lines[at + 1 :] == ["arboleda answer ana yes", "arboleda answer ana 'no parts left'"]
+    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert "is asked" not in drawn(here.snapshot(), 100)
+
+
+def test_an_answer_that_begins_like_an_option_can_be_typed() -> None:
+    snapshot = asking().snapshot()
+    person = next(robot for robot in snapshot["robots"] if robot["question"])
+    person["question"]["answers"] = ["-1"]
+    assert "arboleda answer -- ana -1" in drawn(snapshot, 100)
+
+
+def test_a_question_is_told_once_where_there_is_no_terminal(tmp_path: Path) -> None:
+    here = asking()
+    console = Console(file=io.StringIO(), width=120)
+    screen = Screen(console, here.snapshot, tmp_path / "log")
+    for _ in range(3):
+        screen.stepped(here.snapshot(), 0.0)
+        here.wait(1.0)
+    said = console.file.getvalue()  # type: ignore[attr-defined]
+    assert said.count("is asked") == said.count("arboleda answer ana yes") == 1
 
 
 def test_zones_show_who_is_in_them_and_who_waits(rig: Rig) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import os
+import shlex
 import stat
 import time
 from collections.abc import Callable
@@ -66,6 +67,7 @@ class Screen:
             transient=True,
         )
         self._steps: dict[str, str | None] = {}
+        self._asked: dict[str, str | None] = {}
 
     def __enter__(self) -> Screen:
         if self.console.is_terminal:
@@ -93,13 +95,19 @@ class Screen:
         return self._full
 
     def stepped(self, snapshot: dict[str, Any], at: float) -> None:
-        """Without a terminal the table's place is taken by one line per step of a tree."""
+        """Without a terminal the table's place is taken by a line per step, and by what people are asked."""
         if self.console.is_terminal:
             return
         for cell in snapshot["cells"]:
             if cell["step"] != self._steps.get(cell["name"]) and cell["step"] is not None:
                 self.say(_words(f"  {cell['name']}: {cell['step']}"), at)
             self._steps[cell["name"]] = cell["step"]
+        for robot in snapshot["robots"]:
+            asked = robot["question"] and robot["question"]["id"]
+            if asked != self._asked.get(robot["name"]):
+                for line in _question(robot):
+                    self.say(_words(line), at)
+            self._asked[robot["name"]] = asked
 
 
 def logged(line: logging.LogRecord) -> Text:
@@ -115,7 +123,9 @@ def logged(line: logging.LogRecord) -> Text:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """A row per cell: state, task, step, robots, time; then other devices, zones, and what is in the way."""
+    """A row per cell: state, task, step, robots, time; then other devices, zones, what people are asked, and
+    what is in the way.
+    """
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     columns = _columns(snapshot["cells"])
     headings = ["cell", "state", "task", "step", *columns, "time"]
@@ -125,7 +135,8 @@ def table(snapshot: dict[str, Any]) -> Group:
         drawn.add_row(*_row(cell, robots, told=bool(columns)))
     others = [] if columns else [_devices(snapshot["cells"], robots)]
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
-    return Group(drawn, *others, *zones, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
+    asked = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
+    return Group(drawn, *others, *zones, *asked, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
 
 
 def _table(headings: list[str], **settings: Any) -> Table:
@@ -243,6 +254,21 @@ def _of(robot: dict[str, Any], holds: str | None) -> Text:
     said = place(robot) or ["?"]
     said += [fact(holds, robot["facts"][holds])] if holds else []
     return Text(", ".join(said), style="" if robot["online"] else "dim")
+
+
+def _question(robot: dict[str, Any]) -> list[str]:
+    """What a person is asked, then the command of each answer; nothing of whom nobody asks."""
+    asked = robot["question"]
+    if asked is None:
+        return []
+    said = f"{robot['name']} is asked, {asked['left_s']:.0f} s left: {asked['text']}"
+    return [said, *(f"  {_command(robot['name'], answer)}" for answer in asked["answers"])]
+
+
+def _command(person: str, answer: str) -> str:
+    """What to type; behind `--` an answer that begins like an option."""
+    dashes = ["--"] if answer.startswith("-") else []
+    return shlex.join(["arboleda", "answer", *dashes, person, answer])
 
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
