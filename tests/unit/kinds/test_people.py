@@ -127,6 +127,7 @@ def test_a_stop_of_the_plant_counts_for_people_and_is_cleared_with_the_others() 
         (("Full?", []), "must be different words"),
         (("Full?", ["yes", "Yes"]), "must be different words"),
         (("Full?", ["yes", ""]), "must be different words"),
+        (("Full?", ["yes", "n" * 61]), "each 1 to 60 characters"),
     ],
 )
 def test_a_question_that_nobody_could_answer_is_refused(words: tuple[str, list[str]], sentence: str) -> None:

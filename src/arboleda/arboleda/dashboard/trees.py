@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .faces.asked import PERSON
 from .plant_side import Layout
 from .tags import link, live, rows, tag
 from .wording import Words
@@ -53,9 +54,22 @@ def _card(layout: dict[str, Any], words: Words) -> None:
             live("span", f"{cell}.queue")
         live("span", f"{cell}.cause", classes="trouble")
         live("span", f"{cell}.trouble", classes="trouble")
+    for device in layout["devices"]:
+        if device["kind"] == PERSON:
+            _asked(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
     if any(device["position"] is None for device in layout["devices"]):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
+
+
+def _asked(person: str) -> None:
+    """What a person is asked, announced once; its time goes on outside of what is announced."""
+    with tag("div", classes="asked"):
+        with tag("div", role="status", aria_live="polite"):
+            live("p", f"asked_who.{person}", classes="asked-who")
+            live("p", f"asked.{person}", classes="asked-question")
+        rows(f"answers.{person}", [""], classes="answers small")
+        live("p", f"asked_left.{person}", classes="asked-left")
 
 
 def tree_box(layout: dict[str, Any], words: Words) -> None:

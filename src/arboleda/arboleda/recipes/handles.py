@@ -22,11 +22,13 @@ from arboleda.kinds.person import PATIENCE_S, Person
 from .errors import RecipeError
 
 Step = Behaviour
-LONGEST_QUESTION = 300
+LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
 NOT_SO = Phrase("recipe.not_so", "{robot} says {told} of {fact}; {value} is needed")
 NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within {seconds:g} s")
 VISIT = Phrase("step.visit", "visit {pose}")
 HOME = Phrase("step.go_home", "go home")
+ASK = Phrase("step.ask", "ask {person}")
+ASKING = Phrase("doing.ask", "asking {person}")
 
 
 class Ask(Act):
@@ -134,14 +136,18 @@ class PersonHandle(Handle):
         """Ask them, and wait for one of the answers; the step of `cell.choose`."""
         if not question.strip() or len(question) > LONGEST_QUESTION:
             raise RecipeError(f"a question has 1 to {LONGEST_QUESTION} characters; this one {len(question)}")
-        wrong = [each for each in answers if each != " ".join(each.split()) or not each]
+        wrong = [
+            each for each in answers if each != " ".join(each.split()) or not 0 < len(each) <= LONGEST_ANSWER
+        ]
         if not answers or wrong or len(set(map(str.lower, answers))) < len(answers):
-            raise RecipeError(f"the answers to {quoted(question)} must be different words, each not empty")
+            allowed = f"different words, each 1 to {LONGEST_ANSWER} characters"
+            raise RecipeError(f"the answers to {quoted(question)} must be {allowed}")
 
         def make(id: str) -> Any:
             return self._device.ask(id=id, question=question, answers=answers, at_most_s=at_most_s)
 
-        asked = Ask(f"ask {self._device.name}", self._context, make, f"asking {self._device.name}")
+        name = self._device.name
+        asked = Ask(ASK(person=name), self._context, make, ASKING(person=name))
         asked.answers = tuple(answers)
         return asked
 

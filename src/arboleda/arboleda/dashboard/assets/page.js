@@ -83,7 +83,9 @@ function suggest() {
   }
 }
 
-// The tab of the browser, its icon and the header show trouble, also to whom another tab is open.
+const ICONS = { trouble: "tree_trouble", waits: "tree_waits" };
+
+// The tab of the browser, its icon and the header show trouble and who is waited for, also to whom another tab is open.
 function alarm() {
   const [title, state] = value("text/title") ?? ["Arboleda", "well"];
   if (document.title !== title) document.title = title;
@@ -91,7 +93,7 @@ function alarm() {
   document.documentElement.dataset.stands = state;
   const icon = document.querySelector("link[rel~=icon]");
   const home = document.querySelector("link[href$='/page.css']").href.replace("page.css", "");
-  if (icon) icon.href = `${home}${state === "trouble" ? "tree_trouble" : "tree"}.svg`;
+  if (icon) icon.href = `${home}${ICONS[state] ?? "tree"}.svg`;
 }
 
 function filterBy(list, cell) {

@@ -1,0 +1,99 @@
+"""A person is asked on the page, in a real browser, and answers there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .page import PATIENCE_MS, connected, running
+from .test_accessible import Eye
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+QUESTION = "Is the pallet <b>full</b> again?"
+PLANT = """\
+name: shop
+uses: [recipes.py]
+cells:
+  tending:
+    devices:
+      ana: {kind: person}
+    queue_limit: 5
+"""
+RECIPES = f'''\
+from arboleda.recipes import recipe, work
+
+
+@recipe("refill")
+def refill(cell):
+    """Ask whether there are parts again."""
+    asked = cell.device("ana").ask("{QUESTION}", ["yes", "no parts left"])
+    ways = {{"yes": [], "no parts left": cell.fail("there are no parts left")}}
+    return work(asked, cell.choose(asked, ways))
+'''
+
+
+@contextmanager
+def asking(folder: Path) -> Iterator[str]:
+    """A plant whose only task asks ana."""
+    (folder / "plant.yaml").write_text(PLANT)
+    (folder / "recipes.py").write_text(RECIPES)
+    with running(folder / "state", "--plant", str(folder / "plant.yaml"), "tending refill #asks") as address:
+        yield address
+
+
+@pytest.fixture
+def page(browser: Any, tmp_path: Path) -> Iterator[Any]:
+    """The cells on a phone, where ana is being asked; a script that fails fails the test."""
+    context = browser.new_context(viewport={"width": 360, "height": 740}, locale="en")
+    made = context.new_page()
+    troubles: list[str] = []
+    made.set_default_timeout(PATIENCE_MS)
+    made.on("pageerror", lambda error: troubles.append(str(error)))
+    with asking(tmp_path) as address:
+        made.goto(address)
+        connected(made)
+        made.wait_for_selector("[data-act=answer]")
+        yield made
+        context.close()
+    assert troubles == []
+
+
+def announced(page: Any) -> str:
+    return page.inner_text(".asked [aria-live=polite]")
+
+
+def test_a_press_answers_and_the_task_goes_on(page: Any) -> None:
+    assert announced(page) == f"ana is asked\n\n{QUESTION}"
+    assert page.locator(".asked b").count() == 0
+    buttons = page.get_by_role("button", description=QUESTION)
+    assert buttons.all_inner_texts() == ["yes", "no parts left"]
+    assert page.title() == "? tending: waits for ana - shop"
+    assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree_waits.svg")
+    assert page.evaluate("document.documentElement.scrollWidth") == 360
+
+    page.get_by_role("button", name="yes", exact=True).click()
+    page.wait_for_selector("[data-act=answer]", state="detached")
+    page.wait_for_selector('[data-rows=tasks] [data-row=asks][data-s="done"]', state="attached")
+    assert page.inner_text("#answer") == "Done: Answer, ana yes."
+    assert announced(page).strip() == ""
+    assert page.title() == "shop"
+    assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
+
+
+def test_an_answer_that_is_refused_says_why_and_the_question_stays(page: Any) -> None:
+    page.evaluate("document.querySelector('[data-act=answer]').dataset.of = 'ana maybe'")
+    page.click("[data-act=answer]")
+    page.wait_for_selector("#answer[data-s=bad]:has-text('answers: yes, no parts left')")
+    assert page.locator("[data-act=answer]").count() == 2
+
+
+@pytest.mark.requires("axe_playwright_python")
+def test_axe_finds_nothing_on_a_question(page: Any) -> None:
+    eye = Eye(page)
+    eye.look("a question")
+    assert not eye.violations, "\n".join(eye.violations)
