@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.app.screen import parting
 from arboleda.core.messages import Reason, Verb
 from arboleda.core.model import PlantModel
 from arboleda.core.recipe import Recipe
@@ -58,6 +59,15 @@ def test_the_task_goes_on_with_the_answer() -> None:
     assert question(here) is None
     assert here.outcome().state.value == "done"
     assert str(here.plant.acts[-1].sentence) == "answer ana yes"
+
+
+def test_who_was_asked_is_no_robot_that_was_left_moving() -> None:
+    here = asking()
+    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert here.outcome().state.value == "done"
+    lines = parting(view.snapshot(here.plant))
+    assert "left: still, effector off" in lines
+    assert not [line for line in lines if line.startswith("ana")]
 
 
 def test_another_answer_is_another_way() -> None:

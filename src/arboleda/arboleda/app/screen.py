@@ -307,7 +307,8 @@ def joints(robot: dict[str, Any]) -> str:
 def parting(snapshot: dict[str, Any]) -> list[str]:
     """How each robot that was ever heard was left."""
     holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
-    heard = [robot for robot in snapshot["robots"] if robot["age_s"] is not None]
+    robots = [robot for robot in snapshot["robots"] if robot["kind"] != "person"]
+    heard = [robot for robot in robots if robot["age_s"] is not None]
     return [_left(robot, holds[robot["name"]]) for robot in heard]
 
 

@@ -77,9 +77,11 @@ class Advisor:
     def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         name, holding = run.cell.name, run.context.holding
         yield from self._freeing(run, run.context.awaited_by_recovery(), asked)
-        yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
+        helps = not holding or _can_bring_back(run)
+        if helps:
+            yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
         for robot in holding:
-            yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_held, drops=(robot,), instead=True)
+            yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_held, drops=(robot,), instead=helps)
         yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding)
 
     def _aborted(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -92,8 +94,11 @@ class Advisor:
     def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
         yield from self._readying(run, asked)
-        if run.context.holding:
+        if run.context.holding and _can_bring_back(run):
             yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=_recovered(run))
+        elif run.context.holding:
+            for robot in run.context.holding:
+                yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_stopped, drops=(robot,))
         yield from _running_again(run)
 
     def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -182,6 +187,12 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
     if run.queue_paused:
         moves = _movers(run) if run.queue else ()
         yield Advice(do=Verb.RESUME, scope=run.cell.name, why=run.why_paused, moves=moves)
+
+
+def _can_bring_back(run: CellRun) -> bool:
+    """Whether a robot carries what holds a part; a clamp on a bench keeps it, however often one tries."""
+    hands = {space.hand.name for space in run.cell.workspaces.values()}
+    return any(holder in hands for holder in run.context.holding)
 
 
 def _recovered(run: CellRun) -> tuple[str, ...]:
