@@ -15,12 +15,12 @@ def weigh(cell, ml: Choice[5, 10, 20]):
 @recipe("incubate")
 def incubate(cell, ml: Choice[5, 10], celsius: Choice[40, 60]):
     """Fill what the reader knows as a sample, and keep it warm for a while."""
-    pump, heater, reader = cell.devices("pump", "heater", "reader")
+    pump, heater, reader, operator = cell.devices("pump", "heater", "reader", "operator")
     code = reader.scan()
     warm = [heater.clamp(on=True), heater.close(), heater.heat(celsius=celsius), heater.heat(celsius=20)]
     ways = {
         "sample": [pump.dispense(ml=ml), *warm, heater.open(), heater.clamp(on=False), pump.rinse()],
         "blank": pump.rinse(),
-        "unreadable": cell.fail("nobody can read the code of the sample"),
+        "unreadable": [operator.ask("Take the sample out, please"), cell.fail("nobody can read the code")],
     }
     return work(code, cell.choose(code, ways))

@@ -1,0 +1,261 @@
+"""The examples of cells of devices: whatever is answered or gives up, the cell works again."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cache, partial
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+import arboleda.recipes as public
+from arboleda.app import config
+from arboleda.app.urdf import robot_urdf
+from arboleda.core.commands import Command, Question
+from arboleda.core.facts import Value
+from arboleda.core.messages import TaskState, Verb
+from arboleda.core.model import Cell, PlantModel
+from arboleda.core.text import parse
+from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.declared import Device, Told
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.machine import MachineBody
+from arboleda.testing.following import follow, works
+from arboleda.wire.payloads import OrderGoal
+
+from .lab import Bench
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+PAGES = EXAMPLES.parent / "docs/examples"
+FOLDERS = sorted(file.parent.name for file in EXAMPLES.glob("*/plant.yaml"))
+ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)
+SAME_M, APART_M = 0.001, 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A task of an example, what is answered in it (else the first that there is), and what is told last."""
+
+    folder: str
+    task: str
+    answers: dict[str, str] = field(default_factory=dict)
+    ends_with: tuple[str, ...] = ()
+    why: str | None = None  # the task fails, with this sentence
+
+    def __str__(self) -> str:
+        return " ".join([self.task, *self.answers.values()])
+
+
+BASE, MILL, PALLET = "station assemble base_1 lid_3", "tending mill slot_2 1002", "tending pallet 1001"
+SOLD = ("tender to belt", "tender lets go", "tender to home", "belt advance")
+REJECTED = ("tender to reject", "tender lets go", "tender to home")
+bench, tending = partial(Case, folder="lab_bench"), partial(Case, folder="machine_tending")
+CASES = (
+    Case(folder="assembly", task=BASE, ends_with=("left to done", "left lets go", "left to home")),
+    bench(task="bench weigh 10", ends_with=("pump dispense", "scale weigh")),
+    bench(
+        task="bench weigh 20",
+        answers={"scale": "short"},
+        why="the scale says that too little was dispensed",
+    ),
+    bench(task="bench incubate 5 60", ends_with=("heater clamp", "pump rinse")),
+    bench(task="bench incubate 5 40", answers={"reader": "blank"}, ends_with=("reader scan", "pump rinse")),
+    bench(task="bench incubate 5 40", answers={"reader": "unreadable"}, why="nobody can read the code"),
+    tending(task=MILL, ends_with=SOLD),
+    tending(task=MILL, answers={"camera": "bad"}, ends_with=REJECTED),
+    tending(task=MILL, answers={"camera": "unsure"}, ends_with=SOLD),
+    tending(task=MILL, answers={"camera": "unsure", "operator": "bad"}, ends_with=REJECTED),
+    tending(task=PALLET, ends_with=SOLD),
+    tending(task=PALLET, answers={"operator": "no blanks left"}, why="no blanks are left"),
+)
+PLAIN = [each for each in CASES if not each.answers and each.task != PALLET]
+
+
+@cache
+def load(folder: str) -> PlantModel:
+    return config.load(EXAMPLES / folder / "plant.yaml")
+
+
+def only_cell(folder: str) -> Cell:
+    (cell,) = load(folder).cells
+    return cell
+
+
+def tried(folder: str, name: str, answers: Iterable[Value]) -> set[Value]:
+    """Those of the answers of somebody that a case gives, the first among them."""
+    first, *_ = answers
+    return {first, *(each.answers[name] for each in CASES if each.folder == folder and name in each.answers)}
+
+
+class Shop(Bench):
+    """An example; who is asked answers as the case says."""
+
+    def __init__(self, case: Case) -> None:
+        super().__init__(load(case.folder))
+        self.case = case
+        self.devices_by_name = {
+            name: self.machines[robot.mqtt]
+            for name, robot in self.model.robots.items()
+            if isinstance(robot, Device)
+        }
+        for name in self.devices_by_name.keys() & case.answers.keys():
+            self.body(name).answer = partial(self._answer, name)
+
+    def body(self, name: str) -> MachineBody:
+        body = self.devices_by_name[name]
+        assert isinstance(body, MachineBody)
+        return body
+
+    def do(self) -> TaskState:
+        """Ask for the task of the case, answer what people are asked, and see how it ends."""
+        self.submit(self.case.task)
+        while not self._ended():
+            assert self.wait(600.0, lambda: self._ended() or bool(self._questions())), self.changes[-1]
+            for asked in self._questions():
+                answers = asked.answers
+                assert set(answers) == tried(self.case.folder, asked.robot, answers) & set(answers)
+                word = self.case.answers.get(asked.robot, answers[0])
+                assert self.operate(Verb.ANSWER, f"{asked.robot} {word}") is None
+        return self.changes[-1].state
+
+    @property
+    def said(self) -> list[str]:
+        """What devices and robots were told, in order, without stops and heights: `left to done`."""
+        words = (self._said(each) for each in self.sent if isinstance(each, Command))
+        return [each for each in words if each]
+
+    def holding(self) -> list[str]:
+        """Who truly holds something."""
+        arms = [
+            name
+            for name, board in self.boards.items()
+            if isinstance(board.body, ArmBody) and board.body.effector
+        ]
+        kinds = {name: self.body(name).kind.held_fact for name in self.devices_by_name}
+        return arms + [name for name, fact in kinds.items() if fact and self.body(name).facts[fact]]
+
+    def _said(self, command: Command) -> str | None:
+        if isinstance(command, Told):
+            return f"{command.robot} {command.verb}"
+        if isinstance(command, SetEffector):
+            return f"{command.robot} {'grips' if command.on else 'lets go'}"
+        if isinstance(command, MoveJoints):
+            poses = only_cell(self.case.folder).workspaces[command.robot].poses
+            name = next((pose.name for pose in poses if pose.q == command.q), None)
+            return name and f"{command.robot} to {name}"
+        return None
+
+    def _answer(self, name: str, goal: OrderGoal) -> Value:
+        return self.case.answers[name]
+
+    def _ended(self) -> bool:
+        return self.changes[-1].state in ENDED
+
+    def _questions(self) -> list[Question]:
+        entries = map(self.plant.dispatcher.question, self.model.robots)
+        return [each.command for each in entries if each is not None and isinstance(each.command, Question)]
+
+
+def test_every_recipe_of_every_example_and_every_answer_is_tried() -> None:
+    assert {case.folder for case in CASES} == set(FOLDERS)
+    for folder in FOLDERS:
+        cell = only_cell(folder)
+        names = {case.task.split()[1] for case in CASES if case.folder == folder}
+        assert names == {recipe.name for recipe in cell.recipes}
+        for device in cell.robots:
+            for verb in device.kind.verbs.values() if isinstance(device, Device) else ():
+                if verb.answers:
+                    assert tried(folder, device.name, verb.answers) == set(verb.answers)
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_a_task_ends_as_its_recipe_says_whatever_is_answered(case: Case) -> None:
+    here = Shop(case)
+    state = here.do()
+    assert state is (TaskState.FAILED if case.why else TaskState.DONE), here.changes[-1]
+    if case.why:
+        assert str(here.changes[-1].sentence) == case.why
+    assert tuple(here.said[len(here.said) - len(case.ends_with) :]) == case.ends_with
+    assert here.wait(60.0, lambda: works(here, only_cell(case.folder).name))
+    assert here.holding() == []
+
+
+@pytest.mark.parametrize("case", PLAIN, ids=str)
+def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case) -> None:
+    whole = Shop(case)
+    assert whole.do() is TaskState.DONE
+    deeds = {tuple(each.split()) for each in whole.said if each.split()[0] in whole.devices_by_name}
+    assert deeds
+    for name, verb in sorted(deeds):
+        here, given_up = Shop(case), []
+
+        def fails(goal: OrderGoal, verb: str = verb, given_up: list[OrderGoal] = given_up) -> str | None:
+            """Gives up that verb the first time that it is told."""
+            if goal.verb != verb or given_up:
+                return None
+            given_up.append(goal)
+            return "atasco"
+
+        here.body(name).fails = fails
+        assert here.do() is TaskState.FAILED, (name, verb)
+        done = follow(here, only_cell(case.folder).name)
+        assert here.holding() == [], (name, verb, done)
+        assert here.do() is TaskState.DONE, (name, verb, done, here.changes[-1])
+
+
+@pytest.mark.parametrize("case", PLAIN, ids=str)
+def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case) -> None:
+    whole = Shop(case)
+    assert whole.do() is TaskState.DONE
+    for count in range(1, len(whole.said), 4):
+        here = Shop(case)
+        here.submit(case.task)
+        assert here.wait(200.0, lambda here=here, count=count: len(here.said) >= count)
+        assert here.operate(Verb.STOP) is None
+        here.wait(1.0)
+        done = follow(here, only_cell(case.folder).name)
+        assert here.holding() == [], (here.said[-1], done)
+        assert here.do() is TaskState.DONE, (done, here.changes[-1])
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_recipes_import_nothing_else_of_arboleda_than_what_is_public(folder: str) -> None:
+    files = list((EXAMPLES / folder).glob("**/*.py"))
+    assert files
+    for file in files:
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                assert not [each.name for each in node.names if each.name.split(".")[0] == "arboleda"]
+            elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "arboleda":
+                assert node.module == "arboleda.recipes"
+                assert {each.name for each in node.names} <= set(public.__all__)
+
+
+@pytest.mark.parametrize("folder", [each for each in FOLDERS if only_cell(each).spaces])
+def test_a_target_is_the_same_place_for_all_arms_and_another_one_than_the_others(folder: str) -> None:
+    places: dict[str, list[tuple[float, ...]]] = {}
+    for space in only_cell(folder).spaces:
+        assert isinstance(space.robot, Arm)
+        body, base = bodies.read(robot_urdf(load(folder), space.robot.name)), space.robot.base.on_floor
+        for pose in space.poses:
+            point = kinematics.at(kinematics.tool(body, pose.q, kinematics.floor(base)))
+            places.setdefault(pose.name if pose is not space.home else space.robot.name, []).append(point)
+    for points in places.values():
+        assert all(math.dist(points[0], each) < SAME_M for each in points)
+    for (name, (a, *_)), (other, (b, *_)) in combinations(places.items(), 2):
+        assert math.dist(a, b) > APART_M, f"{name} and {other}"
+
+
+@pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.name)
+def test_a_page_shows_tasks_that_its_example_takes(page: Path) -> None:
+    folder = page.name.partition(".")[0]
+    tasks = re.findall(r'arboleda (?:up|tree) "(.+)" --plant (\S+)', page.read_text("utf-8"))
+    assert {file for _, file in tasks} == {f"examples/{folder}/plant.yaml"}
+    for task, _ in tasks:
+        assert parse(task, load(folder)).text.split()[0] == only_cell(folder).name
