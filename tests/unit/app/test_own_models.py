@@ -51,6 +51,12 @@ def test_what_a_urdf_does_not_say_is_assumed_and_said(tmp_path: Path) -> None:
     assert "the joint flange has no ends; it is taken as -360 deg to 360 deg" in said
 
 
+def test_it_is_said_of_an_arm_among_devices_too() -> None:
+    said = config.notes(config.load(TENDER.parents[1] / "plant.yaml"))
+    assert [each.split(":")[0] for each in said] == ["tender"] * len(said)
+    assert any("full speed in 0.5 s are assumed for q3, q4, q5, q6" in each for each in said)
+
+
 def test_the_plant_file_says_it_better(tmp_path: Path) -> None:
     model = f"{{file: {TENDER}, accelerations: {{q2_deg_s2: 90}}, steps: {{q1_deg: 0.1}}}}"
     more = ", limits: {q1_deg: [-100, 120]}, speeds: {q3_deg_s: 45}"

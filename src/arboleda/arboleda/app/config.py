@@ -12,6 +12,7 @@ from typing import Any
 from arboleda.core.errors import ConfigError
 from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
 from arboleda.core.recipe import Recipe
+from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import DeviceKind
 from arboleda.recipes.storage import RECIPES
 from arboleda.recipes.storage_cell import Path as Route
@@ -90,9 +91,9 @@ def warnings(plant: PlantModel) -> tuple[str, ...]:
 def notes(plant: PlantModel) -> tuple[str, ...]:
     """What was assumed of the models that the plant has of its own."""
     described = {
-        cell.arm.description: cell.arm.name
-        for cell in reversed(plant.cells)
-        if isinstance(cell, StorageCell) and cell.arm.description
+        robot.description: robot.name
+        for robot in reversed(plant.robots.values())
+        if isinstance(robot, Arm) and robot.description
     }
     own_models = [f"{name}: {note}" for own, name in described.items() for note in own.notes]
     many = [(cell, each, combinations(cell, each)) for cell in plant.cells for each in cell.recipes]
