@@ -76,7 +76,7 @@ def test_a_breach_shows_the_line_of_the_test_the_rule_and_the_timeline(project: 
             yield from (f"{board} moves" for board, _ in look.moment.executed if board == "arm_1")
 
         def test_it(sim, monkeypatch):
-            monkeypatch.setattr("arboleda.testing.sim.INVARIANTS", (arms_rest,))
+            monkeypatch.setattr("arboleda.simulator.judged.INVARIANTS", (arms_rest,))
             sim.__init__(sim._folder)
             sim.plant("my.yaml")
             sim.submit("cell_1 0B 0")

@@ -19,6 +19,7 @@ from arboleda.app.simulate.drawn import Drawn
 from arboleda.app.simulate.plants import Plant
 from arboleda.app.simulate.request import Request, shared
 from arboleda.core.model import Evidence
+from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.invariants.invariant import Look, When, invariant
@@ -58,7 +59,7 @@ def plant(tmp_path: Path) -> Path:
 @pytest.fixture
 def arboleda(plant: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Arboleda:
     """`arboleda("--seed", 3)`: simulate the small plant in this process, a task a seed, unless told so."""
-    monkeypatch.setattr(setting, "INVARIANTS", ())
+    monkeypatch.setattr(judged, "INVARIANTS", ())
 
     def run(*words: object) -> Ended:
         usual = {"--plant": plant, "--cycles": 1, "--jobs": 1, "--faults": "none"}
@@ -87,7 +88,7 @@ def brittle(arboleda: Arboleda, monkeypatch: pytest.MonkeyPatch) -> Invariant:
         world.rebooted = fault.target
 
     monkeypatch.setitem(KINDS, "reboot", replace(KINDS["reboot"], begin=begin))
-    monkeypatch.setattr(setting, "INVARIANTS", (unbooted,))
+    monkeypatch.setattr(judged, "INVARIANTS", (unbooted,))
     return unbooted
 
 
@@ -180,7 +181,7 @@ def test_an_exception_in_a_step_is_a_breach(arboleda: Arboleda, monkeypatch: pyt
         """It has a mistake."""
         raise KeyError("nobody")
 
-    monkeypatch.setattr(setting, "INVARIANTS", (bad,))
+    monkeypatch.setattr(judged, "INVARIANTS", (bad,))
     ended = arboleda("--seeds", 1)
     assert ended.status == 1
     assert "breaks no_exception" in ended.said and "was seen   KeyError: 'nobody'" in ended.said

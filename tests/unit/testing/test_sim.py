@@ -115,7 +115,7 @@ def test_at_rest_all_faults_are_over_and_cells_go_again(sim: Sim) -> None:
 def test_a_broken_invariant_is_told_with_its_rule_and_what_led_to_it(
     sim: Sim, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("arboleda.testing.sim.INVARIANTS", (nobody_moves,))
+    monkeypatch.setattr("arboleda.simulator.judged.INVARIANTS", (nobody_moves,))
     sim = Sim()
     sim.submit("sis_a 0B 7")
     with pytest.raises(AssertionError) as breach:
@@ -129,7 +129,7 @@ def test_a_broken_invariant_is_told_with_its_rule_and_what_led_to_it(
 
 
 def test_an_invariant_may_be_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("arboleda.testing.sim.INVARIANTS", (nobody_moves,))
+    monkeypatch.setattr("arboleda.simulator.judged.INVARIANTS", (nobody_moves,))
     sim = Sim()
     sim.without("nobody_moves")
     task = sim.submit("sis_a 0B 7")
@@ -221,7 +221,7 @@ def test_a_seed_that_breaks_is_shrunk_and_told(monkeypatch: pytest.MonkeyPatch) 
         """No task ever fails."""
         yield from (each.text for each in look.moment.sent if getattr(each, "reason", None))
 
-    monkeypatch.setattr("arboleda.testing.sim.INVARIANTS", (nothing_fails,))
+    monkeypatch.setattr("arboleda.simulator.judged.INVARIANTS", (nothing_fails,))
     sim = Sim()
     sim.plant(shipped("sis_a"))
     with pytest.raises(AssertionError) as failure:

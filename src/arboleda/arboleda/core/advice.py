@@ -17,6 +17,7 @@ class Hand(str, Enum):
     REPAIR = "repair"  # a robot whose board reports a fault
     REFERENCE = "reference"  # a robot that only its own controls can home
     CHECK = "check"  # a zone: that really nobody is in it
+    FREE = "free"  # a device that is in the way of a zone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +43,7 @@ DO: dict[Verb | Hand, Phrase] = {
     Hand.BRING_BACK: Phrase("do.bring_back", "bring {scope} back"),
     Hand.REPAIR: Phrase("do.repair", "repair {scope}"),
     Hand.REFERENCE: Phrase("do.reference", "home {scope} at its own controls"),
+    Hand.FREE: Phrase("do.free", "get {scope} out of the way by its own controls"),
     Hand.CHECK: Phrase("do.check", "see that nobody is in {scope}"),
 }
 HOME_BY_HAND = Phrase("do.home_by_hand", "home {scope} --by-hand")

@@ -12,6 +12,7 @@ from .messages import OperatorRequest, Reason, Verb
 from .sentence import Phrase, Sentence
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
+IN_THE_WAY = Phrase("advice.in_the_way", "{device} does not say {facts}")
 MAY_BE_IN = Phrase("zone.may_be_in", "{arm} may still be in {zone}, which is quarantined")
 Refusal = Callable[[OperatorRequest], "Sentence | None"]
 
@@ -141,6 +142,9 @@ class Advisor:
         """
         for holder in sorted(set(zones.values())):
             other = self._cell_of[holder]
+            if (facts := other.context.in_the_way(holder)) is not None:
+                yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
+                continue
             waits_too = other.cell.name in asked
             leads = () if waits_too else self.ways_out(other.cell.name, asked)
             by_hand = bool(leads) and leads[0].do in HANDS.values()

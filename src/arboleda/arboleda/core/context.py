@@ -11,7 +11,7 @@ from . import zone_plan
 from .belief import Moment
 from .commands import Command, Motion, Position
 from .dispatcher import Dispatcher, Make
-from .facts import Value
+from .facts import Value, shown
 from .grips import Grip
 from .ledger import Entry
 from .messages import Fact, Failure, Notice, Reason
@@ -56,6 +56,7 @@ class Context:
         self.carrier: str | None = None  # who is on its way with a part that was seen in its effector
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
         self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
+        self.origins: set[str] = set()  # the robots whose place in `back` is where they last went empty
         self.brings_to: set[str] = set()  # the robots whose task says where a recovery brings what they hold
         self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
         self.failure: Failure | None = None
@@ -237,6 +238,8 @@ class Context:
 
     def way_back(self, robot: str) -> Pose | None:
         """Where a recovery brings what a robot holds: back where it came from, else as the cell says."""
+        if robot in self.origins and self.cell.workspaces[robot].hand.name not in self.holding:
+            return None  # it went there, and took nothing
         return self.back.get(robot) or self.cell.back(robot, self.position)
 
     def standing(self, robot: str) -> Pose:
@@ -347,16 +350,33 @@ class Context:
             self._dispatcher.remember(Fact.QUARANTINE, zone, robot)
 
     def occupied_by(self, device: str) -> frozenset[str]:
-        """The zones that a device may be in the way of: it does not say the contrary, or was told to be."""
+        """The zones that a device may be in the way of: it does not say the contrary, or was told to be.
+
+        What moves without a command of this plant may be on its way there.
+        """
         belief = self._dispatcher.beliefs[device]
         told = [entry.command for entry in self._dispatcher.ledger.of_robot(device)]
         return frozenset(
             each.zone
             for each in self.cell.interlocks_of(device)
             if not belief.online
+            or (belief.state is MotionState.MOVING and self._dispatcher.work_of(device) is None)
             or any(belief.fact(name) != value for name, value in each.free_while)
             or any(map(each.is_ended_by, told))
         )
+
+    def in_the_way(self, device: str) -> tuple[str, ...] | None:
+        """What a device that is heard and does nothing does not say, so that it keeps a zone; else None."""
+        belief = self._dispatcher.beliefs[device]
+        if not belief.online or self._dispatcher.ledger.of_robot(device) or not self.occupied_by(device):
+            return None
+        unsaid = [
+            f"{name} {shown(value)}"
+            for each in self.cell.interlocks_of(device)
+            for name, value in each.free_while
+            if belief.fact(name) != value
+        ]
+        return tuple(dict.fromkeys(unsaid)) or None
 
     def keep_interlocks(self, device: str) -> None:
         """A device in the way of a zone where nobody is has it; one that no longer is gives it back."""

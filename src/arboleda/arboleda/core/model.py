@@ -278,6 +278,8 @@ class Interlock:
 class Cell:
     """Robots that carry out one task at a time, each in a role of its own."""
 
+    is_storage: ClassVar[bool] = False  # whether it is one of an arm, a mobile robot and a rack
+
     name: str
     members: tuple[tuple[str, Robot], ...] = ()  # by role
     spaces: tuple[Workspace, ...] = ()  # of those that go from pose to pose

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from py_trees import composites
+from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
 from . import zone_plan
@@ -28,6 +28,8 @@ DWELL = Phrase("step.dwell", "dwell")
 SETTLE = Phrase("step.settle", "settle")
 RISE = Phrase("step.rise", "rise")
 RISING = Phrase("doing.rise", "rising")
+ALL_HOME = Phrase("step.all_home", "all go home")
+HOME_AGAIN = Phrase("step.home_again", "{arm} goes home")
 CARRY_BACK = Phrase("step.carry_back", "carry back")
 PART_BACK = Phrase("step.part_back", "part back")
 HOLDS_NOTHING = Phrase("step.holds_nothing", "holds nothing")
@@ -70,10 +72,18 @@ def task(title: Sentence | str, work: list[Behaviour], context: Context) -> Beha
 
 
 def recovery(context: Context) -> Behaviour:
-    """Wait until all has come to rest; carry what is held back to where it came from; go home."""
+    """Wait until all has come to rest; carry what is held back to where it came from; go home.
+
+    Of several robots each goes by itself: one may wait for a zone that another one is still in.
+    """
     robots = tuple(context.cell.workspaces)
-    ways = [step for robot in robots for step in _way_home(context, robot)]
-    return sequence(TITLES[RECOVERY](), _settle(context, robots), *ways)
+    settle, ways = _settle(context, robots), [_way_home(context, robot) for robot in robots]
+    if len(ways) < 2:
+        return sequence(TITLES[RECOVERY](), settle, *(step for way in ways for step in way))
+    policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)
+    each = [sequence(HOME_AGAIN(arm=robot), *way) for robot, way in zip(robots, ways, strict=True)]
+    together = composites.Parallel(str(ALL_HOME()), policy=policy, children=each)
+    return sequence(TITLES[RECOVERY](), settle, titled(together, ALL_HOME()))
 
 
 def sequence(title: Sentence | str, *children: Behaviour) -> Behaviour:
@@ -148,6 +158,7 @@ def _note_origin(context: Context, robot: str, pose: Pose) -> None:
     """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
     if context.cell.workspaces[robot].hand.name not in context.holding and robot not in context.brings_to:
         context.back[robot] = pose
+        context.origins.add(robot)
 
 
 def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
@@ -193,8 +204,14 @@ def _part_back(context: Context, robot: str) -> list[Behaviour]:
         empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
         return [selector(PART_BACK(), empty, sequence(CARRY_BACK(), *_at(context, robot, back, off)))]
 
+    found: list[Pose | None] = [None]  # once it lets go, nobody knows any more where that came from
+
     def origin() -> Pose | None:
-        return context.way_back(robot)
+        return found[0]
+
+    def kept() -> bool:
+        found[0] = context.way_back(robot)
+        return hand not in context.holding or found[0] is None
 
     def flat() -> bool:
         pose = origin()
@@ -203,7 +220,7 @@ def _part_back(context: Context, robot: str) -> list[Behaviour]:
     def over() -> Behaviour:
         return selector(OVER(), Unless(NO_APPROACH(), flat), _go_where(context, robot, origin, above=True))
 
-    keeps = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding or origin() is None)
+    keeps = Unless(HOLDS_NOTHING(), kept)
     there = _go_where(context, robot, origin, above=False)
     return [selector(PART_BACK(), keeps, sequence(CARRY_BACK(), over(), there, off, over()))]
 

@@ -38,6 +38,8 @@ class Palletizing:
 class StorageCell(Cell):
     """One arm, one mobile robot, one storage rack; `pickup` serves each exit that `pickups` does not name."""
 
+    is_storage: ClassVar[bool] = True
+
     arm: Arm
     mobile: Mobile
     home: Pose

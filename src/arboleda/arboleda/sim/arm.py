@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from arboleda.core.facts import Value
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
@@ -62,6 +63,15 @@ class ArmBody(Robotic):
     def true_position(self) -> tuple[int, ...]:
         """Where the axes are, in motor steps per joint."""
         return tuple([axis.position + drift for axis, drift in zip(self._axes, self._drift, strict=True)])
+
+    @property
+    def true_place(self) -> tuple[float, ...]:
+        rows = zip(self._joints, self.true_position, strict=True)
+        return tuple(joint.step * steps for joint, steps in rows)
+
+    @property
+    def true_facts(self) -> dict[str, Value]:
+        return {"effector": self.effector}
 
     @property
     def targets(self) -> tuple[int, ...]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
+from arboleda.core.commands import Position
 from arboleda.core.facts import Facts, Value
 from arboleda.wire.payloads import Goal, OrderGoal
 from arboleda.wire.topics import Channel
@@ -32,6 +33,9 @@ class End(NamedTuple):
 class Robotic:
     """A body that takes no orders: it halts when it is stopped, and is done when it arrives."""
 
+    def set_by_hand(self, facts: Facts) -> None:
+        """It has no facts."""
+
     homes = True
     ends: Sequence[End] = ()
     finishes = False
@@ -57,6 +61,14 @@ class Body(Protocol):
     channels: frozenset[Channel]
     next_change_us: int | None
     homes: bool
+
+    @property
+    def true_place(self) -> Position | None:
+        """Where it is, whatever it takes itself to be, in SI units; None where it has no place."""
+
+    @property
+    def true_facts(self) -> Mapping[str, Value]:
+        """What is so of it, whatever its board says."""
 
     @property
     def ends(self) -> Sequence[End]: ...
@@ -93,6 +105,9 @@ class Body(Protocol):
         """Move on to where it is at this time."""
 
     def switch_effector(self, on: bool) -> None: ...
+
+    def set_by_hand(self, facts: Facts) -> None:
+        """Somebody makes facts so at the machine, which does nothing meanwhile."""
 
     def put_at_reference(self) -> None:
         """Somebody moves the still robot by hand to its reference, and has it count from there."""

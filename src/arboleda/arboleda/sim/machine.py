@@ -64,6 +64,18 @@ class MachineBody:
         if self.kind.held_fact is not None:
             self.facts[self.kind.held_fact] = False
 
+    def set_by_hand(self, facts: Facts) -> None:
+        if not self._deeds:
+            self.facts.update(facts)
+
+    @property
+    def true_place(self) -> None:
+        """It stands where it is."""
+
+    @property
+    def true_facts(self) -> dict[str, Value]:
+        return self.facts
+
     @property
     def moving(self) -> bool:
         return any(deed.is_work for deed in self._deeds)

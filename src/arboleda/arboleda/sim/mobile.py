@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from arboleda.core.facts import Value
 from arboleda.kinds.mobile import Mobile
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
@@ -36,6 +37,14 @@ class MobileBody(Robotic):
     @property
     def moving(self) -> bool:
         return self.next_change_us is not None
+
+    @property
+    def true_place(self) -> int:
+        return self.true_node
+
+    @property
+    def true_facts(self) -> dict[str, Value]:
+        return {}
 
     def admits(self, goal: PathGoal) -> bool:
         """Whether the path starts here or next door and never leaves the grid's edges."""

@@ -13,6 +13,7 @@ from arboleda.core.model import PlantModel
 
 from .chance import Dice
 from .faults import KINDS, Fault
+from .general import GENERAL_FAULTS, is_general
 
 MINUTE_S = 60.0
 LEVELS: dict[str, tuple[float, float]] = {
@@ -51,7 +52,9 @@ class Climate:
             raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
         dice, (low, high) = Dice(seed, "climate"), LEVELS[level]
         total = low * (high / low) ** dice.random() if low else 0.0
-        weights = {name: _weight(dice, kind.weight) for name, kind in KINDS.items() if kind.targets(model)}
+        judged = GENERAL_FAULTS if is_general(model) else KINDS
+        kinds = {name: kind for name, kind in KINDS.items() if name in judged and kind.targets(model)}
+        weights = {name: _weight(dice, kind.weight) for name, kind in kinds.items()}
         return cls(model=model, seed=seed, rates=_shared(round(total, 3), weights))
 
     @classmethod

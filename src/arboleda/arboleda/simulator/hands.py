@@ -38,9 +38,17 @@ def _check(world: World, zone: str) -> None:
         world.put_at_reference(holder)
 
 
+def _free(world: World, device: str) -> None:
+    """Somebody opens the door, or whatever it is, at the machine."""
+    body = world.boards[world.model.robots[device].mqtt].body
+    for lock in world.model.cell_of[device].interlocks_of(device):
+        body.set_by_hand(lock.free_while)
+
+
 HANDS: dict[Hand, Callable[[World, str], None]] = {
     Hand.BRING_BACK: _bring_back,
     Hand.REPAIR: _repair,
     Hand.REFERENCE: _reference,
     Hand.CHECK: _check,
+    Hand.FREE: _free,
 }

@@ -5,7 +5,9 @@ from __future__ import annotations
 from itertools import count
 
 from arboleda.core.advice import Advice, Hand
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.core.commands import Question
+from arboleda.core.messages import TaskChanged, TaskState, Verb
+from arboleda.core.model import Cell, Link
 from arboleda.recipes.storage_cell import StorageCell
 
 from .chance import Dice
@@ -27,7 +29,7 @@ class Customers:
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
         self._dice = Dice(seed, "customers")
-        self._asked: dict[str, StorageCell] = {}  # by token
+        self._asked: dict[str, Cell] = {}  # by token
         self._waiting: set[str] = set()  # their own tasks that are in a queue
         self._started: set[str] = set()
         self._gone = False
@@ -51,7 +53,7 @@ class Customers:
                 elif message.request in self._asked:
                     self._answered(message, self._asked.pop(message.request))
 
-    def _answered(self, answer: TaskChanged, cell: StorageCell) -> None:
+    def _answered(self, answer: TaskChanged, cell: Cell) -> None:
         if answer.state is TaskState.QUEUED:
             self._waiting.add(answer.task)
         else:
@@ -72,20 +74,28 @@ class Customers:
         outcome = change.reason.value if change.reason else change.state.value
         self.outcomes[outcome] = self.outcomes.get(outcome, 0) + 1
 
-    def _come(self, cell: StorageCell) -> None:
+    def _come(self, cell: Cell) -> None:
         self._world.at(self._world.now + self._dice.between(0.0, 1.0), self._ask, cell)
 
-    def _ask(self, cell: StorageCell) -> None:
+    def _ask(self, cell: Cell) -> None:
         if not self._gone:
             token = f"customer {next(self._tokens)}"
             self._asked[token] = cell
             self._world.request_task(self._text(cell), token)
 
-    def _text(self, cell: StorageCell) -> str:
+    def _text(self, cell: Cell) -> str:
+        if not isinstance(cell, StorageCell):
+            return self._any_text(cell)
         if self._dice.chance(0.2):
             return f"{cell.name} palletizing"
         path, station = self._dice.pick(cell.paths), self._dice.below(len(cell.stations))
         return f"{cell.name} {path.code} {station}"
+
+    def _any_text(self, cell: Cell) -> str:
+        """One of the recipes of a cell, with one of the words of each parameter."""
+        chosen = self._dice.pick(cell.recipes)
+        words = [self._dice.pick(list(each.words(cell))) for each in chosen.parameters]
+        return " ".join([cell.name, chosen.name, *words])
 
 
 class Attendant:
@@ -97,15 +107,27 @@ class Attendant:
     def __init__(self, world: World, seed: int) -> None:
         self._world = world
         self._dice = Dice(seed, "attendant")
+        robots = world.model.robots.values()
+        self._people = [robot.name for robot in robots if robot.link is Link.SCREEN]
         self._next_round()
 
     def _next_round(self) -> None:
         self._world.at(self._world.now + self._dice.between(*ROUND_S), self._round)
 
     def _round(self, _: None) -> None:
+        self._answer()
         for cell in self._world.plant.cells:
             self._see_to(self._world.plant.advice(cell))
         self._next_round()
+
+    def _answer(self) -> None:
+        """People who are asked something give one of the answers."""
+        plant = self._world.plant
+        for name in self._people:
+            entry = plant.dispatcher.question(name)
+            if entry is not None and isinstance(entry.command, Question):
+                answer = self._dice.pick(entry.command.answers)
+                self._world.request_verb(Verb.ANSWER, f"{name} {answer}")
 
     def _see_to(self, ways: tuple[Advice, ...]) -> None:
         """The first; who has looked into a zone also says so, as the plant cannot know."""

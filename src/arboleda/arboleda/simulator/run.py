@@ -12,7 +12,7 @@ from arboleda.core.recipe import Builders
 
 from .apart import come_apart
 from .faults import Fault
-from .invariants import INVARIANTS, Invariant
+from .invariants import Invariant
 from .people import Attendant, Customers
 from .watched import Broken, Watched
 
@@ -51,7 +51,7 @@ class Simulation:
         seed: int,
         plan: Plan,
         *,
-        invariants: Iterable[Invariant] = INVARIANTS,
+        invariants: Iterable[Invariant] | None = None,
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,

@@ -10,8 +10,10 @@ from arboleda.core.model import PlantModel
 from arboleda.core.recipe import Builders
 
 from .faults import KINDS, Fault
-from .invariants import INVARIANTS, Invariant
+from .general import GeneralTruth, NoRecord, is_general
+from .invariants import Invariant
 from .invariants.invariant import Judges, Look
+from .judged import judged_by
 from .record import Record
 from .trace import Trace
 from .truth import Truth
@@ -40,7 +42,7 @@ class Watched:
         self,
         model: PlantModel,
         *,
-        invariants: Iterable[Invariant] = INVARIANTS,
+        invariants: Iterable[Invariant] | None = None,
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,
@@ -48,11 +50,13 @@ class Watched:
         self.world = World(model, recipes=recipes)
         self._start = self.world.now
         self.faults: list[Fault] = []
-        self.invariants = tuple(invariants)
+        general = is_general(model)
+        self.invariants = tuple(judged_by(model) if invariants is None else invariants)
         self.trace = Trace(self.world, keep=keep, tell=tell)
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
-        self._look = Look(world=self.world, truth=Truth(self.world), record=Record(self.world))
+        known = (GeneralTruth(self.world), NoRecord()) if general else (Truth(self.world), Record(self.world))
+        self._look = Look(world=self.world, truth=known[0], record=known[1])
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
+from arboleda.core.facts import Value
 from arboleda.kinds.arm import Arm
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
@@ -34,7 +36,8 @@ class CellLook:
 class RobotLook:
     """Where a robot is, and where the plant last heard that it is; joints in deg, prismatic ones in mm.
 
-    `joints`, `effector` and `holds` (a part) are None for a mobile robot, `node` for an arm. `online`,
+    `joints`, `effector` and `holds` (a part) are None for a mobile robot, `node` for an arm; a device of a
+    declared kind has `facts`. `online`,
     `homed` and what is believed are as the plant heard, None where it heard nothing.
     """
 
@@ -47,6 +50,8 @@ class RobotLook:
     believed_node: int | None = None
     effector: bool | None = None
     holds: bool | None = None
+    facts: Mapping[str, Value] = field(default_factory=dict)
+    believed_facts: Mapping[str, Value | None] = field(default_factory=dict)
 
 
 def cell(world: World, name: str) -> CellLook:
@@ -81,8 +86,10 @@ def robot(world: World, name: str) -> RobotLook:
             effector=body.effector,
             holds=body.holding,
         )
-    assert isinstance(body, MobileBody)
-    return RobotLook(**heard, node=body.true_node, believed_node=belief.node)
+    if isinstance(body, MobileBody):
+        return RobotLook(**heard, node=body.true_node, believed_node=belief.node)
+    believed = {fact: belief.fact(fact) for fact in body.true_facts}
+    return RobotLook(**heard, facts=dict(body.true_facts), believed_facts=believed)
 
 
 def _text(said: object) -> str | None:

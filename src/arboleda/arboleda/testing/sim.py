@@ -13,7 +13,8 @@ from arboleda.core.model import PlantModel
 from arboleda.core.recipe import Build
 from arboleda.simulator.climate import LEVELS
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.invariants import INVARIANTS
+from arboleda.simulator.invariants import Invariant
+from arboleda.simulator.judged import judged_by
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.watched import Broken, Watched
@@ -40,7 +41,7 @@ class Sim:
         self._folder = folder
         self._model: PlantModel | None = None
         self._recipes: dict[str, Build] = {}
-        self._invariants = INVARIANTS
+        self._invariants: tuple[Invariant, ...] | None = None
         self._attendant: Attendant | None = None
         self._asking = False  # a condition of the test is being asked: what it raises is the test's
         self._told = False  # the error that ended the test has the timeline in it
@@ -60,8 +61,10 @@ class Sim:
     def without(self, *invariants: str) -> None:
         """Do not judge by these invariants, where a recipe means something else than the shipped one."""
         self._before_start("without")
-        names = {known("an invariant", name, [each.name for each in INVARIANTS]) for name in invariants}
-        self._invariants = tuple(each for each in self._invariants if each.name not in names)
+        judges = judged_by(self._chosen) if self._invariants is None else self._invariants
+        every = [each.name for each in judged_by(self._chosen)]
+        names = {known("an invariant", name, every) for name in invariants}
+        self._invariants = tuple(each for each in judges if each.name not in names)
 
     def submit(self, text: str) -> Handle:
         """Ask for a task; a refused one is a handle too."""
@@ -147,7 +150,7 @@ class Sim:
             cycles=cycles,
             level=level,
             recipes=self._recipes,
-            invariants=self._invariants,
+            invariants=judged_by(self._chosen) if self._invariants is None else self._invariants,
         )
         for seed in range(first, first + count):
             if (result := drawn.run(seed)).broken:

@@ -97,7 +97,7 @@ class Done(_Told):
 class Advice(_Told):
     """One thing to do that leads a cell out of its state."""
 
-    do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference or check.")
+    do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
     hand: bool = Field(description="Only a person at the machine can do it.")
     scope: str = Field(description="A cell, a robot or a zone.")
     by_hand: bool = Field(description="For `home`: the robot was put at its reference.")

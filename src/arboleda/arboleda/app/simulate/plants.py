@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Protocol
 
-from arboleda.core.errors import ConfigError
 from arboleda.core.model import Cell, Link, PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 
@@ -60,6 +59,5 @@ def notes(plants: Iterable[Plant]) -> list[str]:
 
 def _on_boards(cell: Cell) -> StorageCell:
     if not isinstance(cell, StorageCell):
-        what = "is a cell of devices, which the simulator cannot judge yet"
-        raise ConfigError((f"{cell.name} {what}; `arboleda check` and `arboleda tree` look at it",))
+        return cell
     return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))

@@ -10,7 +10,6 @@ from rich.text import Text
 
 from arboleda.core.counting import counted
 
-from .setting import rules
 from .tally import Tally
 from .words import seeds, short
 
@@ -58,4 +57,4 @@ def verdict(tally: Tally) -> Text:
         share = f"{counted(len(tally.broken), 'seed')} of {len(tally.rows):,}"
         return Text(f"BROKEN: an invariant did not hold in {share}", style="bold red")
     checks = f" {short(tally.checks)} checks of" if tally.checks else ""
-    return Text(f"HELD:{checks} {counted(len(rules()), 'invariant')}", style="bold green")
+    return Text(f"HELD:{checks} {counted(len(tally.judged), 'invariant')}", style="bold green")

@@ -10,7 +10,7 @@ from typing import Any
 from arboleda.core.model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.invariants import INVARIANTS
+from arboleda.simulator.judged import every
 from arboleda.simulator.run import NO_EXCEPTION, Broken, Plan, Result, Simulation
 
 from .plants import Plant, Plants
@@ -68,10 +68,10 @@ class Setting:
     def _simulation(
         self, plant: Plant, seed: int, plan: Plan, *, keep: bool = False, tell: Tell | None = None
     ) -> Simulation:
-        return Simulation(plant.model, seed, plan, invariants=INVARIANTS, keep=keep, tell=tell)
+        return Simulation(plant.model, seed, plan, keep=keep, tell=tell)
 
 
 def rules() -> dict[str, str]:
     """What must hold: a sentence by the name of each invariant."""
-    sentences = {each.name: " ".join(each.sentence.split()) for each in INVARIANTS}
+    sentences = {each.name: " ".join(each.sentence.split()) for each in every()}
     return {NO_EXCEPTION: "No exception escapes a step."} | sentences

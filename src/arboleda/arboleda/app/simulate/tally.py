@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.simulator.run import Result
+from arboleda.simulator.run import NO_EXCEPTION, Result
 
 from .setting import Setting
 
@@ -22,6 +22,7 @@ class Tally:
     outcomes: Counter[str] = field(default_factory=Counter)
     cycles: int = 0
     checks: int = 0
+    judged: set[str] = field(default_factory=lambda: {NO_EXCEPTION})
     seconds: float = 0.0
 
     @property
@@ -36,6 +37,7 @@ class Tally:
         self.outcomes.update(result.outcomes)
         self.cycles += result.cycles
         self.checks += result.checks.total()
+        self.judged |= result.checks.keys()
         self.seconds += result.seconds
         self.rows[result.seed] = {
             "seed": result.seed,

@@ -61,6 +61,18 @@ def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(f"q{number + 1}" for number in range(len(robot.joints))) if isinstance(robot, Arm) else ()
 
 
+@kind(targets=whom.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
+def gives_up(world: World, fault: Fault) -> End:
+    """A device ends every order that it has carried out as failed, with this word."""
+    body = whom.machine_body(world, fault.target)
+    body.fails = lambda goal: fault.word
+
+    def end() -> None:
+        body.fails = lambda goal: None
+
+    return hold(world, "gives up", fault.target, end)
+
+
 @kind(targets=whom.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)
 def lost_steps(world: World, fault: Fault) -> None:
     """An axis slips by `amount` motor steps and nobody notices; only homing finds it again."""
@@ -72,4 +84,4 @@ def _now_us(world: World) -> int:
     return round(world.now * 1e6)
 
 
-KINDS = (reboot, brown_out, mute, board_stall, driver_alarm, lost_steps)
+KINDS = (reboot, brown_out, mute, board_stall, driver_alarm, gives_up, lost_steps)

@@ -6,7 +6,9 @@ from typing import cast
 
 from arboleda.core.model import Evidence, Link, PlantModel, Robot
 from arboleda.kinds.arm import Arm
+from arboleda.kinds.declared import Device
 from arboleda.sim.arm import ArmBody
+from arboleda.sim.machine import MachineBody
 
 from ..world import BRIDGE, PLANT, World
 
@@ -19,6 +21,11 @@ def boards(model: PlantModel) -> tuple[str, ...]:
 def arms(model: PlantModel) -> tuple[str, ...]:
     """The boards of arms."""
     return tuple(robot.mqtt for robot in _reached(model) if isinstance(robot, Arm))
+
+
+def machines(model: PlantModel) -> tuple[str, ...]:
+    """The boards of devices of declared kinds."""
+    return tuple(robot.mqtt for robot in _reached(model) if isinstance(robot, Device))
 
 
 def feelers(model: PlantModel) -> tuple[str, ...]:
@@ -61,6 +68,11 @@ def robot_of(model: PlantModel, board: str) -> Robot:
 def arm_body(world: World, board: str) -> ArmBody:
     """The axes and the effector of an arm's board."""
     return cast(ArmBody, world.boards[board].body)
+
+
+def machine_body(world: World, board: str) -> MachineBody:
+    """What a declared device does."""
+    return cast(MachineBody, world.boards[board].body)
 
 
 def _reached(model: PlantModel) -> list[Robot]:
