@@ -397,14 +397,10 @@ def test_all_mistakes_are_told_at_once(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (
-            ["simulate", "--seeds", "1", "--plant"],
-            "bench is a cell of devices, which the simulator cannot judge yet",
-        ),
         (["urdf", "oven", "--plant"], '"oven" is neither an arm nor a mobile robot'),
         (["urdf", "ovn", "--plant"], 'there are oven, eye; did you mean "oven"?'),
     ],
-    ids=["simulate", "urdf", "urdf of nobody"],
+    ids=["urdf", "urdf of nobody"],
 )
 def test_what_is_not_for_devices_says_so(folder: Path, command: list[str], words: str) -> None:
     load(folder, KINDS)

@@ -13,7 +13,7 @@ from arboleda.core.recipe import Builders
 from .apart import come_apart
 from .faults import Fault
 from .invariants import Invariant
-from .people import Attendant, Customers
+from .people import Attendant, Customers, answer_anything
 from .watched import Broken, Watched
 
 MINUTE_S = 60.0
@@ -61,6 +61,7 @@ class Simulation:
         self.result = Result(seed=seed, faults=self.watched.faults)
         self._plan = plan
         come_apart(self.world, seed)
+        answer_anything(self.world, seed)
         self._customers = Customers(self.world, seed)
         Attendant(self.world, seed)
 
