@@ -11,7 +11,7 @@ from arboleda.core import cell_states, ledger
 from arboleda.core.cell_states import Cause, CellState
 from arboleda.core.ledger import Feed, State
 from arboleda.core.messages import Reason, Verb
-from arboleda.simulator.faults import KINDS
+from arboleda.simulator.faults import KINDS, OF_DEVICES
 from arboleda.wire.payloads import REFUSALS
 
 from . import campaign
@@ -52,9 +52,6 @@ BRANCHES = (
     "board: halts in silence",
 )
 # "bridge: raised its epoch" is for a board that heard a fresher sender: the simulator has none, by its rules.
-
-
-OF_DEVICES = ("gives_up",)  # kinds that befall nobody in these plants
 
 
 def _expected() -> Iterable[str]:

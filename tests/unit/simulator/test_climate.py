@@ -9,11 +9,11 @@ import pytest
 
 from arboleda.core.model import Evidence
 from arboleda.simulator.climate import LEVELS, BadFaults, Climate
-from arboleda.simulator.faults import KINDS, Fault
+from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
 from arboleda.testing import shipped
 
 MODEL = shipped()
-DRAWN = [name for name, kind in KINDS.items() if kind.weight]
+DRAWN = [name for name, kind in KINDS.items() if kind.weight and name not in OF_DEVICES]
 
 
 def drawn(seed: int, level: str = "normal", minutes: int = 3) -> list[Fault]:

@@ -14,7 +14,7 @@ from arboleda.core.messages import Heartbeat, Verb
 from arboleda.core.model import Evidence
 from arboleda.core.plant import HEARTBEAT_S
 from arboleda.simulator.chance import Dice
-from arboleda.simulator.faults import KINDS, Fault
+from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
 from arboleda.simulator.faults.operators import SAID
 from arboleda.simulator.world import BRIDGE, PLANT, World
@@ -245,7 +245,6 @@ def test_two_at_once_have_their_effect_until_both_have_ended(world, kind, first)
 
 
 def test_every_kind_is_in_one_of_the_tables():
-    of_devices = {"gives_up"}  # befalls nobody in the shipped plant
     instants = {
         *(f"operator_{verb.value}" for verb in SAID),
         "reboot",
@@ -265,7 +264,7 @@ def test_every_kind_is_in_one_of_the_tables():
         "foreign_old",
         "foreign_halt",
     }
-    assert instants | set(LASTING) | of_devices == set(KINDS)
+    assert instants | set(LASTING) | set(OF_DEVICES) == set(KINDS)
     assert not instants & set(LASTING)
 
 
