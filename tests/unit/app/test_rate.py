@@ -33,3 +33,9 @@ def baking(rate: float) -> tuple[float, float]:
     oven = at_rate(model(), rate).robots["oven"]
     assert isinstance(oven, Device)
     return oven.kind.verbs["bake"].takes_s, oven.kind.verbs["bake"].at_most_s
+
+
+def test_a_slow_plant_has_longer_to_come_to_rest() -> None:
+    plain = shipped("sis_a")
+    assert at_rate(plain, 0.2).timing.stop_timeout_s == pytest.approx(5 * plain.timing.stop_timeout_s)
+    assert at_rate(plain, 5.0).timing == plain.timing

@@ -16,8 +16,11 @@ def check_rate(rate: float) -> float:
 
 
 def at_rate(model: PlantModel, rate: float) -> PlantModel:
-    """The same plant, its robots `rate` times as fast."""
+    """The same plant, its robots `rate` times as fast; slow ones also get more time to come to rest."""
     check_rate(rate)
+    stop_timeout_s = model.timing.stop_timeout_s / min(rate, 1.0)
     return replace(
-        model, cells=tuple(cell.with_robots(lambda robot: robot.at_rate(rate)) for cell in model.cells)
+        model,
+        cells=tuple(cell.with_robots(lambda robot: robot.at_rate(rate)) for cell in model.cells),
+        timing=replace(model.timing, stop_timeout_s=stop_timeout_s),
     )
