@@ -13,7 +13,8 @@ from arboleda.core.outside import quoted
 
 from .plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 
-WRITTEN = ("plant.yaml", "recipes.py", "test_plant.py")
+# by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
+WRITTEN = {"plant.yaml": "plant.yaml", "recipes.py": "recipes.py", "tests_of_plant.py": "test_plant.py"}
 NAMED = "PLANT"  # stands for the plant's name in what is written
 
 
@@ -46,16 +47,16 @@ def write(folder: Path) -> list[Path]:
     name = folder.resolve().name
     if not is_plant_name(name):
         raise ConfigError((f"{quoted(name)} cannot be the name of a plant; it must be {PLANT_NAME_RULE}",))
-    targets = [folder / each for each in WRITTEN]
-    there = next((each for each in targets if each.exists()), None)
+    targets = {each: folder / name for each, name in WRITTEN.items()}
+    there = next((each for each in targets.values() if each.exists()), None)
     if there is not None:
         raise ConfigError((f"{there} is there already; nothing was written. Choose another folder",))
     starter = files("arboleda").joinpath("starter")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for target in targets:
-            text = starter.joinpath(target.name).read_text("utf-8")
+        for source, target in targets.items():
+            text = starter.joinpath(source).read_text("utf-8")
             target.write_text(text.replace(NAMED, name), "utf-8")
     except OSError as error:
         raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
-    return targets
+    return list(targets.values())
