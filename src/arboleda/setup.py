@@ -6,7 +6,9 @@ setup(
     name="arboleda",
     version="0.1.0",
     packages=find_packages(include=["arboleda", "arboleda.*"]),
-    package_data={"arboleda": ["dashboard/assets/*", "dashboard/words/*.yaml", "plants/*.yaml"]},
+    package_data={
+        "arboleda": ["dashboard/assets/*", "dashboard/words/*.yaml", "plants/*.yaml", "py.typed", "starter/*"]
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/arboleda"]),
         ("share/arboleda", ["package.xml"]),
