@@ -35,8 +35,13 @@ class Echo(Walker[Ready]):
             robot.name: node.create_publisher(Float32MultiArray, f"{robot.name}/{COMMAND}", qos.COMMAND)
             for robot in cell.robots
         }
+        robots = {robot.name: robot for robot in cell.robots}
         ready = [
-            (self._voices[step.robot], convert.labelled_message(step, copied=False), _effector(step))
+            (
+                self._voices[step.robot],
+                convert.labelled_message(robots[step.robot], step, copied=False),
+                _effector(step),
+            )
             for step in steps.storage(cell)
         ]
         super().__init__(ready, model.timing.dwell_s)
