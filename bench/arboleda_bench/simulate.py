@@ -24,9 +24,10 @@ from dataclasses import dataclass, replace
 from time import process_time
 
 from arboleda.app.simulate.request import Request
-from arboleda.app.simulate.setting import Setting, rules
+from arboleda.app.simulate.setting import Setting
 from arboleda.app.simulate.workers import collect_rarely
 from arboleda.core.errors import ArboledaError
+from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S
 from arboleda.simulator.world import World
@@ -63,7 +64,7 @@ def run(scene: Scene) -> Result:
         scene.say("judged, normal faults")
         judged = _timed(_judged, setting, seeds)
     notes = [
-        f"{count} seeds of {cycles} cycles, {len(rules())} invariants; {_empty_loops()}",
+        f"{count} seeds of {cycles} cycles, {len(INVARIANTS)} invariants; {_empty_loops()}",
         *_by_plant(judged),
     ]
     if not scene.quick:
