@@ -22,7 +22,8 @@ def test_the_folder_is_a_plant_that_does_its_task(tmp_path: Path) -> None:
     folder = tmp_path / "my_plant"
     result = new(folder)
     assert result.exit_code == 0 and f"wrote {folder / 'plant.yaml'}" in result.output
-    assert "arboleda up" in result.output
+    said = " ".join(result.output.split())
+    assert f'up "cell press feed 3" --plant {folder / "plant.yaml"}' in said and f"-m pytest {folder}" in said
     plant = config.load(folder / "plant.yaml")
     assert plant.name == "my_plant"
     here = Bench(plant)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from arboleda.core.messages import Reason, Verb
-from arboleda.core.model import Interlock, Link, PlantModel
+from arboleda.core.model import Interlock, PlantModel
 from arboleda.core.recipe import Recipe
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.recipes import Kit, parallel, recipe, work
@@ -36,7 +36,6 @@ def with_mill(*recipes: Recipe) -> PlantModel:
     mill = Device(name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=MILL)
     lock = Interlock(device="mill", zone="vise", free_while=(("door", "open"),))
     cell = replace(cell, members=(*cell.members, ("mill", mill)), interlocks=(lock,))
-    assert mill.link is Link.MQTT
     return replace(model, cells=(cell,))
 
 

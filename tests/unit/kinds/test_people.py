@@ -137,6 +137,7 @@ def test_a_stop_of_the_plant_counts_for_people_and_is_cleared_with_the_others() 
         (("Full?", []), "must be different words"),
         (("Full?", ["yes", "Yes"]), "must be different words"),
         (("Full?", ["yes", ""]), "must be different words"),
+        (("Full?", ["yes", "n/a"]), "without /"),
         (("Full?", ["yes", "n" * 61]), "each 1 to 60 characters"),
     ],
 )

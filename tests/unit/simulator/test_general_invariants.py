@@ -105,7 +105,7 @@ def advises_nothing(patch: Patch) -> None:
 
 
 def forgets_a_task(patch: Patch) -> None:
-    """A task that has failed is never said to have ended."""
+    """A task that is done is never said to have ended."""
     step = Plant.step
 
     def silent(self: Plant, now: float, events: Any) -> list[Any]:

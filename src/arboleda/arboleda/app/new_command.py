@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +12,7 @@ import typer
 from arboleda.core.errors import ConfigError, StartError
 from arboleda.core.outside import quoted
 
+from . import invocation
 from .plant_file.shapes import PLANT_NAME_RULE, is_plant_name
 
 # by what they are called here; pytest must not take the tests of the new plant for tests of Arboleda
@@ -25,15 +27,17 @@ def new(
 ) -> None:
     """Write a plant of your own: an arm, a device, a recipe and a test; e.g. `arboleda new my_plant`."""
     written = write(folder)
+    command, plant = invocation.command(), shlex.quote(str(written[0]))
     for file in written:
         typer.echo(f"wrote {file}")
     typer.echo(
         f"""
-Next:
-  cd {folder}
-  arboleda check plant.yaml                             says what is wrong with it, line by line
-  arboleda up "cell press feed 3" --plant plant.yaml    runs it on virtual devices, with a page
-  pytest                                                tries it with faults (pip install pytest)
+What is wrong with it, line by line:
+  {command} check {plant}
+On virtual devices, with a page:
+  {command} up "cell press feed 3" --plant {plant}
+With faults, where pytest is installed beside Arboleda:
+  {invocation.python()} -m pytest {shlex.quote(str(folder))}
 
 What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again."""
     )

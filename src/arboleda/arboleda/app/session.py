@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import logging
-import shutil
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -20,6 +18,7 @@ from rich.text import Text
 
 from arboleda.core.errors import StartError
 
+from . import invocation
 from .build import App
 from .errand import Errand
 from .log_file import LogFile
@@ -110,7 +109,7 @@ class Session:
         if not self._stay:
             self._app.end()
             return
-        hint = f"The plant stays up for more tasks: {_command()} submit 'TASK'. Ctrl-C ends it."
+        hint = f"The plant stays up for more tasks: {invocation.command()} submit 'TASK'. Ctrl-C ends it."
         self._console.print(Text(hint))
 
     def _stop(self) -> None:
@@ -123,11 +122,6 @@ class Session:
         self._show()
         for line in parting(self._app.snapshot()):
             self._console.print(Text(f"  {line}", style="dim"))
-
-
-def _command() -> str:
-    """How the person who started this calls the command."""
-    return "arboleda" if shutil.which("arboleda") else sys.argv[0]
 
 
 @contextmanager

@@ -57,7 +57,6 @@ class Context:
         self.delivers = True  # what runs is work; a recovery does what is left to do without the part, too
         self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
         self.origins: set[str] = set()  # the robots whose place in `back` is where they last went empty
-        self.brings_to: set[str] = set()  # the robots whose task says where a recovery brings what they hold
         self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
         self.failure: Failure | None = None
         self.failed_leaf: Behaviour | None = None

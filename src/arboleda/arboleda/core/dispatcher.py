@@ -56,7 +56,7 @@ def unguarded(cell: str, act: Callable[[], None]) -> None:
     act()
 
 
-def _open(command: Command) -> None:
+def _unbarred(command: Command) -> None:
     """Nothing is in the way of a command."""
 
 
@@ -105,7 +105,7 @@ class Dispatcher:
         now: float,
         *,
         by_hand: bool = False,
-        barrier: Barrier = _open,
+        barrier: Barrier = _unbarred,
     ) -> Entry:
         """Give a command its id and let it go, unless its robot is not ready for one or `barrier` objects.
 

@@ -156,7 +156,8 @@ def interlocked(context: Context, command: Command) -> list[Behaviour]:
 
 def _note_origin(context: Context, robot: str, pose: Pose) -> None:
     """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
-    if context.cell.workspaces[robot].hand.name not in context.holding and robot not in context.brings_to:
+    told = robot in context.back and robot not in context.origins  # the task has said where
+    if context.cell.workspaces[robot].hand.name not in context.holding and not told:
         context.back[robot] = pose
         context.origins.add(robot)
 

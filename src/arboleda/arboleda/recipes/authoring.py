@@ -80,7 +80,7 @@ def _annotations(name: str, function: Callable[..., Step]) -> dict[str, Any]:
 
 
 def _build(name: str, function: Callable[..., Step], order: Order, context: Context) -> Step:
-    context.back, context.origins, context.brings_to = {}, set(), set()
+    context.back, context.origins = {}, set()
     step = function(Kit(context), **order.values)
     if not isinstance(step, Behaviour):
         raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")

@@ -137,10 +137,12 @@ class PersonHandle(Handle):
         if not question.strip() or len(question) > LONGEST_QUESTION:
             raise RecipeError(f"a question has 1 to {LONGEST_QUESTION} characters; this one {len(question)}")
         wrong = [
-            each for each in answers if each != " ".join(each.split()) or not 0 < len(each) <= LONGEST_ANSWER
+            each
+            for each in answers
+            if each != " ".join(each.split()) or "/" in each or not 0 < len(each) <= LONGEST_ANSWER
         ]
         if not answers or wrong or len(set(map(str.lower, answers))) < len(answers):
-            allowed = f"different words, each 1 to {LONGEST_ANSWER} characters"
+            allowed = f"different words, each 1 to {LONGEST_ANSWER} characters without /"
             raise RecipeError(f"the answers to {quoted(question)} must be {allowed}")
 
         def make(id: str) -> Any:
@@ -182,7 +184,6 @@ class RobotHandle(Handle):
     def brings_back_to(self, target: str) -> None:
         """A recovery brings what it holds there; else it is where the part was taken."""
         self._context.back[self._device.name] = self._pose(target)
-        self._context.brings_to.add(self._device.name)
 
     def _pose(self, target: str) -> Pose:
         space = self._context.cell.workspaces[self._device.name]

@@ -9,11 +9,11 @@ from collections.abc import Iterator, Mapping
 
 from arboleda.core.advice import in_words
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Motion, Position
+from arboleda.core.commands import Motion, Position
 from arboleda.core.facts import Value
 from arboleda.core.ledger import Entry, State
 from arboleda.core.messages import InternalError, TaskChanged, TaskState
-from arboleda.core.model import PlantModel, Robot
+from arboleda.core.model import PlantModel, Pose, Robot
 
 from .invariants.invariant import Look, When, invariant
 from .world import World
@@ -55,8 +55,7 @@ class GeneralTruth:
         self._open: dict[str, Entry] = {}
         self._so: dict[tuple[str, str, object], float] = {}  # when a fact last had a value, by device
         self._stood: dict[tuple[str, str], float] = {}  # when a robot last stood at a target, by both names
-        self.done: list[Command] = []  # the commands that count as done since this step
-        self.sent_at: dict[str, float] = {}
+        self.done: list[Entry] = []  # the commands that count as done since this step
         self.accepted: set[str] = set()
         self.ended: list[str] = []
 
@@ -75,9 +74,8 @@ class GeneralTruth:
                     self.ended.append(message.task)
                 else:
                     self.accepted.add(message.task)
-        self.done = [entry.command for entry in self._open.values() if entry.state is State.DONE]
+        self.done = [entry for entry in self._open.values() if entry.state is State.DONE]
         self._open = {id: entry for id, entry in world.plant.dispatcher.ledger.entries.items() if entry.open}
-        self.sent_at |= {id: entry.sent_at for id, entry in self._open.items()}
 
     def was_so(self, robot: str, name: str, value: object, since: float) -> bool:
         """Whether a device truly had this value of a fact since then."""
@@ -96,7 +94,7 @@ class GeneralTruth:
             for space in cell.workspaces.values():
                 here = self.position(space.robot)
                 inside = [pose for pose in space.poses if zone in pose.zones]
-                if here is not None and any(space.robot.stands_at(here, pose.q) for pose in inside):
+                if here is not None and any(_is_at(space.robot, here, pose) for pose in inside):
                     found.append(space.robot.name)
             for lock in cell.interlocks:
                 facts = self._facts(self._world.model.robots[lock.device])
@@ -116,12 +114,17 @@ class GeneralTruth:
         space = self._world.model.cell_of[robot.name].workspaces.get(robot.name)
         here = self.position(robot) if space else None
         for pose in space.poses if space and here is not None else ():
-            if any(robot.stands_at(here, q) for q in (pose.q, pose.above) if q is not None):
+            if _is_at(robot, here, pose):
                 self._stood[robot.name, pose.name] = now
 
     def _facts(self, robot: Robot) -> Mapping[str, Value]:
         board = self._world.boards.get(robot.mqtt)
         return board.body.true_facts if board else {}
+
+
+def _is_at(robot: Robot, here: Position, pose: Pose) -> bool:
+    """Whether a robot stands at a pose, or over it: both lie in the same zones."""
+    return any(robot.stands_at(here, q) for q in (pose.q, pose.above) if q is not None)
 
 
 @invariant(When.SENT)
@@ -143,8 +146,8 @@ def a_task_ends_once(look: Look) -> Iterator[str]:
 @invariant(When.ALWAYS)
 def what_is_done_was_so(look: Look) -> Iterator[str]:
     """A command that counts as done was done since it was given: its facts were so, its goal was reached."""
-    for command in look.truth.done:
-        since = look.truth.sent_at[command.id]
+    for entry in look.truth.done:
+        command, since = entry.command, entry.sent_at
         for name, value in command.sets:
             if not look.truth.was_so(command.robot, name, value, since):
                 what = f"{type(command).__name__} {command.id}"

@@ -10,7 +10,6 @@ from arboleda.core.commands import Question
 from arboleda.core.facts import Value
 from arboleda.core.messages import TaskChanged, TaskState, Verb
 from arboleda.core.model import Cell, Link
-from arboleda.recipes.storage_cell import StorageCell
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
@@ -88,7 +87,7 @@ class Customers:
             self._world.request_task(self._text(cell), token)
 
     def _text(self, cell: Cell) -> str:
-        if not isinstance(cell, StorageCell):
+        if not cell.is_storage:
             return self._any_text(cell)
         if self._dice.chance(0.2):
             return f"{cell.name} palletizing"

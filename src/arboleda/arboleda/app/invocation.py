@@ -1,0 +1,16 @@
+"""How the person who started this calls the commands that a sentence names."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+
+
+def command() -> str:
+    """`arboleda`, where a shell finds it, else the path of the one that runs."""
+    return "arboleda" if shutil.which("arboleda") else sys.argv[0]
+
+
+def python() -> str:
+    """The Python that Arboleda is installed in."""
+    return "python" if shutil.which("arboleda") else sys.executable
