@@ -36,7 +36,8 @@ What is wrong with it, line by line:
   {command} check {plant}
 On virtual devices, with a page:
   {command} up "cell press feed 3" --plant {plant}
-With faults, where pytest is installed beside Arboleda:
+With faults; the first line once, for pytest has to be beside Arboleda:
+  {invocation.python()} -m pip install pytest
   {invocation.python()} -m pytest {shlex.quote(str(folder))}
 
 What the devices can do is in plant.yaml, what they do together in recipes.py. Change them, check again."""
