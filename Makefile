@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test judge-test ros-test campaign drawn-campaign mutants firmware firmware-test firmware-robot fuzz install lint diagrams shots clean help
+.PHONY: run test judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -10,6 +10,11 @@ SEEDS ?= 1000
 CYCLES ?= 36
 DRAWN_SEEDS ?= 500
 DRAWN_CYCLES ?= 4 # of each drawn plant; it ends at a full minute, so there are more
+DEVICE_SEEDS ?= 12
+DEVICE_CYCLES ?= 4
+CRASH_SEEDS ?= 6
+CRASH_CYCLES ?= 4
+KILLS ?= --kills 1000
 MUTANTS ?= --sample 400
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
@@ -36,6 +41,20 @@ drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with 
 	$(BIN)/arboleda simulate --drawn-plants --seeds $(DRAWN_SEEDS) --cycles $(DRAWN_CYCLES) --json drawn.json
 	$(BIN)/python scripts/campaign drawn.json $(DRAWN_SEEDS)
 
+devices-campaign: install  ## simulate the examples of cells of devices with every kind of fault; DEVICE_SEEDS=... for more seeds
+	@for plant in lab_bench assembly machine_tending; do \
+		$(BIN)/arboleda simulate --plant examples/$$plant/plant.yaml --seeds $(DEVICE_SEEDS) --cycles $(DEVICE_CYCLES) || exit 1; \
+	done
+
+crash-campaign: install  ## simulate plants that die again and again, also of power cuts; CRASH_SEEDS=... for more seeds
+	$(BIN)/arboleda simulate --faults crashes --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES)
+	@for plant in lab_bench machine_tending; do \
+		$(BIN)/arboleda simulate --faults crashes --plant examples/$$plant/plant.yaml --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES) || exit 1; \
+	done
+
+kills: install  ## kill a plant with -9 at 1000 random instants, count what came of its tasks; an hour; KILLS="--kills 12" for others
+	PYTHONPATH=kills $(BIN)/python -m arboleda_kills $(KILLS)
+
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
 	PYTHONPATH=mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
@@ -55,6 +74,10 @@ firmware-robot:  ## write firmware/core/robot_scara.h anew from the robot's YAML
 	@scripts/install
 	@header=$$($(BIN)/python scripts/firmware-robot) && printf '%s\n' "$$header" >firmware/core/robot_scara.h
 
+docs:  ## write the documentation as a site to build/docs; fails at a link that leads nowhere
+	@scripts/install docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+
 install:  ## make .venv with the arboleda command; PYTHON=python3.12 chooses the interpreter
 	@scripts/install
 
@@ -69,9 +92,17 @@ diagrams:  ## write docs/reference/states.md anew from the state tables of the c
 	@scripts/install
 	@page=$$($(BIN)/python scripts/state-diagrams) && printf '%s\n' "$$page" >docs/reference/states.md
 
+reference:  ## write docs/reference/api.md anew from the docstrings of what users import
+	@scripts/install
+	@page=$$($(BIN)/python scripts/api-reference) && printf '%s\n' "$$page" >docs/reference/api.md
+
 shots:  ## take pictures of the page, on screens of several sizes, into shots/; needs chromium
 	@scripts/install test
 	$(BIN)/python scripts/shots
+
+example-pictures:  ## take the pictures of the examples for their pages in docs/; needs chromium
+	@scripts/install test
+	$(BIN)/python scripts/shots --examples
 
 clean:  ## remove .venv and whatever builds and tests left behind
 	rm -rf .venv .colcon build firmware/build install log dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
@@ -79,4 +110,4 @@ clean:  ## remove .venv and whatever builds and tests left behind
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-15s%s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-17s%s\n", $$1, $$2 }' Makefile

@@ -16,10 +16,10 @@ from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.enums import CallbackAPIVersion
 
 from arboleda.adapters.broker import EmbeddedBroker
+from arboleda.adapters.broker_login import address as broker_address
 from arboleda.app.build import Options, build
 from arboleda.app.config import load
-from arboleda.app.parts.broker import address as broker_address
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 BOARD = "ra_1"

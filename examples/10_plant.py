@@ -18,8 +18,8 @@ from arboleda.adapters.broker import EmbeddedBroker
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.app.session import ros_link
-from arboleda.core.model import MotionState
-from arboleda.core.sentence import Sentence
+from arboleda.model.plant_model import MotionState
+from arboleda.model.sentence import Sentence
 
 PLANT = Path(__file__).parent / "plants" / "lessons.yaml"
 PATIENCE_S = 60.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import itertools
 import os
@@ -73,6 +74,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         group = waiting.setdefault(item.path, []) if item.get_closest_marker("system") else computing
         group.append(item)
     items[:] = dealt(list(waiting.values()), computing, workers)
+
+
+def pytest_collection_finish() -> None:
+    """Let no collection of garbage look at what was collected again: it all stays to the end."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

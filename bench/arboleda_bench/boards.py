@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.adapters.mqtt import Address, MqttClient
-from arboleda.core.commands import Command
-from arboleda.core.model import MotionState, PlantModel, Robot
+from arboleda.adapters.broker_login import Address
+from arboleda.adapters.mqtt import MqttClient
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.payloads import (
     EffectorGoal,

@@ -12,8 +12,8 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import String
 
 from arboleda.app.config import load
-from arboleda.core.commands import Command
-from arboleda.core.model import PlantModel
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos

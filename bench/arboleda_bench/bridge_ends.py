@@ -18,8 +18,8 @@ from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import Float32MultiArray, UInt32
 
-from arboleda.core.model import MotionState
 from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.model.plant_model import MotionState
 from arboleda.wire.payloads import Telemetry, encode
 from arboleda_ros import convert, qos
 

@@ -17,8 +17,8 @@ from typing import Any
 from arboleda.app import view_text
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
-from arboleda.core.errors import ArboledaError
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.views.diagnostics import Diagnostic
 
 from .played import Crew
@@ -92,7 +92,9 @@ def main(plant: str, state: str, move_s: str, seconds: str) -> None:
     assert orchestrator is not None
     crew = Crew(model, orchestrator.hear, move_s=float(move_s))
     customers = Customers(app)
-    orchestrator.connect_ros(Topics(crew))
+    topics = Topics(crew)
+    orchestrator.connect_ros(topics)
+    orchestrator.connect(topics)
     app.listen(customers.heard)
     app.start()
     try:

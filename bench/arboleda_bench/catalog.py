@@ -10,10 +10,22 @@ import importlib
 from importlib.resources import files
 from types import ModuleType
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 from arboleda_ros import missing
 
-NAMES = ("reaction", "chain", "polling", "cycle", "idle", "scale", "burst", "bridge", "step", "simulate")
+NAMES = (
+    "reaction",
+    "chain",
+    "polling",
+    "cycle",
+    "idle",
+    "scale",
+    "burst",
+    "bridge",
+    "step",
+    "kept",
+    "simulate",
+)
 
 
 def module(name: str) -> ModuleType:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from arboleda.adapters.broker_login import address
 from arboleda.app.config import load
-from arboleda.app.parts.broker import address
 
 from . import plants, steps
 from .boards import DECLARED, Boards

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from arboleda.app.simulate.screen import console, progress
 from arboleda.app.user_file import check_writable
-from arboleda.core.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError, ConfigError
 
 from . import catalog, report
 from .result import Result

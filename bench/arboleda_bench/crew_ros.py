@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda.app.config import load
-from arboleda.core.errors import ArboledaError, StartError
+from arboleda.model.errors import ArboledaError, StartError
 
 from .played import Crew
 from .processes import Process

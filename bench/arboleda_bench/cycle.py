@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from std_msgs.msg import UInt8
 
 from arboleda.app.config import load
-from arboleda.core.model import Timing
+from arboleda.model.plant_model import Timing
 from arboleda_ros import qos
 
 from . import plants

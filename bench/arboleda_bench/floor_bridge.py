@@ -22,8 +22,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, UInt8, UInt32
 
 from arboleda.app.config import load
-from arboleda.core.model import PlantModel
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import PlantModel
 from arboleda_ros import convert, qos
 from arboleda_ros.link import connect
 

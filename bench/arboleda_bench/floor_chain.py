@@ -13,8 +13,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import Float32MultiArray, UInt8, UInt32
 
-from arboleda.core.model import PlantModel
 from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import COMMAND
 from arboleda_ros import convert, qos

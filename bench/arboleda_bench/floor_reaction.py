@@ -13,10 +13,10 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.core.commands import Command
-from arboleda.core.model import PlantModel, Robot
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import convert, qos
 

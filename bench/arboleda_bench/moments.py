@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from arboleda.core.commands import Command
 from arboleda.kinds.arm import SetEffector
+from arboleda.model.commands import Command
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from arboleda.core.commands import Command
-from arboleda.core.messages import Event, Report, TaskChanged, TaskRequest, TaskState
-from arboleda.core.model import MotionState, PlantModel, Robot
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
+from arboleda.model.messages import Event, Report, TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
 
 EPOCH = 1000
 MESSAGE_S = 1e-4  # from one word of a robot to the next; none counts as silent meanwhile

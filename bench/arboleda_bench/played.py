@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from arboleda.core.commands import Command, Home, Stop
-from arboleda.core.messages import Heartbeat, Report
-from arboleda.core.model import MotionState, PlantModel, Robot
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop
+from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
 
 from .clockwork import Clockwork, now
 

@@ -9,11 +9,11 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.commands import Command, Stop
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState, PlantModel, Robot
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command, Stop
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda_ros import convert, qos

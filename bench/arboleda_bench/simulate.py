@@ -26,7 +26,7 @@ from time import process_time
 from arboleda.app.simulate.request import Request
 from arboleda.app.simulate.setting import Setting
 from arboleda.app.simulate.workers import collect_rarely
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.people import Attendant, Customers
 from arboleda.simulator.run import MINUTE_S

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from std_msgs.msg import String, UInt32
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import qos
 from arboleda_ros.link import connect

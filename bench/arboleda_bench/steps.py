@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import count
 
-from arboleda.core.commands import Command
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
 from arboleda.recipes.storage_cell import StorageCell
 
 PATH, STATION = "0B", 1

@@ -17,8 +17,8 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
-from arboleda.core.model import PlantModel, Robot
 from arboleda.kinds.arm import SetEffector
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda_ros import convert, qos
 

@@ -11,6 +11,9 @@ from typing import Any
 PARTS = {  # what part of the house a file belongs to; the first that fits
     "/arboleda/sim/": "boards",
     "/arboleda/wire/": "wire and bridge",
+    "/arboleda/model/": "plant",
+    "/arboleda/dispatch/": "plant",
+    "/arboleda/trees/": "plant",
     "/arboleda/core/": "plant",
     "/py_trees/": "plant",
     "/simulator/truth/": "truth",

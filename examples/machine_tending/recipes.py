@@ -6,7 +6,12 @@ from arboleda.recipes import Choice, Target, recipe, work
 def sorting(cell):
     """What becomes of a part that the tender holds, by what is said of it."""
     tender, belt = cell.devices("tender", "belt")
-    good = [belt.says(entry="clear"), tender.visit("belt", tender.let_go()), tender.home(), belt.advance()]
+    good = [
+        belt.says(entry="clear"),
+        tender.visit("belt", tender.let_go()),
+        tender.home(),
+        belt.clear("entry"),
+    ]
     bad = [tender.visit("reject", tender.let_go()), tender.home()]
     return {"good": good, "bad": bad}
 
@@ -21,8 +26,7 @@ def mill_one(cell, blank=Target("pallet"), program=Choice(1001, 1002)):
     unsure = [asked, cell.choose(asked, sorting(cell))]
     return work(
         mill.open(),
-        jaw.force(n=40),
-        loader.visit(blank, jaw.close()),
+        loader.visit(blank, jaw.close(width_mm=30, force_n=40)),
         loader.visit("vise", mill.clamp(on=True), jaw.open()),
         mill.close(),
         mill.run(program=program),

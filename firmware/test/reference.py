@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped

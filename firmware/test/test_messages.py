@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 
-from arboleda.core.errors import PayloadError
+from arboleda.model.errors import PayloadError
 from arboleda.wire import payloads
 from arboleda.wire.payloads import Beat, EffectorGoal, JointsGoal, StopGoal
 from arboleda.wire.topics import Channel

@@ -15,14 +15,24 @@ from .book import Book, Verdict
 from .children import Children, Ended, Work
 from .mutant import Mutant
 from .reach import Reach
-from .sources import PACKAGE, Sources, fingerprint
+from .sources import ENGINE, PACKAGE, Sources, fingerprint
 
 TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
 FOLDERS = {
     TESTS: (str(PACKAGE), "wire_vectors"),
     SIMULATOR: tuple(
         str(PACKAGE / each)
-        for each in ("core", "kinds", "recipes", "views", "wire", "sim", "simulator", "app", "plants")
+        for each in (
+            *ENGINE,
+            "kinds",
+            "recipes",
+            "views",
+            "wire",
+            "sim",
+            "simulator",
+            "app",
+            "plants",
+        )
     ),
 }
 LIBRARIES = ("fastapi", "httpx", "PIL", "py_trees", "pydantic", "rich.progress", "typer", "yaml")

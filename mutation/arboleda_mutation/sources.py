@@ -12,7 +12,8 @@ from . import trees
 from .mutant import Mutant
 
 PACKAGE = Path("src/arboleda/arboleda")
-MUTATED = ("core", "recipes", "views", "wire")
+ENGINE = ("model", "dispatch", "trees", "core")
+MUTATED = (*ENGINE, "recipes", "views", "wire")
 
 
 class Sources:

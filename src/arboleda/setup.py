@@ -7,7 +7,17 @@ setup(
     version="0.1.0",
     packages=find_packages(include=["arboleda", "arboleda.*"]),
     package_data={
-        "arboleda": ["dashboard/assets/*", "dashboard/words/*.yaml", "plants/*.yaml", "py.typed", "starter/*"]
+        "arboleda": [
+            "dashboard/assets/*",
+            "dashboard/words/*.yaml",
+            "examples/*/*.py",
+            "examples/*/*.yaml",
+            "examples/*/*/*.py",
+            "examples/*/*/*.urdf",
+            "plants/*.yaml",
+            "py.typed",
+            "starter/*",
+        ]
     },
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/arboleda"]),

@@ -1,7 +1,8 @@
-"""Real brokers on free ports, and clients whose events can be waited for."""
+"""Real brokers on free ports, clients whose events can be waited for, and certificates made by openssl."""
 
 from __future__ import annotations
 
+import re
 import socket
 import struct
 import subprocess
@@ -14,10 +15,15 @@ from typing import Any
 import pytest
 
 from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.adapters.mqtt import Address, MqttClient
+from arboleda.adapters.broker_login import CA, CERTIFICATE, KEY, Address
+from arboleda.adapters.mqtt import MqttClient
+from arboleda.adapters.server_tls import pinned, server_tls
 from arboleda.wire.transport import Connection, Delivery
 
+from ..conftest import need_tool
+
 PATIENCE_S = 8.0
+NEW_KEY = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes")
 
 
 class Inbox(list):
@@ -85,6 +91,8 @@ class RawPeer:
             flags |= 0xC0
             rest += text(login[0]) + text(login[1])
         self.socket = socket.create_connection((address.host, address.port), timeout=PATIENCE_S)
+        if address.tls is not None:
+            self.socket = address.tls.wrap_socket(self.socket)
         self._send(0x10, text("MQTT") + bytes((4, flags)) + struct.pack("!H", keepalive) + rest)
         self.answer = self.socket.recv(4)[3:]  # b"\0": accepted
 
@@ -143,17 +151,76 @@ class Mosquitto:
 
 
 class Embedded:
-    """The plant's own broker, handled as Mosquitto is."""
+    """The plant's own broker, handled as Mosquitto is; with a certificate over TLS."""
 
-    def __init__(self, port: int) -> None:
-        self.address = Address(host="127.0.0.1", port=port)
-        self._broker = EmbeddedBroker(port=port)
+    def __init__(self, port: int, shown: tuple[Path, Path] | None = None) -> None:
+        tls = server_tls(*shown) if shown else None
+        believing = pinned(tls.pem) if tls else None
+        self.address = Address(host="127.0.0.1", port=port, tls=believing)
+        self._broker = EmbeddedBroker(port=port, tls=tls)
 
     def start(self) -> None:
         self._broker.start()
 
     def stop(self) -> None:
         self._broker.stop()
+
+
+def said(caplog: pytest.LogCaptureFixture, words: str) -> str:
+    """A line of the log with these words."""
+    end = time.monotonic() + PATIENCE_S
+    while not (found := [line for line in caplog.messages if words in line]):
+        assert time.monotonic() < end, f"no {words!r} in {caplog.messages}"
+        time.sleep(0.01)
+    return found[0]
+
+
+class Authority:
+    """A certificate authority of a lab, in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir()
+        self._folder = folder
+        self.certificate = folder / "ca.crt"
+        about = ("-subj", "/CN=lab", "-addext", "basicConstraints=critical,CA:TRUE", "-days", "2")
+        self._openssl(
+            "req", "-x509", *NEW_KEY, *about, "-keyout", folder / "ca.key", "-out", self.certificate
+        )
+
+    def sign(self, name: str, *, days: int = 1) -> tuple[Path, Path]:
+        """The certificate of a host or client of that name, and its key."""
+        request, key, certificate, extra = (
+            self._folder / f"{name}.{each}" for each in ("csr", "key", "crt", "ext")
+        )
+        kind = "IP" if re.fullmatch(r"[\d.]+", name) else "DNS"
+        extra.write_text(f"subjectAltName={kind}:{name}\n")
+        self._openssl("req", *NEW_KEY, "-subj", f"/CN={name}", "-keyout", key, "-out", request)
+        signed = ("-CA", self.certificate, "-CAkey", self._folder / "ca.key", "-CAcreateserial")
+        lasts = ("-days", str(days), "-extfile", extra)
+        self._openssl("x509", "-req", "-in", request, *signed, *lasts, "-out", certificate)
+        return certificate, key
+
+    def _openssl(self, *words: object) -> None:
+        subprocess.run(["openssl", *map(str, words)], check=True, capture_output=True)
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Authority:
+    """An authority; who uses it needs openssl."""
+    need_tool("openssl")
+    return Authority(tmp_path_factory.mktemp("tls") / "lab")
+
+
+@pytest.fixture
+def trusts(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """What the environment says of certificates."""
+
+    def set_(authority: Path | None = None, certificate: Path | None = None, key: Path | None = None) -> None:
+        for name, file in ((CA, authority), (CERTIFICATE, certificate), (KEY, key)):
+            monkeypatch.setenv(name, str(file or ""))
+
+    set_()
+    return set_
 
 
 @pytest.fixture
@@ -172,10 +239,15 @@ def mosquitto(
         broker.stop()
 
 
-@pytest.fixture(params=["embedded", "mosquitto"])
+@pytest.fixture(params=["embedded", "embedded over TLS", "mosquitto"])
 def stopped_broker(request: pytest.FixtureRequest, free_port: int) -> Iterator[Embedded | Mosquitto]:
     """Each kind of broker, not yet started."""
-    broker = Embedded(free_port) if request.param == "embedded" else request.getfixturevalue("mosquitto")()
+    if request.param == "mosquitto":
+        broker = request.getfixturevalue("mosquitto")()
+    elif request.param == "embedded":
+        broker = Embedded(free_port)
+    else:
+        broker = Embedded(free_port, request.getfixturevalue("lab").sign("127.0.0.1"))
     yield broker
     broker.stop()
 

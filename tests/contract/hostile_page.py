@@ -9,16 +9,19 @@ from typing import Any
 
 from fastapi import FastAPI
 
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web.auth import Door
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
-from arboleda.core.errors import StartError
-from arboleda.core.messages import OperatorAnswer, Verb
-from arboleda.core.sentence import OWN, Sentence
 from arboleda.dashboard import page
+from arboleda.model.errors import StartError
+from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.sentence import OWN, Sentence
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
+from arboleda.views.oee import Kept, Oee, oee
 
 EVIL = sys.argv[1]
 SAID = {
@@ -79,7 +82,15 @@ class Side:
     def past_acts(self) -> list[dict[str, Any]]:
         return [{"at": 0.0, "cell": EVIL, "scope": EVIL, "sentence": EVIL}]
 
-    def submit(self, text: str) -> Future[dict[str, Any]]:
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        said = {"id": EVIL, "text": EVIL, "cell": EVIL, "recipe": EVIL, "sentence": EVIL, "said": EVIL}
+        times = {"accepted_s": 0.0, "started_s": None, "ended_s": None}
+        return [TaskRow(number=1, state="failed", reason="deadline", **said, **times)]
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        return [oee(EVIL, Kept(works=[], runs=[], downs=[], shortest={}), 0.0, 1.0)]
+
+    def submit(self, text: str, _asked_by: str) -> Future[dict[str, Any]]:
         answer: Future[dict[str, Any]] = Future()
         answer.set_result({"state": "refused", "sentence": f"{text} {EVIL}"})
         return answer

@@ -9,9 +9,9 @@ import time
 import pytest
 
 from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.adapters.mqtt import Credentials
-from arboleda.core.errors import StartError
-from arboleda.core.model import MqttVersion
+from arboleda.adapters.broker_login import Credentials
+from arboleda.model.errors import StartError
+from arboleda.model.plant_model import MqttVersion
 from arboleda.wire.transport import Publication
 
 USERS = {"ra_1": "one", "ra_10": "ten", "ana": "look"}

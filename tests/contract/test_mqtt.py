@@ -9,8 +9,9 @@ import pytest
 from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
-from arboleda.adapters.mqtt import Credentials, NotConnected
-from arboleda.core.model import MqttVersion
+from arboleda.adapters.broker_login import Credentials
+from arboleda.adapters.mqtt import NotConnected
+from arboleda.model.plant_model import MqttVersion
 from arboleda.wire.transport import Publication
 
 GOALS, STATE, PRESENCE = "ra_1/juntas", "ra_1/sensores", "ra_1/conexion"

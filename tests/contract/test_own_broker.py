@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.app.parts import broker
 from arboleda.app.parts.broker import OwnBroker
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 
 @pytest.fixture

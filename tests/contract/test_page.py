@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,6 +11,8 @@ from typing import Any
 
 import httpx
 import pytest
+
+from ..chromium import browsers
 
 pytestmark = pytest.mark.requires("chromium", "playwright")
 
@@ -33,12 +34,8 @@ def hostile() -> Iterator[list[str]]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        yield made.new_context()
-        made.close()
+    with browsers() as launch:
+        yield launch().new_context()
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -17,23 +16,25 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.rights import modes_count
 
-from arboleda.adapters.store import VERSION, Store
-from arboleda.core.errors import ArboledaError, StartError
-from arboleda.core.messages import Fact, Journal, Remember, Verb
-from arboleda.core.sentence import OWN
+from arboleda.adapters.memory_file import VERSION
+from arboleda.adapters.store import PRUNED, Store
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery, answers_of
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.messages import Fact, Journal, Reason, Remember, TaskAnswer, TaskChanged, TaskState, Verb
+from arboleda.model.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
 ACT = Journal(
     verb=Verb.OVERRIDE, scope="mesa", cell=None, sentence=OWN(text="mesa is free: ra1 was carried away")
 )
-NOBODY = 65534
 AT_FULL = """
 import os, sys, time
 from pathlib import Path
 from arboleda.adapters.store import Store
-from arboleda.core.messages import Fact, Journal, Remember, Verb
-from arboleda.core.sentence import OWN
+from arboleda.model.messages import Fact, Journal, Remember, Verb
+from arboleda.model.sentence import OWN
 store = Store(Path(sys.argv[1]))
 store.open()
 for fact in Fact:
@@ -185,7 +186,7 @@ def test_a_log_that_breaks_off_costs_only_what_was_being_written(path, tmp_path)
         shutil.copy(path, copy)
         shutil.copy(f"{path}-wal", log)
     os.truncate(log, log.stat().st_size - 100)
-    assert everything(copy)[0] == [{"ra1": "on"}, {}, {}, {}]
+    assert everything(copy)[0][0] == {"ra1": "on"} and not any(everything(copy)[0][1:])
 
 
 def test_a_reader_neither_waits_nor_makes_wait(store, path):
@@ -219,28 +220,324 @@ def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
     with Store(path) as store:
         del said[:]
         store.keep(LATCH)
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="off"))
         store.journal(ACT, 5.0)
     modes = [each.rpartition(" ")[2] for each in said if "synchronous" in each]
     assert modes == ["FULL", "NORMAL", "FULL"]
 
 
-@pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",))])
+@pytest.mark.parametrize(
+    ("fact", "value", "mode"),
+    [
+        (Fact.EFFECTOR, "switching", "FULL"),
+        (Fact.EFFECTOR, "on", "FULL"),
+        (Fact.EFFECTOR, "off", "NORMAL"),
+        (Fact.QUARANTINE, "ra1", "FULL"),
+        (Fact.QUARANTINE, None, "NORMAL"),
+        (Fact.DISPLACED, "true", "FULL"),
+        (Fact.DISPLACED, None, "NORMAL"),
+        (Fact.STORED, "0 7", "FULL"),
+    ],
+)
+def test_what_makes_the_plant_careful_is_forced_to_the_disk(path, on_connect, fact, value, mode):
+    said: list[str] = []
+    on_connect(lambda db: db.set_trace_callback(said.append))
+    with Store(path) as store:
+        del said[:]
+        store.keep(Remember(fact=fact, name="ra1", value=value))
+    assert [each.rpartition(" ")[2] for each in said if "synchronous" in each] == [mode]
+
+
+@pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",)), (3, ())])
 def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version, later):
-    with changed(path, f"ALTER TABLE journal DROP COLUMN {later[0]}") as store:
+    with changed(path, "DROP TABLE task") as store:
         store.close()
-    db = sqlite3.connect(path)
-    for column in later[1:]:
+    db = of_before_times(path)
+    for column in later:
         db.execute(f"ALTER TABLE journal DROP COLUMN {column}")
     db.execute(f"PRAGMA user_version = {version}")
     db.close()
     with Store(path) as store:
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
         (old,) = store.entries()
-        assert (old.sentence, old.cell, old.said) == (str(ACT.sentence), None, None)
+        assert (old.sentence, old.cell) == (str(ACT.sentence), None)
+        assert (old.said is None) is ("said" in later)
+        store.task(queued("a"), "storage", 5.0)
+        assert [row.id for row in store.tasks(TaskQuery())] == ["a"]
         store.journal(replace(ACT, cell="sis_a"), 6.0)
         newest = store.entries()[0]
         assert newest.cell == "sis_a" and json.loads(newest.said) == ACT.sentence.data()
+
+
+def test_tasks_of_an_older_format_have_neither_who_asked_nor_attempts(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 5.0, "page")
+    db = of_before_times(path)
+    for column in ("asked_by", "attempts", "answers"):
+        db.execute(f"ALTER TABLE task DROP COLUMN {column}")
+    db.execute("PRAGMA user_version = 4")
+    db.close()
+    with Store(path) as store:
+        (old,) = store.tasks(TaskQuery())
+        assert (old.id, old.asked_by, old.attempts) == ("a", None, 0)
+
+
+def test_who_asked_first_and_how_often_a_task_was_tried_are_kept(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 5.0, "page")
+        store.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
+        store.task(queued("b"), "storage", 7.0, "ros2")
+        for _ in range(2):  # as it is told anew to whoever asks
+            store.task(ended("a", TaskState.RUNNING), "storage", 8.0)
+        store.attempted("a", 3)
+        store.task(ended("a"), "storage", 9.0)
+    with Store(path) as store:
+        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks(TaskQuery())}
+    assert kept == {"a": ("page", 3), "b": ("ros2", 0)}
+
+
+def test_what_was_answered_is_kept_with_the_end_of_a_task(path):
+    heard = [
+        TaskAnswer(by="ana", asked="¿Lleno?", answer="yes"),
+        TaskAnswer(by="eye", asked="look", answer=2.5),
+    ]
+    with Store(path) as store:
+        for id, answers in (("a", heard), ("b", ())):
+            store.task(queued(id), "storage", 5.0)
+            store.task(ended(id), "storage", 9.0, answers=answers)
+    with Store(path) as store:
+        kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
+    assert kept == {"a": tuple(heard), "b": ()}
+
+
+def test_tasks_of_an_older_format_have_no_answers(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 5.0)
+    db = of_before_times(path)
+    db.execute("ALTER TABLE task DROP COLUMN answers")
+    db.execute("PRAGMA user_version = 5")
+    db.close()
+    with Store(path) as store:
+        (old,) = store.tasks(TaskQuery())
+        assert (old.id, old.answers) == ("a", None)
+
+
+def test_a_file_without_times_of_cells_gets_them(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 5.0)
+    db = of_before_times(path)
+    db.execute("PRAGMA user_version = 6")
+    db.close()
+    with Store(path) as store:
+        store.began(10.0, 0.0)
+        store.stands("sis_a", "held", 11.0)
+        assert [row.id for row in store.tasks(TaskQuery())] == ["a"]
+    assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
+
+
+def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(path):
+    with Store(path) as store:
+        store.began(10.0, 0.0)
+        store.stands("sis_a", "held", 20.0)
+        store.stands("sis_b", "held", 75.0)
+        store.seen(70.0)
+        store.began(500.0, 0.0)
+        store.stands("sis_a", "held", 501.0)
+        store.stands("sis_a", "aborted", 502.0)
+        store.stands("sis_a", None, 503.0)
+        store.seen(560.0, ended=True)
+    assert times(path) == (
+        [(10.0, 70.0, 0), (500.0, 560.0, 1)],
+        [
+            ("sis_a", "held", 20.0, 70.0),
+            ("sis_b", "held", 75.0, 75.0),
+            ("sis_a", "held", 501.0, 502.0),
+            ("sis_a", "aborted", 502.0, 503.0),
+        ],
+    )
+
+
+def test_old_times_of_cells_are_forgotten_at_a_start(path):
+    with Store(path) as store:
+        store.began(10.0, 0.0)
+        store.stands("sis_a", "held", 20.0)
+        store.stands("sis_a", None, 30.0)
+        store.seen(70.0, ended=True)
+        store.began(500.0, 40.0)
+        assert times(path) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
+        store.began(600.0, 80.0)
+    assert times(path)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
+
+
+def of_before_times(path):
+    """The file as a format had it that knew no times of cells."""
+    db = sqlite3.connect(path)
+    for table in ("down", "run"):
+        db.execute(f"DROP TABLE {table}")
+    return db
+
+
+def times(path):
+    """The starts of the plant, and when its cells did no work."""
+    db = sqlite3.connect(path)
+    runs = db.execute("SELECT since_s, seen_s, ended FROM run ORDER BY number").fetchall()
+    downs = db.execute("SELECT cell, state, since_s, until_s FROM down ORDER BY number").fetchall()
+    db.close()
+    return runs, downs
+
+
+def queued(id, text="sis_a 0B 1"):
+    return TaskChanged(task=id, text=text, cell=text.split()[0], state=TaskState.QUEUED)
+
+
+def ended(id, state=TaskState.DONE, **why):
+    return replace(queued(id), state=state, **why)
+
+
+def test_a_task_is_kept_from_its_acceptance_to_its_end(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 1.0)
+        store.task(ended("a", TaskState.RUNNING), "storage", 2.0)
+    with Store(path) as store:
+        (row,) = store.tasks(TaskQuery())
+        assert (row.id, row.text, row.cell, row.recipe) == ("a", "sis_a 0B 1", "sis_a", "storage")
+        assert (row.state, row.accepted_s, row.started_s, row.ended_s) == ("running", 1.0, 2.0, None)
+        store.task(ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0)
+    with Store(path) as store:
+        (row,) = store.tasks(TaskQuery())
+        assert (row.state, row.reason, row.sentence, row.ended_s) == ("failed", "deadline", "late", 3.0)
+        assert json.loads(row.said) == OWN(text="late").data()
+
+
+def test_a_task_that_is_asked_for_again_stays_as_it_is(store):
+    for change, at in [(queued("a"), 1.0), (ended("a", TaskState.RUNNING), 2.0), (ended("a"), 3.0)]:
+        store.task(change, "storage", at)
+    (kept,) = store.tasks(TaskQuery())
+    for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a", TaskState.FAILED)):
+        store.task(change, "storage", 9.0)
+    assert store.tasks(TaskQuery()) == [kept]
+
+
+def test_a_task_that_was_refused_is_not_kept(store):
+    store.task(ended("", TaskState.REFUSED), "", 1.0)
+    assert store.tasks(TaskQuery()) == []
+
+
+def test_every_change_of_a_task_is_forced_to_the_disk(path, on_connect):
+    said: list[str] = []
+    on_connect(lambda db: db.set_trace_callback(said.append))
+    with Store(path) as store:
+        for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a")):
+            store.keep(Remember(fact=Fact.STEP, name="a", value="{}"))
+            del said[:]
+            store.task(change, "storage", 1.0)
+            assert [each.rpartition(" ")[2] for each in said if "synchronous" in each] == ["FULL"]
+
+
+@pytest.mark.parametrize(
+    ("query", "ids"),
+    [
+        (TaskQuery(), ["d", "c", "b", "a"]),
+        (TaskQuery(limit=2), ["d", "c"]),
+        (TaskQuery(limit=2, before=3), ["b", "a"]),
+        (TaskQuery(cell="sis_b"), ["c"]),
+        (TaskQuery(state="done"), ["a"]),
+        (TaskQuery(recipe="palletizing"), ["d"]),
+        (TaskQuery(is_open=True), ["d", "c", "b"]),
+        (TaskQuery(is_open=False), ["a"]),
+        (TaskQuery(words="0b 2"), ["b"]),
+        (TaskQuery(words="0_ 2"), []),
+        (TaskQuery(words="%"), []),
+        (TaskQuery(words="is_a"), ["d", "b", "a"]),
+        (TaskQuery(id="c"), ["c"]),
+        (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
+        (TaskQuery(cell="sis_b", state="done"), []),
+    ],
+)
+def test_tasks_are_found_by_what_is_asked_for(path, query, ids):
+    with Store(path) as store:
+        texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
+        for at, (id, text) in enumerate(texts.items(), start=1):
+            store.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
+        store.task(ended("a"), "storage", 9.0)
+        assert [row.id for row in store.tasks(query)] == ids
+        assert [row.id for row in TaskHistory(path).select(query)] == ids
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda store: store.tasks(TaskQuery(limit=20)),
+        lambda store: store.tasks(TaskQuery(limit=20, before=10_000)),
+        lambda store: store.tasks(TaskQuery(id="n7")),
+        lambda store: store.tasks(TaskQuery(is_open=True, limit=-1)),
+        lambda store: store.tasks(TaskQuery(is_open=False, limit=20)),
+        lambda store: store.forget_tasks(1.0),
+        lambda store: store.forget_tasks(20_000.0),
+    ],
+)
+def test_what_is_asked_all_day_does_not_read_the_whole_history(path, on_connect, ask):
+    store = Store(path)
+    with store:
+        pass
+    db = sqlite3.connect(path)
+    columns = "id, text, cell, recipe, state, accepted_s, ended_s"
+    rows = ((f"n{n}", "sis_a 0B 1", "sis_a", "storage", "done", float(n), float(n)) for n in range(2, 20_000))
+    db.executemany(f"INSERT INTO task ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?)", rows)
+    db.commit()
+    db.close()
+    opened = []
+    on_connect(opened.append)
+    with store:
+        opened[0].set_progress_handler(lambda: 1, 10_000)  # so many steps of SQLite end what takes more
+        ask(store)
+        with pytest.raises(ArboledaError, match="interrupted"):
+            store.tasks(TaskQuery(words="no such"))
+
+
+def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
+    for number in range(PRUNED + 5):
+        store.task(queued(f"n{number}"), "storage", 1.0)
+        store.task(ended(f"n{number}"), "storage", 2.0 + number)
+    store.task(queued("open"), "storage", 1.0)
+    store.forget_tasks(1000.0)
+    assert [row.id for row in store.tasks(TaskQuery())] == [
+        "open",
+        *(f"n{PRUNED + n}" for n in (4, 3, 2, 1, 0)),
+    ]
+    store.forget_tasks(2.0 + PRUNED + 2)
+    assert len(store.tasks(TaskQuery(is_open=False))) == 3
+
+
+@pytest.mark.parametrize(("column", "value"), [("state", "lost"), ("reason", "bad luck")])
+def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 1.0)
+    db = sqlite3.connect(path)
+    db.execute(f"UPDATE task SET {column} = ?", (value,))
+    db.commit()
+    db.close()
+    with Store(path) as store, pytest.raises(ArboledaError, match="'a' what means nothing"):
+        store.tasks(TaskQuery())
+
+
+def test_the_history_of_a_plant_that_kept_nothing_is_empty(tmp_path):
+    assert TaskHistory(tmp_path / "none.sqlite").select(TaskQuery()) == []
+
+
+def test_the_history_is_read_while_the_plant_writes(path):
+    history = TaskHistory(path)
+    with Store(path) as store:
+        for id in ("a", "b"):
+            store.task(queued(id), "storage", 1.0)
+            assert history.select(TaskQuery())[0].id == id
+    history.close()
+
+
+def test_a_history_that_cannot_be_read_is_one_sentence(path):
+    path.write_bytes(b"no database at all" * 100)
+    with pytest.raises(ArboledaError, match=r"cannot be read \(file is not a database\)"):
+        TaskHistory(path).select(TaskQuery())
 
 
 def test_a_file_of_a_newer_arboleda_is_left_as_it_is(path):
@@ -333,21 +630,15 @@ def test_a_directory_that_is_missing_is_named(tmp_path):
 
 
 @pytest.fixture
-def locked_up():
-    """A memory that this process may read but not write, root or not."""
-    with tempfile.TemporaryDirectory() as made:
-        path = Path(made, "plant.sqlite")
-        with Store(path):
-            pass
-        path.chmod(0o444)
-        path.parent.chmod(0o555)
-        root = os.geteuid() == 0
-        if root:
-            os.seteuid(NOBODY)
+def locked_up(path):
+    """A memory that this process may read but not write."""
+    with Store(path):
+        pass
+    path.chmod(0o444)
+    path.parent.chmod(0o555)
+    with modes_count():
         yield path
-        if root:
-            os.seteuid(0)
-        path.parent.chmod(0o755)
+    path.parent.chmod(0o755)
 
 
 def test_a_file_that_may_not_be_written_is_refused_at_the_start(locked_up):
@@ -360,11 +651,11 @@ def test_a_full_disk_at_the_start_is_named(path, small_disk):
 
 
 def test_a_fact_that_finds_no_room_is_an_error_and_what_was_kept_stays(path, small_disk):
-    small_disk(8)
+    small_disk(11)
     long = Remember(fact=Fact.QUARANTINE, name="mesa", value="x" * 40_000)
     with Store(path) as store:
         store.keep(LATCH)
         with pytest.raises(ArboledaError, match="make room on the disk"):
             store.keep(long)
         store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="off"))
-    assert everything(path)[0] == [{"ra1": "on"}, {"ra1": "off"}, {}, {}]
+    assert everything(path)[0][:2] == [{"ra1": "on"}, {"ra1": "off"}] and not any(everything(path)[0][2:])

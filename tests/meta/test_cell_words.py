@@ -14,8 +14,8 @@ from arboleda.adapters.web.schema import Cell
 from arboleda.app.screen import table
 from arboleda.core import cell, operator
 from arboleda.core.cell_states import CellState
-from arboleda.core.sentence import Phrase
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, tree_of, words
+from arboleda.model.sentence import Phrase
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from importlib.metadata import requires
 from pathlib import Path
+
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 KEY = re.compile(r"<(?:exec_)?depend>(?:python3-)?([\w-]+)</")
@@ -40,3 +43,29 @@ def test_each_library_comes_by_one_way_beside_ros_2() -> None:
     by_pip = set(without_comments("requirements-ros.txt"))
     ways = {name: (key(name) in keys) + (name in by_pip) for name in asked_of_pip()}
     assert ways == dict.fromkeys(ways, 1)
+
+
+def needed_on(machine: str) -> set[str]:
+    """All libraries of the smallest install on such a processor."""
+    reached: set[str] = set()
+    wanted = [Requirement(each) for each in asked_of_pip()]
+    while wanted:
+        each = wanted.pop()
+        where = {"platform_machine": machine, "extra": ""}
+        if (each.marker is not None and not each.marker.evaluate(where)) or each.name.lower() in reached:
+            continue
+        reached.add(each.name.lower())
+        wanted += [Requirement(line) for line in requires(each.name) or ()]
+    return reached
+
+
+def test_the_smallest_install_needs_the_same_on_every_processor() -> None:
+    assert {"nicegui", "starlette"} <= needed_on("x86_64") == needed_on("aarch64")
+
+
+def test_the_wheels_of_ros_2_are_asked_for_where_they_exist_only() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    asked = re.findall(r'^ *"(ros-jazzy-.*)",$', text, re.MULTILINE)
+    assert asked and all(Requirement(each).marker is not None for each in asked)
+    elsewhere = {"platform_machine": "aarch64", "sys_platform": "linux"}
+    assert not any(marker.evaluate(elsewhere) for each in asked if (marker := Requirement(each).marker))

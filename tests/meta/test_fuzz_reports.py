@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import Robot
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Robot
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-reports"
 RUNS = 4000

@@ -25,9 +25,13 @@ def third_party(path: Path) -> set[str]:
 @pytest.mark.parametrize(
     ("layer", "allowed"),
     [
+        ("model", {"py_trees"}),
+        ("dispatch", set()),
+        ("trees", {"py_trees"}),
         ("core", {"py_trees"}),
         ("dashboard", {"fastapi", "nicegui", "yaml"}),
         ("drawing", set()),
+        ("drivers", set()),
         ("wire", set()),
         ("sim", set()),
         ("views", {"py_trees"}),

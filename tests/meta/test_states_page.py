@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.core import cell_states, ledger, task
+from arboleda.core import cell_states
+from arboleda.dispatch import ledger
+from arboleda.model import task
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/reference/states.md"

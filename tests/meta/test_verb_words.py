@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/operate.md"

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence, steps
 from arboleda.core.cell import CellRun
-from arboleda.core.context import Context
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.zones import Zones
+from arboleda.dispatch import evidence
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import Zones
 from arboleda.kinds.arm import Arm
 from arboleda.recipes import storage
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
+from arboleda.trees import steps
+from arboleda.trees.context import Context
 
 from .mutant import SHARED, edit, mutant
 
@@ -26,8 +27,8 @@ ZONES = (
         "An arm gives its zones back without being seen outside.",
         edit(
             Context.leave_zones,
-            "if held and self._is_outside(robot):",
-            "if held:",
+            "held = self._left(robot, self._zones.held_by(robot))",
+            "held = self._zones.held_by(robot)",
         ),
         seeds=SHARED,
         weather={"operator_stop": 10.0},
@@ -122,7 +123,7 @@ GRIP = (
         edit(
             CellRun._again,
             "for act in self.run.interrupted():\n        act.send()",
-            "self._look(self.run.begin(lambda: self._build(self.task.order, self.context)))",
+            "self._look(self.run.begin(lambda: self.keeping.make(self.task.order)))",
         ),
         weather={"operator_hold": 30.0},
     ),

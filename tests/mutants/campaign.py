@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import cell_states, ledger
+from arboleda.core import cell_states
+from arboleda.dispatch import ledger
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.probes import Probes, Rows
 from arboleda.simulator.run import Simulation
@@ -59,6 +60,7 @@ WEATHERS: dict[str, tuple[range, str | dict[str, Any]]] = {
     ),
     "garbage": (range(1, 3), {"rates": {"foreign_garbage": 60.0}}),
     "flood": (range(1, 2), {"faults": [{"kind": "flood_of_tasks", "at": 5.0}]}),
+    "crashes": (range(1, 9), "crashes"),
     "restarts": (range(1, 3), {"rates": {"plant_crash": 3.0, "operator_stop": 3.0}}),
 }
 
@@ -73,6 +75,7 @@ FIRST: tuple[tuple[str, int], ...] = (
     ("no end of a halt", 13),
     ("power", 5),
     ("restarts", 1),
+    ("crashes", 1),
     ("in the dark", 10),
     ("twice", 17),
     ("garbage", 1),

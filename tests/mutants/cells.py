@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence
 from arboleda.core.cell import CellRun
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.leaves import Dwell, TakeZones
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.dispatch import evidence
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes import storage
 from arboleda.simulator.run import NO_EXCEPTION
+from arboleda.trees.leaves import Dwell, TakeZones
 from arboleda.wire import strict
 
 from .mutant import SHARED, edit, mutant

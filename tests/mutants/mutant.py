@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 
 ALL, SHIPPED, SHARED = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .bodies import BODIES
 from .cells import CELLS
 from .protocol import PROTOCOL
+from .restarts import RESTARTS
 from .told import TOLD
 
-MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *TOLD)
+MUTANTS = (*BODIES, *PROTOCOL, *CELLS, *TOLD, *RESTARTS)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from arboleda.core import evidence
 from arboleda.core.cell import CellRun
 from arboleda.core.intake import Intake
-from arboleda.core.tree_run import TreeRun
+from arboleda.core.leaving import leaves_unkept
+from arboleda.core.operator import _not_yet
+from arboleda.dispatch import evidence
+from arboleda.trees.trail import Known, put_back
+from arboleda.trees.tree_run import TreeRun
+from arboleda.trees.walk_back import WalkBack, fate
 
 from .mutant import SHARED, edit, mutant
+from .restarts import DIES, FULL
 
 PLANTED = (
     mutant(
@@ -40,5 +45,43 @@ PLANTED = (
         "The oldest task is forgotten though it runs.",
         edit(Intake.remember, "if known.ended_at is not None", ""),
         weather={"flood_of_tasks": 3.0},
+    ),
+    mutant(
+        "accepted_is_found_again",
+        "A task is accepted though it could not be kept.",
+        edit(leaves_unkept, "isinstance(message, Heartbeat)", "not isinstance(message, Command)"),
+        weather=FULL,
+    ),
+    mutant(
+        "no_step_is_done_twice",
+        "What is proven done after a restart is given again.",
+        edit(WalkBack.go_on, "finding.fates.get(step)", "None"),
+        weather=DIES,
+        likely=6,
+    ),
+    mutant(
+        "no_step_is_done_twice",
+        "A task that is walked back begins at the first step of its sequence.",
+        edit(put_back, "next(going, node.children[0])", "node.children[0]"),
+        weather=DIES,
+    ),
+    mutant(
+        "commands_follow_the_recipe",
+        "A board may have taken any commands since where its task stands was kept.",
+        edit(Known.explains, "if now == before:", "if True:"),
+        weather={**DIES, "power_cut": 12.0},
+        likely=2,
+    ),
+    mutant(
+        "effector_on_only_between_pick_and_place",
+        "What a board never took counts as done after a restart.",
+        edit(fate, "return Fate.UNTAKEN", "return Fate.DONE"),
+        weather={**DIES, "loss": 20.0},
+    ),
+    mutant(
+        "verbs_are_refused_rightly",
+        "A task is resumed before its devices are heard.",
+        edit(_not_yet, "cell.awaits is None", "True"),
+        weather={**DIES, "operator_resume": 20.0},
     ),
 )

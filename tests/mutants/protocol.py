@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from arboleda.core import steps
-from arboleda.core.belief import Belief
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.leaves import Act
-from arboleda.core.ledger import Ledger
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.ledger import Ledger
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.receipts import Receipts
+from arboleda.trees import steps
+from arboleda.trees.leaves import Act
 from arboleda.wire import forms, hop, strict
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge
@@ -17,7 +17,9 @@ from .mutant import edit, mutant
 
 TOLD = "self._stop(report.robot, "
 ASKED = f"{TOLD}StopMode(report.robot in self.latched))"
-RETURNED = "if (returned or new_link) and report.robot in self.latched:  # it may have forgotten its stop"
+RETURNED = (
+    "if latched and (new_link or (belief.online and not was_online)):  # it may have forgotten its stop"
+)
 
 COMMANDS = (
     mutant(
@@ -39,7 +41,7 @@ COMMANDS = (
         edit(
             Dispatcher.report,
             f"{RETURNED}\n        {TOLD}StopMode.LATCH)",
-            f"if returned or new_link:\n        {ASKED}",
+            f"if belief.online and not was_online:\n        {ASKED}",
         ),
     ),
     mutant(

@@ -9,7 +9,7 @@ from importlib.resources import as_file, files
 import pytest
 
 from arboleda.app import config
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator import watched
 from arboleda.simulator.invariants import INVARIANTS, Invariant
 from arboleda.simulator.run import Simulation

@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import cell_states, ledger
+from arboleda.core import cell_states
 from arboleda.core.cell_states import Cause, CellState
-from arboleda.core.ledger import Feed, State
-from arboleda.core.messages import Reason, Verb
+from arboleda.dispatch import ledger
+from arboleda.dispatch.ledger import Feed, State
+from arboleda.model.messages import Reason, Verb
 from arboleda.simulator.faults import KINDS, OF_DEVICES
 from arboleda.wire.payloads import REFUSALS
 

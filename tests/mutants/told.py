@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from arboleda.core import advisor, evidence, steps
+from arboleda.core import advisor
 from arboleda.core.advisor import Advisor
-from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
-from arboleda.core.context import Context
-from arboleda.core.dispatcher import Dispatcher
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
+from arboleda.dispatch import evidence
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes import storage
+from arboleda.trees import steps
+from arboleda.trees.context import Context
 from arboleda.views import view
 from arboleda.wire import status
 from arboleda.wire.board import Board
@@ -114,7 +116,7 @@ PEOPLE = (
         "To clear one robot clears its cell.",
         edit(
             Operator._clear,
-            "if not any(robot.name in self._dispatcher.latched for robot in cell.cell.robots):",
+            "if not any(robot.name in stopped for robot in cell.cell.robots):",
             "if True:",
         ),
         weather={"operator_stop": 20.0, "operator_clear": 40.0},

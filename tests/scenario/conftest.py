@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 
 Stage = Callable[..., tuple[Rig, Witness]]

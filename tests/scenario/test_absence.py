@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Home
-from arboleda.core.messages import Absence, Reason, Verb
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home
+from arboleda.model.messages import Absence, Reason, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
@@ -66,6 +66,7 @@ def test_retry_gives_the_interrupted_step_anew_and_the_task_is_done(rig: Rig) ->
     away(rig, 20.0, PLANT)
     assert rig.operate(Verb.RETRY, "sis_a") is None
     assert rig.wait(60.0, until=lambda: rig.outcomes()[task].state.value == "done")
+    assert rig.plant.intake.tasks[task].attempts == 2
 
 
 def test_the_time_away_is_no_part_of_a_pause_that_a_step_waits_out() -> None:

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from arboleda.core.advice import Advice, Hand, sentence
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.messages import OperatorRequest, Reason, TaskState, Verb
-from arboleda.core.model import Evidence
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import OperatorRequest, Reason, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator.world import BRIDGE
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.testing.following import advised, follow, works

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import InternalError, TaskChanged, TaskState, Verb
+from arboleda.model.messages import InternalError, TaskChanged, TaskState, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.sim.machine import MachineBody
 from arboleda.simulator.network import keeps_its_place

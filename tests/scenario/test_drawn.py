@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.commands import Command
-from arboleda.core.messages import Report, TaskState, Verb
-from arboleda.core.model import Evidence, Link, MotionState
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Link, MotionState
 from arboleda.testing import Rig, shipped
 
 

@@ -9,11 +9,11 @@ from typing import Any, cast
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.leaves import Act, Await, Dwell
-from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
-from arboleda.core.model import Evidence
+from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness
+from arboleda.trees.leaves import Act, Await, Dwell
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK, STATION = "sis_a 1B 7", "station 7"

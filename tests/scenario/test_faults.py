@@ -14,12 +14,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import steps
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Reason, TaskState
-from arboleda.core.model import Evidence
+from arboleda.model.messages import Reason, TaskState
+from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
+from arboleda.trees import steps
 from arboleda.wire.transport import Publication
 
 IDS, JOINTS, STATE = Evidence.IDS, Evidence.JOINTS, Evidence.STATE

@@ -421,6 +421,60 @@ FOUND = {
                 stations: {0: {deg: [-20.0, -119.6], mm: 50.0, approach_mm: 10.0}}
         """,
     ),
+    "a number that a board told before the bridge gave it had to name the command that got it": Found(
+        seed=2,
+        faults=(
+            Fault(kind="bridge_stall", at=8.0, seconds=3.7, target="bridge"),
+            Fault(kind="lying_telemetry", at=8.4, seconds=6.0, target="arm_1", word="ack", seed=2),
+        ),
+        file="""
+            name: drawn_5109
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: scara, link: mqtt, evidence: ids}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [-135.4, -39.1], mm: 96.9}
+                pickup: {deg: [-77.2, -119.6], mm: 71.4}
+                paths: {0Y: [2]}
+                stations: {0: {deg: [-20.0, -119.6], mm: 50.0}}
+        """,
+    ),
+    "an effector was opened at no pose, as somebody had just put its arm at its reference": Found(
+        seed=3007,
+        seconds=90.0,
+        faults=(Fault(kind="operator_home", at=4.96, target="arm_1", word="by hand"),),
+        file="""
+            name: drawn_3007
+            foreign_commands: refuse
+            timing: {effector_timeout_s: 1, stale_after_s: 1, stop_timeout_s: 5, deadline_factor: 3}
+            cells:
+              cell_1:
+                arm:
+                  name: arm_1
+                  model: scara
+                  link: ros
+                  evidence: joints
+                  mqtt: arm_1_board
+                  timeout_s: 2.0
+                  twin: twin_of_arm_1
+                  limits: {q1_deg: [-150.0, 150.0], q2_deg: [-135.0, 134.4], q3_mm: [0.0, 78.9]}
+                  tolerance: {deg: [0.011, 4.511], mm: 0.374}
+                mobile:
+                  name: mobile_1
+                  link: mqtt
+                  evidence: state
+                  mqtt: mobile_1_board
+                  timeout_s: 0.5
+                  speed_mm_s: 80.4
+                home: {deg: [-2.5, -50.5], mm: 75.9}
+                pickup: {deg: [107.1, -63.4], mm: 49.9}
+                paths: {AZ: [0]}
+                stations: {'0': {deg: [-56.6, 10.9], mm: 4.8}}
+                drive_to_start: true
+            zones:
+              zone_1: {poses: [cell_1 pickup]}
+        """,
+    ),
 }
 
 

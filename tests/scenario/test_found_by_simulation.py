@@ -9,12 +9,12 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Home
-from arboleda.core.ledger import State
-from arboleda.core.messages import Journal, TaskState, Verb
-from arboleda.core.model import Evidence, PlantModel, Retry
+from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home
+from arboleda.model.messages import Journal, TaskState, Verb
+from arboleda.model.plant_model import Evidence, PlantModel, Retry
 from arboleda.sim.arm import ArmBody
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation

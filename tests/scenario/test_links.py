@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from arboleda.core.messages import Reason, TaskChanged, TaskState
-from arboleda.core.model import Evidence
+from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import Rig, shipped
 
 LEVELS = pytest.mark.parametrize("evidence", list(Evidence))

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
-from arboleda.core.model import Evidence, Link, MotionState, PlantModel
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import MoveJoints
+from arboleda.model.messages import Event, Reason, Report, TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
 from arboleda.testing import Rig, shipped
 
 MOVING, STOPPED = MotionState.MOVING, MotionState.STOPPED

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Reason, Verb
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import SetEffector
+from arboleda.model.messages import Reason, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 

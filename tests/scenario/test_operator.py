@@ -9,11 +9,13 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home
-from arboleda.core.messages import Fact, Journal, OperatorRequest, Reason, TaskState, Verb
-from arboleda.core.model import Evidence, Link, PlantModel
+from arboleda.model.commands import Command, Home
+from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication
+
+from .restarts import crash_without_trail
 
 Stage = Callable[..., tuple[Rig, Witness]]
 TASK = "sis_a 0B 7"
@@ -225,7 +227,7 @@ def test_after_a_crash_in_a_task_nothing_moves_by_itself(
     bring(rig)
     on = rig.devices.boards["ra_1"].body.effector  # type: ignore[attr-defined]
     mark = len(rig.to_boards)
-    rig.crash()
+    crash_without_trail(rig)
     rig.wait(20.0)
     assert witness.motions_since(mark, rig.model.robots) == []
     assert rig.devices.boards["ra_1"].body.effector is on  # type: ignore[attr-defined]

@@ -11,8 +11,8 @@ from arboleda.app.plant_file.robot_models import mobile_models
 from arboleda.app.simulate.drawn import ATTEMPTS, as_yaml
 from arboleda.app.simulate.plants import InTurn, Plant
 from arboleda.app.simulate.setting import Setting
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.plants import draw
 from arboleda.testing import Sim
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import PlantModel
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.plant_model import PlantModel
 from arboleda.testing import Rig, Witness, shipped
+
+from .restarts import crash_without_trail
 
 TAKEN_AT = {"0A": "pick-up A", "0B": "pick-up", "0C": "pick-up C", "2A": "pick-up A", "1C": "pick-up C"}
 
@@ -46,7 +48,7 @@ def test_a_recovery_brings_the_part_back_to_the_exit_it_came_from() -> None:
 
 def test_a_plant_that_starts_anew_brings_a_part_to_where_the_mobile_stands() -> None:
     rig = held_with_a_part(shipped("sis_a"))
-    rig.crash()
+    crash_without_trail(rig)
     rig.wait(3.0)
     assert rig.operate(Verb.RETRY, "sis_a") is None
     rig.wait_for("sis_a", "carry back/move to pick-up A")

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.simulator.climate import LEVELS
 from arboleda.simulator.faults import KINDS
+from arboleda.simulator.levels import LEVELS
 from arboleda.testing import Sim
 
 pytest_plugins = "pytester"

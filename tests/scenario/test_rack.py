@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import Fact, TaskState, Verb
+from arboleda.model.messages import Fact, TaskState, Verb
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
 

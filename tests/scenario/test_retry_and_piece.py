@@ -9,11 +9,11 @@ from typing import Any, cast
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
-from arboleda.core.model import Evidence, Retry
-from arboleda.core.tree_run import TreeRun
+from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Retry
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import Rig, Witness, faults
+from arboleda.trees.tree_run import TreeRun
 from arboleda.wire.transport import Publication
 
 Stage = Callable[..., tuple[Rig, Witness]]

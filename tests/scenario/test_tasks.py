@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import TaskState
-from arboleda.core.model import Evidence
+from arboleda.model.messages import TaskState
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import Rig, shipped
 
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.messages import TaskRequest, TaskState
-from arboleda.core.model import PlantModel
+from arboleda.model.messages import TaskRequest, TaskState
+from arboleda.model.plant_model import PlantModel
 from arboleda.testing import Rig, shipped
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.model import Evidence, PlantModel
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped, slowed
 

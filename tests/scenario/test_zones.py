@@ -12,10 +12,12 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Fact, Journal, Reason, TaskState, Verb
-from arboleda.core.model import Evidence, PlantModel
+from arboleda.model.messages import Fact, Journal, Reason, TaskState, Verb
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.testing import Rig, Witness, faults, slowed
 from arboleda.testing.following import advised, follow, works
+
+from .restarts import crash_without_trail
 
 ZONES = """
 zones:
@@ -211,7 +213,7 @@ def test_an_arm_inside_goes_on_as_soon_as_what_an_override_took_from_it_is_free(
 def test_a_crash_of_the_plant_keeps_the_zones_of_an_arm_inside(zoned: Plants, evidence: Evidence) -> None:
     rig, witness = start(zoned(evidence))
     meet(rig, 4)
-    rig.crash()
+    crash_without_trail(rig)
     rig.wait(5.0)
     assert (zone(rig, "centre"), zone(rig, "rack")) == (("quarantined", "ra1"), ("quarantined", "ra1"))
     rig.submit("sis_b 0B 7")
@@ -232,7 +234,7 @@ def test_after_a_crash_an_empty_arm_is_homed_out_of_the_zones(zoned: Plants, evi
     rig.wait_for("sis_a", "move to pick-up")
     rig.wait(0.4)
     rig.stop_bridge()
-    rig.crash()
+    crash_without_trail(rig)
     rig.wait(2.0)
     rig.start_bridge()
     rig.submit("sis_b 0B 4")

@@ -5,25 +5,29 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import pytest
 import yaml
 
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 
+from ..chromium import browsers
 from ..conftest import need_tool
 
 ROOT = Path(__file__).parents[2]
 PATIENCE_S = 30.0
+WIDE = {"COLUMNS": "200"}  # of the terminal that a command takes itself to be in
 
 
 class Process:
@@ -38,7 +42,7 @@ class Process:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, "COLUMNS": "200", "PYTHONUNBUFFERED": "1", **(env or {})},
+            env={**os.environ, **WIDE, "PYTHONUNBUFFERED": "1", **(env or {})},
             start_new_session=True,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -121,15 +125,34 @@ def arboleda(start: Callable[..., Process], tmp_path: Path) -> Callable[..., Pro
     return go
 
 
+@pytest.fixture
+def typed(tmp_path: Path) -> Callable[..., tuple[int, str]]:
+    """`typed("submit", "sis_a 0B 7")`: status and output of a command that asks the plant of `arboleda`.
+
+    It is run in the process of the test: a start of its own takes ten times as long as what is asked. That it
+    has one is tested in test_command.py.
+    """
+
+    def go(*words: str) -> tuple[int, str]:
+        from arboleda.app.cli import main
+
+        said, status = StringIO(), 0
+        command = mock.patch.object(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])
+        terminal = mock.patch.dict(os.environ, WIDE)
+        with command, terminal, redirect_stdout(said), redirect_stderr(said):
+            try:
+                main()
+            except SystemExit as end:
+                status = int(end.code or 0)
+        return status, said.getvalue().rstrip()
+
+    return go
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """A chromium that shows nothing on a screen."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        made = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        yield made
-        made.close()
+    with browsers() as launch:
+        yield launch()
 
 
 @pytest.fixture

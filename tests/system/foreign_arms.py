@@ -18,8 +18,8 @@ from random import Random
 from typing import Any
 
 from arboleda.app import config
-from arboleda.core.model import Link, MotionState
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import Link, MotionState
 from arboleda.wire.payloads import Channel, JointsGoal, Presence, StopGoal, Telemetry, decode, encode
 from arboleda.wire.topics import topic
 from arboleda.wire.units import from_wire, to_wire

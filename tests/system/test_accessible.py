@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 import yaml
 
+from arboleda.app.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
+from arboleda.model.messages import ENDED, TaskState, Verb
 
 from .conftest import SHIPPED
 from .page import PARTS, PATIENCE_MS, connected, running, show
@@ -51,7 +52,8 @@ class Eye:
         self.violations += [f"{where}: {line}" for line in self.page.evaluate(JUDGE, options)]
 
 
-@pytest.fixture(params=itertools.product(LANGUAGES, SCREENS), ids="-".join)
+# each language on one screen, each screen in one language: words and widths show on their own
+@pytest.fixture(params=zip(LANGUAGES, SCREENS, strict=True), ids="-".join)
 def eye(request: pytest.FixtureRequest, browser: Any) -> Iterator[Callable[[str], Eye]]:
     """`eye(address)` is on the page as one of those who look at it has it."""
     language, screen = request.param
@@ -78,7 +80,19 @@ def at_work(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     file = folder / "plant.yaml"
     file.write_text(yaml.safe_dump(plant))
     with running(folder, "--plant", str(file), "sis_a 0B 7 #done", "sis_c 2A 5 #failed") as address:
+        ended(PlantClient(folder))
         yield address
+
+
+def ended(plant: PlantClient) -> None:
+    """Every task has ended, by advice too: a busy machine may hold cells, after a second of standstill."""
+    for _ in plant.changes():
+        now = plant.status()
+        for cell in now["cells"]:
+            if cell["state"] == "held":
+                plant.operate(Verb(cell["advice"][0]["do"]), cell["advice"][0]["scope"])
+        if all(TaskState(task["state"]) in ENDED for task in now["tasks"]):
+            return
 
 
 @pytest.fixture(scope="module")

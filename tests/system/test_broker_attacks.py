@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from arboleda.app.client import PlantClient, Refused
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 from .conftest import PATIENCE_S
 from .test_verbs import eventually

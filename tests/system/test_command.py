@@ -58,12 +58,12 @@ def test_run_works_on_a_real_mosquitto(
     ids=["cell", "station", "plant", "rate", "broker", "no task"],
 )
 def test_bad_input_ends_with_2_before_anything_starts(
-    arboleda: Callable[..., Any], args: tuple[str, ...], sentence: str
+    typed: Callable[..., tuple[int, str]], args: tuple[str, ...], sentence: str
 ) -> None:
-    run = arboleda("run", *args)
-    assert run.wait() == 2
-    assert sentence in run.output
-    assert "Traceback" not in run.output and "broker:" not in run.output
+    status, said = typed("run", *args)
+    assert status == 2
+    assert sentence in said
+    assert "Traceback" not in said and "broker:" not in said
 
 
 def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
@@ -86,21 +86,71 @@ def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
     assert "Traceback" not in up.output
 
 
+def test_who_submits_may_wait_for_the_end_of_the_task_and_watch_the_plant(
+    arboleda: Callable[..., Any],
+) -> None:
+    up = arboleda("up", "--no-ros", "--rate", "3")
+    up.wait_for("HTTP API")
+    watch = arboleda("status", "--watch", "--json")
+    watch.wait_for('"kind": "snapshot"')
+    done = arboleda("submit", "--wait", "sis_a 0B 7 #one")
+    assert done.wait() == 0
+    assert [line.split()[0] for line in done.output.splitlines()] == ["queued:", "running:", "done:"]
+    watch.wait_for('"state": "done"')
+    stopped = arboleda("submit", "--wait", "sis_b 0B 7")
+    stopped.wait_for("running: sis_b 0B 7")
+    assert arboleda("stop", "sis_b").wait() == 0
+    assert stopped.wait() == 1 and "sis_b was stopped by the operator" in stopped.output
+    left = arboleda("submit", "--wait", "sis_c 0B 7 #two")
+    left.wait_for("running: sis_c 0B 7")
+    assert up.interrupt() == 0
+    assert left.wait() == 1
+    assert "the plant has ended, and #two has not: its next start has it again" in left.output
+    assert watch.wait() == 0 and "Traceback" not in watch.output + left.output
+
+
+def test_who_waits_for_a_task_may_stop_waiting(arboleda: Callable[..., Any]) -> None:
+    up = arboleda("up", "--no-ros", "--rate", "3")
+    up.wait_for("HTTP API")
+    waits = arboleda("submit", "--wait", "sis_a 0B 7")
+    waits.wait_for("running: sis_a 0B 7")
+    assert waits.interrupt() == 130 and "Traceback" not in waits.output
+    up.wait_for("done      sis_a 0B 7")
+    assert up.interrupt() == 0
+
+
+@pytest.mark.parametrize(
+    ("shell", "typed_so_far"),
+    [
+        ("bash", {"COMP_WORDS": "arboleda sub", "COMP_CWORD": "1"}),
+        ("zsh", {"_TYPER_COMPLETE_ARGS": "arboleda sub"}),
+        ("fish", {"_TYPER_COMPLETE_ARGS": "arboleda sub", "_TYPER_COMPLETE_FISH_ACTION": "get-args"}),
+    ],
+)
+def test_shells_complete_the_command(
+    start: Callable[..., Any], shell: str, typed_so_far: dict[str, str]
+) -> None:
+    main = "from arboleda.app.cli import main; main()"
+    asks = {"_ARBOLEDA_COMPLETE": f"complete_{shell}", "PYTHONPATH": paths(), **typed_so_far}
+    completed = start(sys.executable, "-c", main, env=asks)
+    assert completed.wait() == 0 and "submit" in completed.output
+
+
 def test_ctrl_c_in_the_middle_of_a_move_halts_it(arboleda: Callable[..., Any]) -> None:
     up = arboleda("up", "sis_a 0B 7", "--no-ros")
     up.wait_for("sis_a: move to pick-up")
     assert up.interrupt() == 0
-    assert "failed    sis_a 0B 7  the plant was asked to end (interrupted)" in up.output
     assert "ra1: still" in up.output
+    assert "sis_a: sis_a 0B 7 is left for the next start" in up.output
 
 
 def test_tasks_and_operators_are_lines_with_time_in_the_log_file(
-    arboleda: Callable[..., Any], tmp_path: Path
+    arboleda: Callable[..., Any], typed: Callable[..., tuple[int, str]], tmp_path: Path
 ) -> None:
     up = arboleda("up", "sis_a 0B 7", "--no-ros", "--rate", "10")
     up.wait_for("done      sis_a 0B 7")
-    assert arboleda("hold", "sis_a").wait() != 0
-    assert arboleda("stop", "sis_b").wait() == 0
+    assert typed("hold", "sis_a")[0] != 0
+    assert typed("stop", "sis_b")[0] == 0
     up.wait_for("stop sis_b")
     assert up.interrupt() == 0
     lines = (tmp_path / "state" / "arboleda.log").read_text().splitlines()

@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from arboleda.adapters.store import Store
-from arboleda.core.messages import Fact, Remember
+from arboleda.model.messages import Fact, Remember
 
 from .conftest import SHIPPED
 from .page import PARTS, PATIENCE_MS, connected, running, show
@@ -32,6 +32,36 @@ Open = Callable[..., Any]
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with running(tmp_path_factory.mktemp("state")) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def slow(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A plant whose tasks take as long as real ones, so that there is time to do something meanwhile."""
+    with running(tmp_path_factory.mktemp("slow"), "--rate", "1") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def half_idle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A plant where the task lot42 of sis_c fails in its first step; nobody gave sis_b one."""
+    folder = tmp_path_factory.mktemp("half-idle")
+    plant = yaml.safe_load(SHIPPED.read_text())
+    plant["cells"]["sis_c"]["drive_to_start"] = False
+    file = folder / "plant.yaml"
+    file.write_text(yaml.safe_dump(plant))
+    with running(folder, "--plant", str(file), "sis_c 2A 5 #lot42") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def silent(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A plant with shared zones, one of them in quarantine, whose boards never come."""
+    folder = tmp_path_factory.mktemp("silent")
+    with Store(folder / "plant.sqlite") as store:
+        store.keep(Remember(fact=Fact.QUARANTINE, name="table", value="arm_left"))
+    shared = str(SHIPPED.with_name("shared.yaml"))
+    with running(folder, "--plant", shared, "--boards", "real", "--rate", "1") as found:
         yield found
 
 
@@ -202,8 +232,8 @@ def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: O
     assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
 
 
-def test_what_moves_a_robot_is_asked_once_and_says_what_will_happen(open_page: Open) -> None:
-    page = open_page("tasks")
+def test_what_moves_a_robot_is_asked_once_and_says_what_will_happen(open_page: Open, slow: str) -> None:
+    page = open_page("tasks", at=slow)
     task = send(page, "sis_b 0B 7")
     wait_for_task(page, task, "running")
     show(page, "panel")
@@ -248,31 +278,31 @@ def test_news_that_no_longer_come_are_told(open_page: Open) -> None:
     assert "what you see is old" in page.inner_text("#connection")
 
 
-def test_a_plant_where_nothing_happens_is_not_called_silent(open_page: Open, tmp_path: Path) -> None:
-    shared = str(SHIPPED.with_name("shared.yaml"))
-    with running(tmp_path, "--plant", shared, "--boards", "real", "--rate", "1") as address:
-        page = open_page(at=address)
-        page.evaluate("""() => {
-            const live = arboleda.live;
-            window.empty = 0;
-            arboleda.live = (number, patch) => {
-                live(number, patch);
-                empty += Object.keys(patch).length === 0;
-            };
-        }""")
-        page.wait_for_function("empty > 5")
-        assert page.is_hidden("#connection") and page.locator(".silent").count() == 0
+def test_a_plant_where_nothing_happens_is_not_called_silent(open_page: Open, silent: str) -> None:
+    page = open_page(at=silent)
+    page.evaluate("""() => {
+        const live = arboleda.live;
+        window.empty = 0;
+        arboleda.live = (number, patch) => {
+            live(number, patch);
+            empty += Object.keys(patch).length === 0;
+        };
+    }""")
+    page.wait_for_function("empty > 5")
+    assert page.is_hidden("#connection") and page.locator(".silent").count() == 0
 
 
-def test_a_button_stays_while_its_row_changes(open_page: Open, tmp_path: Path) -> None:
-    with running(tmp_path, "--rate", "1", "sis_a 0B 7 #lot1") as address:
-        page = open_page("tasks", at=address)
-        wait_for_task(page, "lot1", "running")
-        button = page.query_selector("[data-row=lot1] button[data-act=cancel]")
-        button.focus()
-        page.wait_for_selector("[data-row=lot1] .column-4:has-text('2 s')")
-        page.wait_for_selector("[data-row=lot1] .column-4:has-text('3 s')")
-        assert button.evaluate("button => document.activeElement === button")
+def test_a_button_stays_while_its_row_changes(open_page: Open, slow: str) -> None:
+    page = open_page("tasks", at=slow)
+    task = send(page, "sis_a 0B 7")
+    wait_for_task(page, task, "running")
+    button = page.query_selector(f"[data-row='{task}'] button[data-act=cancel]")
+    button.focus()
+    time = f"""document.querySelector("[data-row='{task}'] .column-4").innerText"""
+    for _ in range(2):
+        page.wait_for_function(f"before => {time} !== before", arg=page.evaluate(time))
+    assert button.evaluate("button => document.activeElement === button")
+    wait_for_task(page, task, "done")
 
 
 def test_the_language_is_switched_and_remembered(open_page: Open) -> None:
@@ -336,54 +366,51 @@ def test_a_link_leads_to_part_cell_and_language(open_page: Open) -> None:
     page.wait_for_selector("html[lang=es]")
 
 
-def test_an_idle_page_offers_to_send_a_task(open_page: Open, tmp_path: Path) -> None:
-    with running(tmp_path) as address:
-        page = open_page(at=address, locale="en")
-        page.click("[data-choose=sis_b]")
-        page.click(".cell.chosen a:has-text('Send a task to sis_b'):visible")
-        page.wait_for_selector("[data-maps=sis_b]:visible")
-        page.click("[data-maps=sis_b] [data-path='2A']")
-        page.click("[data-maps=sis_b] [data-station='4']")
-        page.click("#task-send")
-        task = taken(page, "sis_b 2A 4")
-        wait_for_task(page, task, "done")
-        page.go_back()
-        page.wait_for_selector(".tree-tools a:has-text('Send a task to sis_b'):visible")
+def test_an_idle_page_offers_to_send_a_task(open_page: Open, half_idle: str) -> None:
+    page = open_page(at=half_idle, locale="en")
+    page.click("[data-choose=sis_b]")
+    page.click(".cell.chosen a:has-text('Send a task to sis_b'):visible")
+    page.wait_for_selector("[data-maps=sis_b]:visible")
+    page.click("[data-maps=sis_b] [data-path='2A']")
+    page.click("[data-maps=sis_b] [data-station='4']")
+    page.click("#task-send")
+    task = taken(page, "sis_b 2A 4")
+    wait_for_task(page, task, "done")
+    page.go_back()
+    page.wait_for_selector(".tree-tools a:has-text('Send a task to sis_b'):visible")
 
 
-def test_an_ended_task_is_looked_at_again(open_page: Open, tmp_path: Path) -> None:
-    with running(tmp_path, "--rate", "1", "sis_a 0B 7 #lot1") as address:
-        page = open_page("tasks", at=address, locale="en")
-        wait_for_task(page, "lot1", "running")
-        page.click('[data-row="lot1"] a')
-        page.wait_for_selector("#task:has-text('It runs now')")
-        page.click("#stop")
-        page.wait_for_selector('#task [data-live="task.state"][data-s=failed]')
-        assert "stopped by the operator" in page.inner_text("#task .trouble")
-        assert "task=lot1" in page.url
-        page.click("#task g.node.is-failure[data-path=root]")
-        page.wait_for_selector("#node-name:visible")
-        assert page.inner_text("#node-name") == "sis_a 0B 7 #lot1 · storage"
-        page.keyboard.press("Escape")
-        page.click("#task a:has-text('Close')")
-        page.wait_for_selector("#task", state="hidden")
-        page.go_back()
-        page.wait_for_selector("#task:visible")
+def test_an_ended_task_is_looked_at_again(open_page: Open, slow: str) -> None:
+    page = open_page("tasks", at=slow, locale="en")
+    page.fill("#task-text", "sis_a 0B 7 #lot1")
+    page.click("#task-send")
+    wait_for_task(page, "lot1", "running")
+    page.click('[data-row="lot1"] a')
+    page.wait_for_selector("#task:has-text('It runs now')")
+    page.click("#stop")
+    page.wait_for_selector('#task [data-live="task.state"][data-s=failed]')
+    assert "stopped by the operator" in page.inner_text("#task .trouble")
+    assert "task=lot1" in page.url
+    page.click("#task g.node.is-failure[data-path=root]")
+    page.wait_for_selector("#node-name:visible")
+    assert page.inner_text("#node-name") == "sis_a 0B 7 #lot1 · storage"
+    page.keyboard.press("Escape")
+    page.click("#task a:has-text('Close')")
+    page.wait_for_selector("#task", state="hidden")
+    page.go_back()
+    page.wait_for_selector("#task:visible")
+    wait_for_stop(page, "stopped")
+    get_ready(page)
 
 
-def test_a_link_to_a_task_shows_the_leaf_that_failed(open_page: Open, tmp_path: Path) -> None:
-    plant = yaml.safe_load(SHIPPED.read_text())
-    plant["cells"]["sis_c"]["drive_to_start"] = False
-    file = tmp_path / "plant.yaml"
-    file.write_text(yaml.safe_dump(plant))
-    with running(tmp_path, "--plant", str(file), "sis_c 2A 5 #lot42") as address:
-        page = open_page("tasks", at=address, locale="en")
-        wait_for_task(page, "lot42", "failed")
-        page.goto(f"{address}/?task=lot42")
-        page.wait_for_selector("#task g.node.is-failure:has-text('at start')")
-        assert 'Failed in step "at start": rm_sis_c stands on node 0' in page.inner_text("#task .trouble")
-        page.goto(f"{address}/?task=lot43")
-        page.wait_for_selector("#task:has-text('knows no such task')")
+def test_a_link_to_a_task_shows_the_leaf_that_failed(open_page: Open, half_idle: str) -> None:
+    page = open_page("tasks", at=half_idle, locale="en")
+    wait_for_task(page, "lot42", "failed")
+    page.goto(f"{half_idle}/?task=lot42")
+    page.wait_for_selector("#task g.node.is-failure:has-text('at start')")
+    assert 'Failed in step "at start": rm_sis_c stands on node 0' in page.inner_text("#task .trouble")
+    page.goto(f"{half_idle}/?task=lot43")
+    page.wait_for_selector("#task:has-text('knows no such task')")
 
 
 def test_the_tree_stands_beside_the_twin(open_page: Open) -> None:
@@ -637,19 +664,15 @@ def test_only_the_stop_can_be_reached_beside_a_question(open_page: Open) -> None
     page.keyboard.press("Escape")
 
 
-def test_an_override_is_asked_twice(open_page: Open, tmp_path: Path) -> None:
-    with Store(tmp_path / "plant.sqlite") as store:
-        store.keep(Remember(fact=Fact.QUARANTINE, name="table", value="arm_left"))
-    shared = ("--plant", str(SHIPPED.with_name("shared.yaml")), "--boards", "real", "--rate", "1")
-    with running(tmp_path, *shared) as address:
-        page = open_page("panel", at=address, locale="en")
-        row = '[data-row=table][data-s="quarantined"]'
-        page.click(f"{row} [data-act=override]")
-        page.click("dialog button:has-text('No')")
-        page.click(f"{row} [data-act=override]")
-        page.click("dialog:has-text('with your own eyes') .primary")
-        assert page.is_visible(row)
-        page.click("dialog:has-text('journal') .primary")
-        page.wait_for_selector('[data-row=table][data-s="free"]')
-        show(page, "events")
-        page.wait_for_selector("[data-rows=events] .row:has-text('override table')")
+def test_an_override_is_asked_twice(open_page: Open, silent: str) -> None:
+    page = open_page("panel", at=silent, locale="en")
+    row = '[data-row=table][data-s="quarantined"]'
+    page.click(f"{row} [data-act=override]")
+    page.click("dialog button:has-text('No')")
+    page.click(f"{row} [data-act=override]")
+    page.click("dialog:has-text('with your own eyes') .primary")
+    assert page.is_visible(row)
+    page.click("dialog:has-text('journal') .primary")
+    page.wait_for_selector('[data-row=table][data-s="free"]')
+    show(page, "events")
+    page.wait_for_selector("[data-rows=events] .row:has-text('override table')")

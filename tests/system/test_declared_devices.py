@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app.build import App, Options, build
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.messages import TaskChanged, TaskState
 
 from ..unit.kinds.lab import model
 

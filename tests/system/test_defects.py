@@ -14,7 +14,7 @@ from .conftest import paths
 pytestmark = [pytest.mark.system]
 BROKEN = {
     "a rule": """
-from arboleda.core import evidence
+from arboleda.dispatch import evidence
 sound = evidence._work_by_ids
 def broken(entry, belief, report):
     if entry.cell == "sis_a":
@@ -24,7 +24,7 @@ for key in [key for key, rule in evidence.RULES.items() if rule is sound]:
     evidence.RULES[key] = broken
 """,
     "a leaf": """
-from arboleda.core.leaves import Dwell
+from arboleda.trees.leaves import Dwell
 sound = Dwell.update
 def broken(self):
     if self.context.cell.name == "sis_a":

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 
 from .conftest import Chain
 

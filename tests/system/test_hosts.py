@@ -13,34 +13,35 @@ import pytest
 from .conftest import PATIENCE_S
 
 pytestmark = pytest.mark.system
+Typed = Callable[..., tuple[int, str]]
 
 
 @pytest.mark.parametrize(("host", "page"), [("::1", "[::1]"), ("127.0.0.2", "127.0.0.2")])
 def test_commands_and_browsers_reach_a_plant_at_any_address_of_this_machine(
-    arboleda: Callable[..., Any], free_port: int, host: str, page: str
+    arboleda: Callable[..., Any], typed: Typed, free_port: int, host: str, page: str
 ) -> None:
     with socket.create_server(("127.0.0.1", free_port)):  # somebody else, who must not be taken for the plant
         up = arboleda("up", "--no-ros", "--host", host, "--port", str(free_port))
         up.wait_for("HTTP API")
         assert shown_page(up) == f"http://{page}:{free_port}"
-        check_reached(arboleda, up)
+        check_reached(typed, up)
 
 
 def test_commands_and_browsers_reach_a_plant_on_every_network(
-    arboleda: Callable[..., Any], free_port: int
+    arboleda: Callable[..., Any], typed: Typed, free_port: int
 ) -> None:
     up = arboleda("up", "--no-ros", "--host", "::", "--port", str(free_port))
     up.wait_for("HTTP API")
-    check_reached(arboleda, up)
+    check_reached(typed, up)
 
 
-def check_reached(arboleda: Callable[..., Any], up: Any) -> None:
+def check_reached(typed: Typed, up: Any) -> None:
     browser = httpx.Client(headers={"accept": "text/html"}, trust_env=False, timeout=PATIENCE_S)
     with browser:
         assert browser.get(shown_page(up), follow_redirects=True).status_code == 200
     for words in (["status"], ["submit", "sis_a 0B 7"], ["stop"]):
-        asked = arboleda(*words)
-        assert asked.wait() == 0, asked.output
+        status, said = typed(*words)
+        assert status == 0, said
     up.wait_for("failed    sis_a 0B 7")
     assert up.interrupt() == 0, up.output
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.adapters.mqtt import Address, MqttClient
+from arboleda.adapters.broker_login import Address
+from arboleda.adapters.mqtt import MqttClient
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 pytestmark = pytest.mark.system

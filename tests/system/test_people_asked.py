@@ -81,6 +81,10 @@ def test_a_press_answers_and_the_task_goes_on(page: Any) -> None:
     page.wait_for_selector('[data-rows=tasks] [data-row=asks][data-s="done"]', state="attached")
     assert page.inner_text("#answer") == "Done: Answer, ana yes."
     assert announced(page).strip() == ""
+    page.click("nav a[data-go*=tasks]")
+    page.click("[data-rows=history] [data-row] a")
+    page.wait_for_selector("#task [data-rows='task.heard'] .row")
+    assert page.inner_text("#task [data-rows='task.heard'] .column-1") == QUESTION
     assert page.title() == "shop"
     assert page.get_attribute("link[rel~=icon]", "href").endswith("/tree.svg")
 

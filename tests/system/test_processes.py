@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.status import ERROR, OK, STALE
 
 from .conftest import Chain
@@ -77,7 +77,7 @@ def verb(parts: Chain, name: str) -> tuple[bool, str]:
 def test_a_bridge_back_in_time_lets_the_cell_recover_and_work_on(
     chain: Callable[..., Chain],
 ) -> None:
-    parts = chain(Evidence.IDS)
+    parts = chain(Evidence.IDS, stop_timeout_s=30.0)  # the bridge starts as a process of its own
     arm, mqtt = diagnosed(parts, "ra1"), diagnosed(parts, "mqtt_bridge on MQTT")
     parts.observer.wait(lambda: arm() == (OK, "ready"), "ra1 is not ready")
     reached = (OK, f"connected to the MQTT broker at {parts.address}")

@@ -13,10 +13,10 @@ pytest.importorskip("rclpy", reason="rclpy is not installed")
 
 from std_msgs.msg import String, UInt8
 
-from arboleda.core.commands import Command, Stop, StopMode
-from arboleda.core.messages import Interference, Report
-from arboleda.core.model import Evidence, Link, MotionState, PlantModel
 from arboleda.kinds.declared import Told
+from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.messages import Interference, Report
+from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
 from arboleda_ros.link import connect
 from arboleda_ros.orchestrator import NoBridge
 
@@ -168,3 +168,14 @@ def test_a_device_that_speaks_ros_2_itself_is_told_orders_and_tells_facts(side: 
     (foreign,) = eventually(lambda: orchestrator.events)  # type: ignore[misc]
     assert isinstance(foreign, Interference)
     assert str(foreign.sentence) == "station: order go of /somebody was sent to it"
+
+
+def test_a_device_behind_a_driver_has_no_topics(side: Callable[..., Side]) -> None:
+    (cell,) = plant().cells
+    driven = replace(cell.roles["station"], link=Link.DRIVER)
+    model = PlantModel(name="lab", cells=(replace(cell, members=(("station", driven),)),))
+    side("orchestrator", model)
+    person = side()
+    eventually(lambda: person.node.count_publishers("plant/heartbeat"))
+    topics = {name for name, _ in person.node.get_topic_names_and_types()}
+    assert [topic for topic in topics if topic.startswith("/station/")] == []

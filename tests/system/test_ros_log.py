@@ -115,7 +115,12 @@ def test_tasks_and_operators_are_lines_of_rosout_console_and_file(
         (20, "lab1.orchestrator.tasks", f"running   {TASK}"),
     }
     observer.wait(lambda: lines <= set(said(rosout)), f"not all of {lines}")
-    spoken = [text for _, name, text in said(rosout) if name == "lab1.orchestrator.operators"]
+
+    def operators() -> list[str]:
+        return [text for _, name, text in said(rosout) if name == "lab1.orchestrator.operators"]
+
+    observer.wait(operators, "nothing is said of the operator")
+    spoken = operators()
     assert spoken == [f"hold plant was refused: {answer.result().message}"] or spoken == ["hold plant"]
     refused = [
         text for level, name, text in said(rosout) if name == "lab1.orchestrator.requests" and level == 30

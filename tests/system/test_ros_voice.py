@@ -12,9 +12,9 @@ pytest.importorskip("rclpy", reason="rclpy is not installed")
 from rclpy.clock import Clock
 from rclpy.serialization import serialize_message
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState
 from arboleda.testing import shipped
 from arboleda_ros import statuses
 from arboleda_ros.voice import JointsMessage, StatusMessage

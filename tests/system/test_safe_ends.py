@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.app.parts.broker import address
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.transport import Connection, Delivery
 
 from .conftest import Chain, plant_at
@@ -46,8 +46,12 @@ def rests_short_of_the_goal(parts: Chain) -> float:
 def test_a_plant_killed_in_a_move_leaves_the_boards_to_stop_by_themselves(moving: Chain) -> None:
     moving.plant.kill()
     assert 0.0 < rests_short_of_the_goal(moving) < PICK_UP - 0.05
+    del moving.observer.heard["/plant/view"][:]
     moving.start("orchestrator", state_dir=moving.state)
-    moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "idle" and not cell["paused"])
+    moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "held" and not cell["refused"].get("resume"))
+    assert moving.cell("sis_a")["held_by"].endswith(
+        'it stands at "move to pick-up"); resume sis_a or abandon sis_a'
+    )
 
 
 def test_a_plant_killed_with_a_part_in_the_gripper_starts_held(moving: Chain) -> None:
@@ -56,7 +60,7 @@ def test_a_plant_killed_with_a_part_in_the_gripper_starts_held(moving: Chain) ->
     del moving.observer.heard["/plant/view"][:]
     moving.start("orchestrator", state_dir=moving.state)
     moving.wait_for_cell("sis_a", lambda cell: cell["state"] == "held")
-    assert "ra1 may hold a part" in moving.cell("sis_a")["held_by"]
+    assert 'it stands at "move to station 4"' in moving.cell("sis_a")["held_by"]
 
 
 def test_the_boards_of_one_cell_killed_in_a_move_fail_its_task_and_no_other(

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.adapters.broker_login import address
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.app.parts.broker import address
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.transport import Publication
 
 from .conftest import Chain

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -17,15 +16,16 @@ import yaml
 
 from arboleda.app import config
 from arboleda.app.urdf import robot_urdf, root_link
-from arboleda.core.model import MotionState, PlantModel, Robot
 from arboleda.dashboard.page import assets
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
 from arboleda.testing import shipped
 from arboleda.wire import payloads, topics, units
 from arboleda.wire.topics import Channel
 from arboleda.wire.values import Presence, Telemetry
 
+from ..chromium import FEW_FRAMES, browsers
 from ..unit.description import drawn
 from .conftest import SHIPPED, Process, paths
 
@@ -34,7 +34,8 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright",
 PATIENCE_MS = 20_000
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
-SMALL = {"viewport": {"width": 900, "height": 640}, "locale": "en"}
+# Drawn in software, each point costs time, and no test looks at one.
+COARSE = {"viewport": {"width": 900, "height": 640}, "device_scale_factor": 0.25, "locale": "en"}
 ACCURACY = 1e-6  # m, and of unit vectors
 LATE_S = 3.0  # how old what is drawn may be where a busy machine draws in software
 Pose = tuple[float, ...]
@@ -135,18 +136,10 @@ def running(state: Path, *args: str) -> Iterator[Plant]:
 
 
 @pytest.fixture(scope="module")
-def browsers() -> Iterator[Callable[..., Any]]:
-    """`browsers(*options)`: a browser with these options, the same one for all tests."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-
-        @cache
-        def launched(*options: str) -> Any:
-            program = shutil.which("chromium")
-            return playwright.chromium.launch(executable_path=program, args=["--no-sandbox", *options])
-
-        yield launched
+def launched() -> Iterator[Callable[..., Any]]:
+    """`launched(*options)`: a browser with these options, the same one for all tests."""
+    with browsers() as launch:
+        yield cache(launch)
 
 
 @contextmanager
@@ -156,7 +149,9 @@ def browsing(browser: Any) -> Iterator[Any]:
     with ExitStack() as opened:
 
         def go(address: str, part: str = "twin", **more: Any) -> Any:
-            page = opened.enter_context(browser.new_context(**(SMALL | more))).new_page()
+            context = opened.enter_context(browser.new_context(**(COARSE | more)))
+            context.add_init_script(FEW_FRAMES)
+            page = context.new_page()
             page.set_default_timeout(PATIENCE_MS)
             page.on("pageerror", lambda error: troubles.append(str(error)))
             page.goto(f"{address}/?tab={part}")
@@ -190,14 +185,14 @@ def places() -> dict[str, Place]:
 
 
 @pytest.fixture
-def look(browsers: Callable[..., Any]) -> Iterator[Any]:
-    with browsing(browsers(*SOFTWARE)) as go:
+def look(launched: Callable[..., Any]) -> Iterator[Any]:
+    with browsing(launched(*SOFTWARE)) as go:
         yield go
 
 
 @pytest.fixture
-def look_flat(browsers: Callable[..., Any]) -> Iterator[Any]:
-    with browsing(browsers(*NO_WEBGL)) as go:
+def look_flat(launched: Callable[..., Any]) -> Iterator[Any]:
+    with browsing(launched(*NO_WEBGL)) as go:
         yield go
 
 
@@ -297,8 +292,8 @@ def test_nothing_is_sent_to_a_page_that_shows_something_else(plant: Plant, look:
 
 def test_the_view_is_turned_with_keys_and_put_back(plant: Plant, look: Any) -> None:
     page = look(plant.page)
-    label = "document.querySelector('.twin-labels span').style.transform"
-    before = page.evaluate(label)
+    label = "document.querySelector('.twin-labels span')?.style.transform"
+    before = page.wait_for_function(label).json_value()
     page.focus("#twin canvas")
     for key in ("ArrowLeft", "ArrowUp", "+"):
         page.keyboard.press(key)
@@ -320,7 +315,8 @@ def test_without_webgl_the_plant_is_drawn_from_above(
     page = look_flat(plant.page)
     assert page.evaluate("arboledaTwin.view()") == "flat"
     assert "no WebGL" in page.inner_text("#twin-note")
-    before = page.evaluate("document.querySelector('.twin-flat .moving').innerHTML")
+    drawn = page.wait_for_function("document.querySelector('.twin-flat .moving')?.innerHTML")
+    before = drawn.json_value()
     submit(page, "sis_a 2C 8")
     page.wait_for_function(
         "before => document.querySelector('.twin-flat .moving').innerHTML !== before", arg=before

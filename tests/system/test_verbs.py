@@ -30,14 +30,9 @@ def eventually(holds: Callable[[], Any], otherwise: str) -> Any:
 class Operator:
     """Somebody at a terminal; `up` is the plant."""
 
-    def __init__(self, arboleda: Callable[..., Any], up: Any) -> None:
-        self._arboleda = arboleda
+    def __init__(self, typed: Callable[..., tuple[int, str]], up: Any) -> None:
+        self.ask = typed
         self.up = up
-
-    def ask(self, *words: str) -> tuple[int, str]:
-        """Exit status and output of one command."""
-        process = self._arboleda(*words)
-        return process.wait(), process.output
 
     def done(self, *words: str) -> str:
         """A command that the plant does at once, or as soon as its robots stand still."""
@@ -58,11 +53,16 @@ def plant_at(folder: Path, speed_mm_s: float) -> tuple[str, ...]:
     return ("--plant", str(file), "--rate", "5")
 
 
-def at_work(arboleda: Callable[..., Any], plant: tuple[str, ...]) -> Operator:
+@pytest.fixture
+def at_work(arboleda: Callable[..., Any], typed: Callable[..., tuple[int, str]]) -> Callable[..., Operator]:
     """With a plant at work: the mobile of sis_a is on its way."""
-    up = arboleda("up", "sis_a 0B 7", "--no-ros", *plant)
-    up.wait_for("sis_a: drive path 0B")
-    return Operator(arboleda, up)
+
+    def go(plant: tuple[str, ...]) -> Operator:
+        up = arboleda("up", "sis_a 0B 7", "--no-ros", *plant)
+        up.wait_for("sis_a: drive path 0B")
+        return Operator(typed, up)
+
+    return go
 
 
 @pytest.fixture
@@ -71,12 +71,12 @@ def quick(tmp_path: Path) -> tuple[str, ...]:
 
 
 @pytest.fixture
-def operator(arboleda: Callable[..., Any], quick: tuple[str, ...]) -> Operator:
-    return at_work(arboleda, quick)
+def operator(at_work: Callable[..., Operator], quick: tuple[str, ...]) -> Operator:
+    return at_work(quick)
 
 
-def test_stop_clear_reset_and_work_again(arboleda: Callable[..., Any], tmp_path: Path) -> None:
-    operator = at_work(arboleda, plant_at(tmp_path, 10))  # slow: the stop comes before the arm has a part
+def test_stop_clear_reset_and_work_again(at_work: Callable[..., Operator], tmp_path: Path) -> None:
+    operator = at_work(plant_at(tmp_path, 10))  # slow: the stop comes before the arm has a part
     assert operator.ask("stop") == (0, "done: stop (software), the whole plant")
     operator.up.wait_for("(stopped)")
     assert "failed    sis_a 0B 7" in operator.up.output
@@ -93,8 +93,8 @@ def test_stop_clear_reset_and_work_again(arboleda: Callable[..., Any], tmp_path:
     assert "Traceback" not in operator.up.output
 
 
-def test_a_stopped_cell_leaves_the_others_alone(arboleda: Callable[..., Any], tmp_path: Path) -> None:
-    operator = at_work(arboleda, plant_at(tmp_path, 1))  # it drives for as long as two commands take to start
+def test_a_stopped_cell_leaves_the_others_alone(at_work: Callable[..., Operator], tmp_path: Path) -> None:
+    operator = at_work(plant_at(tmp_path, 1))  # it drives for longer than two commands take
     assert operator.ask("submit", "sis_b 1C 3")[0] == 0
     assert operator.ask("stop", "sis_a")[0] == 0
     operator.up.wait_for("failed    sis_a 0B 7")

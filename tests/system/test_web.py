@@ -22,6 +22,7 @@ from arboleda.adapters.web.admission import Admission
 from .conftest import PATIENCE_S, Process, paths
 
 pytestmark = pytest.mark.system
+Typed = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture
@@ -41,24 +42,31 @@ def ask(port: int, token: str = "") -> httpx.Client:
 
 
 def test_a_plant_on_a_network_wants_a_token_of_everybody_and_the_commands_have_it(
-    arboleda: Callable[..., Any], free_port: int, tmp_path: Path
+    arboleda: Callable[..., Any], typed: Typed, free_port: int, tmp_path: Path
 ) -> None:
     up = arboleda("up", "--no-ros", "--rate", "10", "--host", "0.0.0.0", "--port", str(free_port))
     up.wait_for("the token travels in clear")
     assert str(tmp_path / "state" / "tokens.json") in up.output
-    viewer, operator = (arboleda("token", role) for role in ("viewer", "operator"))
-    assert viewer.wait() == operator.wait() == 0
-    with ask(free_port) as nobody, ask(free_port, viewer.output) as looks:
+    (of_viewer, viewer), (of_operator, operator) = (typed("token", role) for role in ("viewer", "operator"))
+    assert of_viewer == of_operator == 0
+    with ask(free_port) as nobody, ask(free_port, viewer) as looks:
         assert nobody.get("/api/plant").status_code == nobody.post("/api/plant/stop").status_code == 401
+        assert nobody.get("/metrics").status_code == 401
         assert looks.get("/api/plant").status_code == 200
         assert looks.post("/api/plant/reset").status_code == 403
-    assert viewer.output not in up.output and operator.output not in up.output
-    assert arboleda("submit", "sis_a 0B 7").wait() == 0
+    assert viewer not in up.output and operator not in up.output
+    assert typed("submit", "sis_a 0B 7")[0] == 0
     up.wait_for("done      sis_a 0B 7")
-    assert arboleda("token", "operator", "--new").wait() == 0
-    with ask(free_port, operator.output) as late:
+    with ask(free_port, viewer) as prometheus:
+        counts = prometheus.get("/metrics").text.splitlines()
+    assert 'arboleda_tasks_ended_total{cell="sis_a",outcome="done",reason=""} 1.0' in counts
+    assert any(
+        line.startswith("arboleda_reaction_seconds_count") and not line.endswith(" 0.0") for line in counts
+    )
+    assert typed("token", "operator", "--new")[0] == 0
+    with ask(free_port, operator) as late:
         assert late.post("/api/plant/reset").status_code == 401
-    assert arboleda("stop").wait() == 0
+    assert typed("stop")[0] == 0
     assert up.interrupt() == 0, up.output
     assert "Traceback" not in up.output
 

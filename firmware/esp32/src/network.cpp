@@ -73,6 +73,10 @@ void Network::begin() {
     WiFi.begin(settings_.wifi, settings_.wifi_password);
 #ifdef ARBOLEDA_TLS
     client_.setCACert(kBrokerCa);
+    if (sizeof kBoardCertificate > 1) {
+        client_.setCertificate(kBoardCertificate);
+        client_.setPrivateKey(kBoardKey);
+    }
 #endif
     client_.setServer(settings_.broker, settings_.port);
     client_.setClientId(settings_.robot);

@@ -7,12 +7,18 @@
 
 namespace arboleda {
 
+#ifdef ARBOLEDA_TLS
+constexpr uint16_t kUsualPort = 8883;
+#else
+constexpr uint16_t kUsualPort = 1883;
+#endif
+
 struct Settings {
     char robot[65] = "ra_1";  // its name on MQTT: the first level of every topic, and the client id
     char wifi[33] = "";
     char wifi_password[65] = "";
     char broker[65] = "";
-    uint16_t port = 1883;
+    uint16_t port = kUsualPort;
     char user[65] = "";
     char password[65] = "";
     uint8_t speed_percent = 100;   // of the robot's speed

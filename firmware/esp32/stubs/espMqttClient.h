@@ -60,4 +60,6 @@ class espMqttClientSecure : public MqttClientSetup<espMqttClientSecure> {
 public:
     espMqttClientSecure(uint8_t priority, uint8_t core);
     espMqttClientSecure& setCACert(const char* pem);
+    espMqttClientSecure& setCertificate(const char* pem);
+    espMqttClientSecure& setPrivateKey(const char* pem);
 };

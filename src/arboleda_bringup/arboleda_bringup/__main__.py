@@ -12,7 +12,7 @@ def main() -> int:
     from arboleda_ros.missing import sentence
 
     try:
-        from arboleda.core.errors import ArboledaError
+        from arboleda.model.errors import ArboledaError
 
         from .plan import plan
     except ImportError as error:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from arboleda.app.parts.broker import MQTT_PORT, address
+from arboleda.adapters.broker_login import MQTT_PORT, address
 from arboleda.app.rate import check_rate
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from .arguments import AUTO, EMBEDDED
 

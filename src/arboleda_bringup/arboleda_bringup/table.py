@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from arboleda.app.urdf import root_link
-from arboleda.core.model import Link, PlantModel
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Link, PlantModel
 
 from .choice import Choice
 from .row import Row, Value
@@ -21,7 +21,7 @@ def table(plant: PlantModel, choice: Choice, *, urdf: Callable[[str], str], shar
     """The nodes of a plant; `urdf` describes a robot by its name, `share` is this package's folder."""
     robots = [robot for robot in plant.robots.values() if isinstance(robot, Arm | Mobile)]
     rows = [row for robot in robots for row in _shown(robot, urdf(robot.name))] if choice.describe else []
-    rows += _plant(choice, boards=plant.has_boards)
+    rows += _plant(choice, plant)
     if choice.rviz:
         rows.append(Row(package="rviz2", executable="rviz2", arguments=("-d", f"{share}/{RVIZ_CONFIG}")))
     return rows
@@ -58,15 +58,17 @@ def _placed(robot: Arm | Mobile) -> Row:
     )
 
 
-def _plant(choice: Choice, *, boards: bool) -> list[Row]:
+def _plant(choice: Choice, plant: PlantModel) -> list[Row]:
     """The executables of arboleda_ros, as the plant is put together with these arguments."""
-    rows = []
+    rows, instead = [], choice.sim and bool(plant.driven)  # of drivers
+    boards = plant.has_boards or instead
+    shared: dict[str, Value] = {"virtual": True} if instead else {}
     if boards and choice.sim:
-        rows.append(_part("virtual_devices", choice, broker=choice.broker))
+        rows.append(_part("virtual_devices", choice, broker=choice.broker, **shared))
     if boards:
-        rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address))
+        rows.append(_part("mqtt_bridge", choice, broker=choice.broker_address, **shared))
     if choice.orchestrator:
-        rows.append(_part("orchestrator", choice, dashboard=choice.dashboard))
+        rows.append(_part("orchestrator", choice, dashboard=choice.dashboard, **shared))
     return rows
 
 

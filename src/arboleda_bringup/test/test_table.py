@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.core.errors import StartError
-from arboleda.core.model import Link, PlantModel
+from arboleda.model.errors import StartError
+from arboleda.model.plant_model import Link, PlantModel
 from arboleda.testing import shipped
 from arboleda_bringup.arguments import ARGUMENTS
 from arboleda_bringup.choice import read
@@ -117,6 +117,13 @@ def test_without_rviz_nobody_needs_what_it_draws_unless_asked() -> None:
 @pytest.mark.parametrize("link", [Link.ROS, Link.NONE])
 def test_robots_without_boards_need_no_broker_no_boards_and_no_bridge(link: Link) -> None:
     assert ours(rows(shipped(link=link))) == [ORCHESTRATOR]
+
+
+def test_virtual_boards_play_what_drivers_reach_unless_boards_are_real() -> None:
+    driven = shipped(link=Link.DRIVER)
+    played = [(name, {**more, "virtual": True}) for name, more in (DEVICES, BRIDGE, ORCHESTRATOR)]
+    assert ours(rows(driven)) == played
+    assert ours(rows(driven, sim="false", broker="10.0.0.2:1884")) == [ORCHESTRATOR]
 
 
 @pytest.mark.parametrize(

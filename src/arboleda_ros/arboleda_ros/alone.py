@@ -7,8 +7,8 @@ from typing import Any
 
 from rclpy.node import Node
 
-from arboleda.core.errors import StartError
-from arboleda.core.outside import plain
+from arboleda.model.errors import StartError
+from arboleda.model.outside import plain
 
 _POLL_S = 0.02
 # Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s

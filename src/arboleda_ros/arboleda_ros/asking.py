@@ -9,8 +9,8 @@ from concurrent.futures import TimeoutError as NotInTime
 from typing import Any
 from uuid import uuid4
 
-from arboleda.core.errors import ArboledaError
-from arboleda.core.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
 
 LOG = logging.getLogger("arboleda.ros")
 ANSWER_S = 1.0

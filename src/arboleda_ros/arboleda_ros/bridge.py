@@ -14,10 +14,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import String, UInt32
 
-from arboleda.core.commands import Command
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Heartbeat, Report
-from arboleda.core.model import Link, PlantModel, Robot
+from arboleda.model.commands import Command
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.wire import epochs, rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection

@@ -9,14 +9,14 @@ from dataclasses import replace
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32MultiArray, MultiArrayDimension, String, UInt8
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.counting import counted
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState, Robot
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.declared import Device, Told
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.counting import counted
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
 from arboleda.wire.status import from_label, to_label

@@ -14,9 +14,9 @@ from rclpy.context import Context
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
-from arboleda.core.errors import StartError
-from arboleda.core.messages import Event
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import StartError
+from arboleda.model.messages import Event
+from arboleda.model.plant_model import PlantModel
 from arboleda.wire.hop import FromPlant
 
 from .bridge import BridgePort

@@ -15,11 +15,13 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
+from arboleda.adapters.seldom import Seldom
 from arboleda.app import view_text
-from arboleda.app.seldom import Seldom
-from arboleda.core.commands import Command
-from arboleda.core.errors import ArboledaError, PayloadError
-from arboleda.core.messages import (
+from arboleda.kinds.arm import Arm
+from arboleda.kinds.declared import Device
+from arboleda.model.commands import Command
+from arboleda.model.errors import ArboledaError, PayloadError
+from arboleda.model.messages import (
     Event,
     Heartbeat,
     Interference,
@@ -30,10 +32,8 @@ from arboleda.core.messages import (
     TaskChanged,
     TaskRequest,
 )
-from arboleda.core.model import Evidence, Link, PlantModel, Robot
-from arboleda.core.sentence import in_json
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device
+from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
+from arboleda.model.sentence import in_json
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
@@ -66,24 +66,23 @@ class OrchestratorPort(Port):
         self, node: Node, model: PlantModel, on_event: Callable[[Event], None], clock: Callable[[], float]
     ) -> None:
         super().__init__(node, clock)
-        self._robots = model.robots
+        robots = [robot for robot in model.robots.values() if robot.link is not Link.DRIVER]
+        self._robots = {robot.name: robot for robot in robots}
         self._on_event = on_event
         speak = partial(self._speak, profile=qos.COMMAND, alone=True)
         self._labelled = {
-            robot.name: speak(*convert.ordered(robot))
-            for robot in model.robots.values()
-            if robot.link is Link.MQTT
+            robot.name: speak(*convert.ordered(robot)) for robot in robots if robot.link is Link.MQTT
         }
         self._commands = {
             (robot.name, kind): self._plain(robot, kind, speak)
-            for robot in model.robots.values()
+            for robot in robots
             for kind in convert.commands_of(robot)
         }
         self._senders = Senders(node, clock)
         self._others = Seldom()  # a stream of goals is one piece of news
         self._own = {
             (robot.name, kind): OwnTopic()
-            for robot in model.robots.values()
+            for robot in robots
             if robot.link is Link.ROS
             for kind in convert.commands_of(robot)
         }
@@ -97,7 +96,7 @@ class OrchestratorPort(Port):
         self._asker = Asker(on_event, clock)
         self._verbs = VerbServices(node, self._asker)
         self._offer = self._offered([cell.name for cell in model.cells])
-        for robot in model.robots.values():
+        for robot in robots:
             self._hear(robot)
 
     def send(self, message: Command | Notice) -> None:

@@ -15,8 +15,8 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-from arboleda.app.seldom import Seldom
-from arboleda.core.errors import PayloadError
+from arboleda.adapters.seldom import Seldom
+from arboleda.model.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses

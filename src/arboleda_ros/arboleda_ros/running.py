@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import FrameType
@@ -15,12 +16,14 @@ from typing import Any
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
+from arboleda.adapters.broker_login import login
+from arboleda.app.alarm_options import alarm_options
 from arboleda.app.build import App, Options, build
-from arboleda.app.config import load
+from arboleda.app.config import load_recorded
 from arboleda.app.log_file import LogFile
 from arboleda.app.log_queue import log_to
-from arboleda.app.parts.broker import login
-from arboleda.core.errors import ArboledaError, StartError
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.plant_model import Link as LinkKind
 
 from . import missing
 from .link import Link, connect
@@ -35,6 +38,7 @@ _PARAMETERS: dict[str, tuple[Value, str]] = {
     "plant": ("", "plant file; empty: the shipped plant"),
     "broker": ("", "MQTT broker as HOST:PORT; empty: 127.0.0.1:1883; virtual_devices: or 'embedded'"),
     "rate": (1.0, "speed of the virtual devices, 1 is real"),
+    "virtual": (False, "devices with a driver of their own have virtual boards instead"),
     "state_dir": ("", "where the plant keeps its state; empty: $XDG_STATE_HOME/arboleda/<plant name>"),
 }
 _DASHBOARD: dict[str, tuple[Value, str]] = {
@@ -99,7 +103,10 @@ def _complain(sentence: str) -> None:
 
 def _app(link: Link, name: str) -> App:
     values = _parameters(link.node(name), name)
-    model = load(Path(values["plant"]) if values["plant"] else None)
+    model, recording = load_recorded(Path(values["plant"]) if values["plant"] else None)
+    if values["virtual"]:
+        model = model.on_boards(LinkKind.DRIVER)
+        recording = recording and replace(recording, virtual=True)
     parts = {_PARTS[name]}
     if values["broker"] == EMBEDDED:
         parts.add(_embedded(name))
@@ -109,10 +116,12 @@ def _app(link: Link, name: str) -> App:
         link=link,
         broker=None if "broker" in parts else values["broker"] or None,
         credentials=login(),
+        alarms=alarm_options(),
         rate=values["rate"],
         page="web" in parts,
         log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
+        recording=recording,
     )
     return build(model, parts, options)
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.serialization import deserialize_message
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Report
-from arboleda.core.model import Robot
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
 from arboleda.wire.status import Status, from_status
 
 

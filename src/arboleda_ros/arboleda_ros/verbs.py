@@ -7,7 +7,7 @@ from functools import partial
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 from .asking import Asker
 

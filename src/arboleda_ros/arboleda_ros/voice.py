@@ -14,9 +14,9 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, UInt8
 
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState, Robot
 from arboleda.kinds.arm import Arm
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire.status import to_status
 
 from . import convert

@@ -12,7 +12,7 @@ import pytest
 
 from arboleda.testing.domains import Domain
 
-TYPED = ["test_execute_task.py", "test_execute_task_ends.py", "test_typed.py"]
+TYPED = ["test_execute_task.py", "test_execute_task_ends.py", "test_named_values.py", "test_typed.py"]
 collect_ignore = [] if importlib.util.find_spec("arboleda_interfaces") else TYPED
 
 RATE = 10.0
@@ -83,7 +83,7 @@ class Client:
 class Goal:
     """One goal of a client, from the request on."""
 
-    def __init__(self, client: Client, server: Any, **fields: str) -> None:
+    def __init__(self, client: Client, server: Any, **fields: Any) -> None:
         from arboleda_interfaces.action import ExecuteTask
 
         self.client = client
@@ -165,7 +165,7 @@ def execute(client: Client) -> Callable[..., Goal]:
 
     server = ActionClient(client.node, ExecuteTask, "plant/execute_task")
 
-    def go(**fields: str) -> Goal:
+    def go(**fields: Any) -> Goal:
         client.until(server.server_is_ready, "there is no action server")
         return Goal(client, server, **fields)
 

@@ -14,8 +14,8 @@ from std_msgs.msg import String, UInt8
 from std_srvs.srv import Trigger
 
 from arboleda.app.config import load
-from arboleda.core.errors import TextError
 from arboleda.core.text import parse
+from arboleda.model.errors import TextError
 
 SUCCEEDED, CANCELED, ABORTED = (
     GoalStatus.STATUS_SUCCEEDED,

@@ -12,7 +12,7 @@ from action_msgs.srv import CancelGoal
 from unique_identifier_msgs.msg import UUID
 
 from arboleda.app.config import load
-from arboleda.core.messages import (
+from arboleda.model.messages import (
     OperatorAnswer,
     OperatorRequest,
     Reason,
@@ -166,6 +166,6 @@ def test_a_plant_that_is_stopped_ends_what_runs_and_what_waits(
     running, waiting = execute(text="sis_a 0B 7"), execute(text="sis_a 0A 1")
     running.executing()
     plant.stop()
-    assert running.end()[1].sentence == "the plant was asked to end"
+    assert running.end()[1].sentence == "the plant has ended before this task did"
     assert waiting.end()[1].sentence == "the plant has ended before this task did"
     assert {goal.end()[0] for goal in (running, waiting)} == {GoalStatus.STATUS_ABORTED}

@@ -10,7 +10,7 @@ import pytest
 from arboleda_interfaces.msg import CellState, TaskList
 from arboleda_interfaces.srv import CellCommand, SubmitTask
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 
 @pytest.fixture(scope="module", autouse=True)

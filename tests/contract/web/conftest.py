@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
@@ -11,16 +12,22 @@ import httpx
 import pytest
 from fastapi import FastAPI, WebSocket, WebSocketDisconnect
 
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.server_tls import ServerTls, pinned
+from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
-from arboleda.core.messages import OperatorAnswer, Verb
 from arboleda.core.text import spelled
+from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.sentence import Phrase
 from arboleda.testing import shipped
+from arboleda.views.oee import Kept, Oee, Run, Work, oee
 
+PATIENCE_S = 30.0  # of a client, with a server that shares a busy machine
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
 TASK = QUEUED | {"reason": None, "elapsed_s": None}
 VIEW = {"plant": "demo", "epoch": 7, "at": 1.0, "ending": False, "cells": [], "robots": [], "zones": []}
@@ -34,6 +41,27 @@ OFFER = {
     "example": "saw cut 5",
 }
 OFFERS = [{"cell": "saw", "recipes": [OFFER | {"parameters": [WIDTH]}]}]
+LATE = Phrase("late", "{robot} was late")(robot="ra1")
+FAILED = Work(cell="sis_a", order="sis_a 0B 7", state="failed", accepted_s=0.0, started_s=0.0, ended_s=50.0)
+RAN = Run(since_s=0.0, seen_s=100.0, ended=True)
+FIGURES = Kept(works=[FAILED], runs=[RAN], downs=[], shortest={})
+KEPT = [
+    TaskRow(
+        number=number,
+        id=f"t-{number}",
+        text=f"{cell} 0B 7",
+        cell=cell,
+        recipe="storage",
+        state="failed",
+        reason="deadline",
+        sentence=str(LATE),
+        said=json.dumps(LATE.data()),
+        accepted_s=1000.0 + number,
+        started_s=1001.0 + number,
+        ended_s=None,
+    )
+    for number, cell in ((2, "sis_b"), (1, "sis_a"))
+]
 TOKENS = {Role.VIEWER: "v" * 32, Role.OPERATOR: "o" * 32}
 
 
@@ -42,7 +70,10 @@ class Plant:
 
     def __init__(self) -> None:
         self.texts: list[str] = []
+        self.asked_by: list[str] = []
         self.forms: list[tuple] = []
+        self.queries: list[TaskQuery] = []
+        self.oee_queries: list[OeeQuery] = []
         self.answer: dict | Exception | None = QUEUED
         self.view: dict | Exception = VIEW
         self.acts: list[tuple[Verb, str, bool]] = []
@@ -65,8 +96,17 @@ class Plant:
     def find(self, task: str) -> dict | None:
         return QUEUED if task == QUEUED["id"] else None
 
-    def submit(self, text: str) -> Future:
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        self.queries.append(query)
+        return [row for row in KEPT if query.cell in ("", row.cell)]
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        self.oee_queries.append(query)
+        return [oee("sis_a", FIGURES, 0.0, 100.0)]
+
+    def submit(self, text: str, asked_by: str) -> Future:
         self.texts.append(text)
+        self.asked_by.append(asked_by)
         future: Future = Future()
         if isinstance(self.answer, Exception):
             future.set_exception(self.answer)
@@ -97,11 +137,12 @@ class Plant:
 class Web:
     """A running server: where, and clients of it."""
 
-    def __init__(self, server: Server, door: Door) -> None:
+    def __init__(self, server: Server, door: Door, tls: ServerTls | None = None) -> None:
         self.port = port = server.start()
         self.server = server
         self.door = door
-        self.origin = f"http://127.0.0.1:{port}"
+        self.origin = f"{'https' if tls else 'http'}://127.0.0.1:{port}"
+        self.believing = pinned(tls.pem) if tls else True
         self.cookie = f"arboleda_{port}"
         self._clients: list[httpx.Client] = []
 
@@ -109,7 +150,13 @@ class Web:
         """Somebody with a token, a tool; or with a session, a browser; or with neither."""
         if token is not None:
             headers["authorization"] = f"Bearer {TOKENS[token]}"
-        made = httpx.Client(base_url=self.origin, trust_env=False, headers=headers)
+        made = httpx.Client(
+            base_url=self.origin,
+            trust_env=False,
+            headers=headers,
+            timeout=PATIENCE_S,
+            verify=self.believing,
+        )
         if login is not None:
             made.headers["origin"] = self.origin
             made.cookies.set(self.cookie, self.session(login))
@@ -153,6 +200,7 @@ def running(
     mount: Callable[[FastAPI], None] = echo,
     sockets: int = limits.SOCKETS,
     streams: int = limits.STREAMS,
+    tls: ServerTls | None = None,
     **options: Any,
 ) -> Iterator[Web]:
     """As on one's own machine; with tokens as on a network. Both listen to 127.0.0.1. `mount` adds pages."""
@@ -160,9 +208,10 @@ def running(
     app = make_app(plant, streams=streams)
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
-    guarded = Guard(app, names_for(bound, public_url), door, sockets=sockets)
-    server = Server(guarded, **{"port": 0, **options})
-    web = Web(server, door)
+    names = names_for(bound, public_url, scheme="https" if tls else "http")
+    guarded = Guard(app, names, door, sockets=sockets)
+    server = Server(guarded, **{"port": 0, **options}, tls=tls)
+    web = Web(server, door, tls)
     try:
         yield web
     finally:

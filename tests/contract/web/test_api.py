@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.errors import ArboledaError, QueueFull, TextError
-from arboleda.core.messages import OperatorAnswer, Verb
-from arboleda.core.sentence import Phrase
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.task_rows import TaskQuery
+from arboleda.model.errors import ArboledaError, QueueFull, TextError
+from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.sentence import Phrase
 
 from .conftest import OFFERS, QUEUED, TASK, VIEW
 
@@ -19,11 +21,79 @@ def test_the_view_is_the_plant(web):
 def test_a_good_text_is_queued(web, plant):
     answer = web.post("/api/tasks", json={"text": "sis_a 0B 7"})
     assert (answer.status_code, answer.json()) == (202, QUEUED)
-    assert plant.texts == ["sis_a 0B 7"]
+    assert (plant.texts, plant.asked_by) == (["sis_a 0B 7"], ["http"])
 
 
 def test_what_cells_offer_is_told_as_forms(web):
     assert web.get("/api/recipes").json() == OFFERS
+
+
+def test_the_history_has_tasks_with_why_they_failed_as_data(web, plant):
+    (row,) = web.get("/api/history?cell=sis_a").json()
+    assert (row["id"], row["state"], row["sentence"]) == ("t-1", "failed", "ra1 was late")
+    assert (row["key"], row["values"], row["accepted_s"]) == ("late", {"robot": "ra1"}, 1001.0)
+
+
+def test_the_history_is_asked_for_what_the_query_says(web, plant):
+    said = "cell=sis_a&state=done&recipe=storage&words=lot&since=5&until=9.5&before=7&limit=3"
+    assert web.get(f"/api/history?{said}").status_code == 200
+    assert plant.queries == [
+        TaskQuery(
+            cell="sis_a",
+            state="done",
+            recipe="storage",
+            words="lot",
+            since_s=5,
+            until_s=9.5,
+            before=7,
+            limit=3,
+        )
+    ]
+
+
+def test_the_history_is_a_table_for_other_programs(web):
+    answer = web.get("/api/history.csv")
+    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
+    names, *rows = answer.text.splitlines()
+    assert names.startswith("number,id,text,cell,recipe,state,reason,sentence")
+    assert [row.split(",")[1] for row in rows] == ["t-2", "t-1"]
+
+
+@pytest.mark.parametrize(
+    ("query", "sentence"),
+    [
+        ("limit=0", "'limit' is '0': input should be greater than or equal to 1."),
+        ("state=lost", "'state' is 'lost': input should be"),
+        ("since=monday", "'since' is 'monday': input should be a valid number"),
+        ("colour=red", "'colour' is nothing to ask for; there are cell, state, recipe, words, since"),
+    ],
+)
+@pytest.mark.parametrize("route", ["history", "history.csv"])
+def test_a_wrong_query_is_refused_with_what_is_wrong(web, plant, route, query, sentence):
+    answer = web.get(f"/api/{route}?{query}")
+    assert answer.status_code == 422 and answer.json()["sentence"].startswith(sentence)
+    assert plant.queries == []
+
+
+def test_the_oee_is_told_with_what_is_missing_of_it(web, plant):
+    (row,) = web.get("/api/oee?cell=sis_a&since=5&until=9.5").json()
+    assert plant.oee_queries == [OeeQuery(cell="sis_a", since_s=5, until_s=9.5)]
+    assert (row["availability"], row["quality"], row["performance"], row["oee"]) == (1.0, 0.0, None, None)
+    assert row["missing"].startswith("0 of 1 tasks can be compared")
+
+
+@pytest.mark.parametrize(
+    ("query", "sentence"),
+    [
+        ("since=monday", "'since' is 'monday': input should be a valid number"),
+        ("since=nan", "'since' is 'nan': input should be a finite number"),
+        ("state=done", "'state' is nothing to ask for; there are cell, since, until."),
+    ],
+)
+def test_a_wrong_time_of_the_oee_is_refused(web, plant, query, sentence):
+    answer = web.get(f"/api/oee?{query}")
+    assert answer.status_code == 422 and answer.json()["sentence"].startswith(sentence)
+    assert plant.oee_queries == []
 
 
 def test_a_form_is_queued_as_the_text_that_it_spells(web, plant):

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
 
 import pytest
 
+from arboleda.adapters.web import stream
 from arboleda.app import tokens
 from arboleda.app.client import PlantClient, Refused
 from arboleda.app.state import StateDir
-from arboleda.core.errors import ArboledaError, QueueFull, TextError
-from arboleda.core.messages import Verb
+from arboleda.model.errors import ArboledaError, QueueFull, TextError
+from arboleda.model.messages import Verb
 
-from .conftest import QUEUED, VIEW
+from .conftest import QUEUED, TASK, VIEW
 
 
 @pytest.fixture
@@ -22,10 +24,11 @@ def state(port, tmp_path):
         yield made
 
 
-def test_the_client_submits_and_looks(state, monkeypatch):
+def test_the_client_submits_and_looks(state, plant, monkeypatch):
     monkeypatch.setenv("http_proxy", "http://127.0.0.1:9")
     client = PlantClient(state.path)
     assert client.submit("sis_a 0B 7") == QUEUED
+    assert plant.asked_by == ["command"]
     assert client.status() == VIEW
     assert client.task("t-1") == QUEUED
 
@@ -46,6 +49,28 @@ def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
     plant.refusal = "ra1 still moves."
     with pytest.raises(Refused, match=r"^ra1 still moves\.$"):
         client.operate(Verb.CLEAR, "sis_a")
+
+
+def test_who_follows_a_task_listens_anew_where_its_stream_was_cut(state, monkeypatch):
+    told = [
+        VIEW,
+        VIEW | {"tasks": [TASK | {"state": "running"}]},
+        VIEW | {"tasks": [TASK | {"state": "done"}]},
+    ]
+
+    async def tell(*_):
+        yield f"event: snapshot\ndata: {json.dumps(told.pop(0))}\n\n"
+
+    monkeypatch.setattr(stream, "tell", tell)
+    assert [now["state"] for now in PlantClient(state.path).follow(QUEUED)] == ["running", "done"]
+
+
+def test_who_may_not_listen_is_told_why(port, tmp_path, serve):
+    web = serve(streams=0)
+    with StateDir(tmp_path / "full") as made:
+        made.announce(web.port)
+        with pytest.raises(ArboledaError, match="No more than 0 may listen at a time"):
+            next(PlantClient(made.path).changes())
 
 
 def test_without_a_plant_the_client_says_so(tmp_path):

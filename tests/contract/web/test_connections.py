@@ -13,7 +13,7 @@ import pytest
 
 from arboleda.adapters.web import connections, server
 from arboleda.adapters.web.server import Server
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from .conftest import VIEW, Web
 

@@ -7,7 +7,7 @@ import re
 import httpx
 
 from arboleda.adapters.web import listing
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 
 def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.Client) -> None:
@@ -15,6 +15,9 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
     assert set(api["paths"]) == {
         "/api/plant",
         "/api/recipes",
+        "/api/history",
+        "/api/history.csv",
+        "/api/oee",
         "/api/tasks",
         "/api/tasks/{task_id}",
         "/api/plant/{verb}",

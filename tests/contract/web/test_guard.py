@@ -10,7 +10,7 @@ import pytest
 
 from arboleda.adapters.web import limits
 from arboleda.adapters.web.auth import Role
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 from .conftest import TOKENS, VIEW
 

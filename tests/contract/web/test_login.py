@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.adapters.web import auth, limits
 from arboleda.adapters.web.auth import Door, Role
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from .conftest import TOKENS
 

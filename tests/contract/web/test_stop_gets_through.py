@@ -16,7 +16,7 @@ import pytest
 from fastapi import FastAPI
 
 from arboleda.adapters.web.auth import Role
-from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.model.messages import OperatorAnswer, Verb
 
 from .conftest import TOKENS, VIEW, Plant, Web
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from arboleda.adapters.web import connections, stream
+from arboleda.adapters.web import connections, limits
 from arboleda.adapters.web.auth import Role
 
 from .conftest import TASK, VIEW, Plant, Web
@@ -85,7 +85,7 @@ def test_whoever_was_away_too_long_gets_the_whole_plant(web: httpx.Client, last:
 def test_silence_is_filled_with_comments(
     web: httpx.Client, plant: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stream, "BEAT_S", 0.05)
+    monkeypatch.setattr(limits, "BEAT_S", 0.05)
     with listening(web) as listener:
         listener.event()
         assert listener.block() == [": still here"]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from arboleda.adapters import descriptors
 from arboleda.adapters.descriptors import divided
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 
 @given(limit=st.integers(0, 5000), boards=st.integers(2, 300))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.app import config
-from arboleda.core.model import PlantModel
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import PlantModel
 
 ROOT = Path(__file__).parents[3]
 TENDER = ROOT / "examples/machine_tending/models/tender.urdf"

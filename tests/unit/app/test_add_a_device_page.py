@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -12,13 +13,16 @@ from typer.testing import CliRunner
 from arboleda.app import config
 from arboleda.app.cli import cli
 from arboleda.app.plant_file.recipe_check import MOST
-from arboleda.core.errors import ConfigError
+from arboleda.kinds.declared import Device
+from arboleda.kinds.shipped import SHIPPED
+from arboleda.model.errors import ConfigError
 from arboleda.recipes.authoring import Kit
 
 ROOT = Path(__file__).parents[3]
 DEVICE = (ROOT / "docs/how-to/add-a-device.md").read_text("utf-8")
 RECIPE = (ROOT / "docs/how-to/write-a-recipe.md").read_text("utf-8")
-KINDS, CELLS = (part.partition("```")[0] for part in DEVICE.split("```yaml\n")[1:])
+KINDS, CELLS, SHOP = (part.partition("```")[0] for part in DEVICE.split("```yaml\n")[1:])
+SAW = DEVICE.split("```python\n")[1].partition("```")[0]
 FUNCTION = RECIPE.split("```python\n")[1].partition("```")[0]
 LAB = ROOT / "examples/lab_bench"
 
@@ -63,6 +67,40 @@ def test_the_plant_of_the_page_is_one_and_its_mistakes_are_told(folder: Path) ->
         text = text.replace(old, new, 1)
     Path("my_lab.yaml").write_text(text, "utf-8")
     assert problems(Path("my_lab.yaml")) == said(DEVICE, "my_lab.yaml")
+
+
+def test_the_kind_of_the_page_is_one_and_its_mistakes_are_told(folder: Path) -> None:
+    Path("kinds").mkdir()
+    kind, plant = Path("kinds/saw.py"), Path("my_shop.yaml")
+    kind.write_text(SAW, "utf-8")
+    Path("recipes.py").write_text(
+        "from arboleda.recipes import recipe\n\n"
+        '@recipe("cut")\ndef cut(cell):\n    return cell.device("fast").cut(mm=50, blade="bone")\n',
+        "utf-8",
+    )
+    plant.write_text(SHOP, "utf-8")
+    fast = config.load(plant).robots["fast"]
+    assert isinstance(fast, Device) and fast.kind.verbs["cut"].takes_s == 3.0
+    for old, new in (("mm_s: 10}", "mms: 10}"), ("mm_s: 100", "mm_s: -1")):
+        assert old in SHOP
+        plant.write_text(plant.read_text("utf-8").replace(old, new, 1), "utf-8")
+    found = problems(plant)
+    plant.write_text(SHOP, "utf-8")
+    kind.write_text(SAW.replace("mm / settings.mm_s", "mm / 0 / settings.mm_s"), "utf-8")
+    found += [each for each in problems(plant) if "wood" in each]
+    assert found == said(DEVICE, "my_shop.yaml") + said(DEVICE, "saw.py")
+
+
+def test_the_page_names_every_kind_that_comes_with_it_and_its_settings() -> None:
+    for each in SHIPPED:
+        (row,) = [line for line in DEVICE.splitlines() if line.startswith(f"| `{each.name}` |")]
+        made = each.of(None if each.settings is None else each.settings())
+        for verb in made.verbs.values():
+            assert f"`{verb.name}({', '.join(name for name, _ in verb.parameters)})`" in row
+        for setting in fields(each.settings) if each.settings else ():
+            default = setting.default
+            listed = f"[{', '.join(default)}]" if isinstance(default, tuple) else f"{default:g}"
+            assert f"`{setting.name}: {listed}`" in row
 
 
 def test_the_recipe_of_the_page_is_that_of_the_example_and_its_mistakes_are_told(folder: Path) -> None:

@@ -20,8 +20,8 @@ from arboleda.app.plant_file.own_models import (
 )
 from arboleda.app.plant_file.shapes import ModelShape, OffsetShape
 from arboleda.app.urdf import robot_urdf
-from arboleda.core.errors import ConfigError
 from arboleda.dashboard.twin import bodies, kinematics
+from arboleda.model.errors import ConfigError
 from arboleda.testing import Sim
 
 PAGE = (Path(__file__).parents[3] / "docs/how-to/add-an-arm.md").read_text("utf-8")

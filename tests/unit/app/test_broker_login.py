@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.adapters.mqtt import Credentials
-from arboleda.app.parts.broker import PASSWORD, USER, login
+from arboleda.adapters.broker_login import PASSWORD, USER, Credentials, login
 
 
 def test_the_environment_names_user_and_password(monkeypatch: pytest.MonkeyPatch) -> None:

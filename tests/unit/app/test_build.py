@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from arboleda.app.build import PARTS, Options, build
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 from arboleda.testing import shipped
 
 
@@ -29,3 +31,35 @@ def test_a_part_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path
     with pytest.raises(StartError, match="there is no part robots; there are broker, devices"):
         build(shipped(), {"bridge", "robots"}, Options(state_dir=tmp_path / "state", page=False))
     assert not (tmp_path / "state").exists()
+
+
+def test_the_firmwares_boards_are_refused_at_a_broker_with_tls(tmp_path: Path) -> None:
+    options = Options(state_dir=tmp_path / "state", page=False, firmware=True, broker="mqtts://broker.lab")
+    with pytest.raises(StartError, match="speak no TLS"):
+        build(shipped(), {"devices", "bridge", "orchestrator"}, options)
+
+
+@pytest.fixture
+def thawed() -> Iterator[None]:
+    """Nothing is left out of garbage collection, as where a plant is a process of its own."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
+def test_what_was_there_before_a_plant_starts_is_left_out_of_garbage_collection(
+    thawed: None, tmp_path: Path
+) -> None:
+    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    app.start()
+    assert gc.get_freeze_count() > 0
+    app.stop()
+    assert gc.get_freeze_count() == 0
+
+
+def test_a_plant_in_a_process_that_has_seen_to_that_leaves_it_so(tmp_path: Path) -> None:
+    gc.freeze()
+    app = build(shipped(), {"orchestrator"}, Options(state_dir=tmp_path / "state", page=False))
+    app.start()
+    app.stop()
+    assert gc.get_freeze_count() > 0

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.model import Evidence, Link, MqttVersion, PlantModel, Timing
+from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
 PATHS = {

@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.app.plant_file import shapes
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 PAGE = (Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md").read_text("utf-8")
 EXAMPLE = PAGE.split("```yaml\n")[1].split("```")[0]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 
 PLANT = """\
 name: small

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.app import config, layout_check
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 WORD = re.compile(r"[^\s<>=\"/]+")
@@ -148,3 +148,8 @@ def test_missing_lines_of_a_urdf(folder: Path, data: st.DataObject) -> None:
     first = data.draw(st.integers(0, len(lines) - 1))
     last = data.draw(st.integers(first, len(lines)))
     read_model(folder, "".join(lines[:first] + lines[last:]))
+
+
+def test_a_foot_that_is_too_thin_to_be_drawn(folder: Path) -> None:
+    assert 'radius="0.11"' in urdf()
+    read_model(folder, urdf().replace('radius="0.11"', 'radius="1E-10"', 1))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 
 def write(tmp_path: Path, raw: bytes) -> Path:

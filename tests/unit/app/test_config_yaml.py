@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.app.plant_file.yaml_marks import parse
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 SCALARS = {
     "on": "on",

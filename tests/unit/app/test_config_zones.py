@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import Crossing, PlantModel, Pose, Retry, Timing
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Crossing, PlantModel, Pose, Retry, Timing
 from arboleda.recipes.storage_cell import StorageCell
 
 DOCS = Path(__file__).parents[3] / "docs" / "how-to" / "plant-file.md"

@@ -11,9 +11,9 @@ import pytest
 
 from arboleda.app.conformance.bench import Jostle, Send
 from arboleda.app.conformance.judge import CHECKS, Judge
-from arboleda.core.commands import StopMode
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import Arm, Joint
+from arboleda.model.commands import StopMode
+from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 from arboleda.app import config
 from arboleda.app.cli import cli
 from arboleda.app.rate import at_rate
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, Evidence, PlantModel
 from arboleda.kinds.declared import Device, Slot
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Cell, Evidence, PlantModel
 
 from ..kinds import lab
 
@@ -136,9 +136,9 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "{clamped: $on}",
         "{lid: open}",
         "9:75: ",
-        "must set exactly one fact, and that a bool",
+        "must set exactly one fact that is a bool",
     ),
-    "never lets go": ("{clamped: $on}", "{clamped: true}", "9:", "has no parameter but the one that it sets"),
+    "never lets go": ("{clamped: $on}", "{clamped: true}", "5:5: ", "nothing lets go of the part"),
     "keeps what it holds": (
         "with: {on: bool}, sets: {clamped: $on}",
         "sets: {clamped: true}",
@@ -182,9 +182,10 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "kind: oven",
         "kind: ovn",
         "24:20: ",
-        'must be oven, eye, arm, mobile or person, is "ovn"; did you mean "oven"?',
+        'conveyor, camera or sensor, is "ovn"; did you mean "oven"?',
     ),
     "an arm": ("kind: oven", "kind: arm", "24:13: ", 'the key "model" is missing'),
+    "empty kind": ("kind: oven", "kind: ", "24:20: ", "must be text, is empty"),
     "no kind": ("{kind: oven}", "{mqtt: oven_1}", "24:13: ", 'the key "kind" is missing'),
     "role": ("      oven: {k", "      Oven: {k", "24:7: ", "a role must be a name of at most 64"),
     "evidence": ("evidence: ids", "evidence: id", "25:35: ", 'must be ids, facts, joints or state, is "id"'),

@@ -5,7 +5,7 @@ from concurrent.futures import Future
 import pytest
 
 from arboleda.app.errand import Errand
-from arboleda.core.messages import Reason, TaskChanged, TaskState
+from arboleda.model.messages import Reason, TaskChanged, TaskState
 
 
 class FakePlant:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.adapters.mqtt import Address, Credentials
+from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.app.parts.linux_boards import LinuxBoards, on_linux
-from arboleda.core.errors import StartError
-from arboleda.core.model import Evidence, Link, PlantModel
+from arboleda.model.errors import StartError
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.testing import shipped
 
 

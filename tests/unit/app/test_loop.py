@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from arboleda.app.loop import Loop
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 
 
 class Echo:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from arboleda.adapters.store import Store
-from arboleda.app.memory import remembered
-from arboleda.core.errors import StartError
-from arboleda.core.messages import Fact, Remember
+from arboleda.app.memory import kept_tasks, remembered
+from arboleda.model.errors import StartError
+from arboleda.model.messages import Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
+from arboleda.model.sentence import OWN, Phrase, retold
 
 
 @pytest.fixture
@@ -25,6 +27,9 @@ def test_what_was_kept_is_remembered(store: Store) -> None:
         Fact.EFFECTOR: {"ra1": "on"},
         Fact.QUARANTINE: {"mesa": "gone"},
         Fact.STORED: {"sis_a": "0 7"},
+        Fact.DISPLACED: {"rm": "true"},
+        Fact.BOOT: {"rm": "17"},
+        Fact.STEP: {"lot-1": "{}"},
     }
     for fact, values in kept.items():
         for name, value in values.items():
@@ -41,3 +46,38 @@ def test_a_value_that_means_nothing_is_refused_for_it_may_have_been_a_latch(
     with pytest.raises(StartError, match="which means nothing: put a copy") as refused:
         remembered(store)
     assert str(refused.value).isprintable()
+
+
+def test_kept_tasks_come_in_their_order_with_times_of_this_start(store: Store) -> None:
+    def change(id: str, state: TaskState, **why: object) -> TaskChanged:
+        return TaskChanged(task=id, text="sis_a 0B 1", cell="sis_a", state=state, **why)  # type: ignore[arg-type]
+
+    late = Phrase("late", "{robot} took {seconds} s")(robot="ra1", seconds=3)
+    store.task(change("a", TaskState.QUEUED), "storage", 1000.0)
+    store.task(change("b", TaskState.QUEUED), "storage", 1001.0)
+    store.task(change("a", TaskState.RUNNING), "storage", 1002.0)
+    store.task(change("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=late), "storage", 1005.0)
+    a, b = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
+    assert (a.id, a.state, a.started_at, a.ended_at) == ("a", TaskState.FAILED, 42.0, 45.0)
+    assert (b.id, b.state, b.started_at, b.failure) == ("b", TaskState.QUEUED, None, None)
+    assert (a.attempts, b.attempts) == (1, 0)
+    assert a.failure is not None and a.failure.reason is Reason.DEADLINE
+    assert str(a.failure.sentence) == "ra1 took 3 s"
+    assert a.failure.sentence.told(lambda phrase: {"late": "{robot} tardó {seconds} s"}[phrase.key]) == (
+        "ra1 tardó 3 s"
+    )
+
+
+def test_a_task_comes_back_with_what_was_answered(store: Store) -> None:
+    change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
+    store.task(change, "weigh", 1000.0)
+    heard = TaskAnswer(by="scale", asked="weigh", answer="enough")
+    store.task(replace(change, state=TaskState.DONE), "weigh", 1002.0, answers=[heard])
+    (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
+    assert task.answers == (heard,)
+
+
+def test_a_sentence_that_was_kept_with_braces_is_said_as_it_was() -> None:
+    assert str(retold("{not a slot}", OWN(text="{not a slot}").data())) == "{not a slot}"
+    with pytest.raises(ValueError, match="is no sentence"):
+        retold("said", {"key": "x"})

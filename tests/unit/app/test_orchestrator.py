@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import pytest
 
+from arboleda.adapters.broker_login import address
 from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import TaskQuery, answers_of
 from arboleda.app.build import Options, build
 from arboleda.app.parts import orchestrator
 from arboleda.app.parts.bridge import BridgePart
-from arboleda.app.parts.broker import OtherBroker, address
+from arboleda.app.parts.broker import OtherBroker
 from arboleda.app.parts.orchestrator import Orchestrator
 from arboleda.app.parts.slices import PAUSE_S, SLICE_S
-from arboleda.core.commands import Home, Stop, StopMode
-from arboleda.core.errors import ArboledaError, StartError
-from arboleda.core.messages import (
+from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.commands import Home, Stop, StopMode
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.messages import (
     Absence,
     Fact,
     Heartbeat,
@@ -22,13 +29,18 @@ from arboleda.core.messages import (
     OperatorAnswer,
     OperatorRequest,
     Remember,
+    Report,
+    SystemStart,
+    TaskAnswer,
+    TaskChanged,
+    TaskState,
     Undelivered,
     Verb,
 )
-from arboleda.core.plant import Plant
-from arboleda.core.sentence import OWN
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.sentence import OWN
+from arboleda.model.task import Order, Task
 from arboleda.testing.plants import shipped
+from arboleda.wire import status
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
 ON = SetEffector(id="7-1", robot="ra1", on=True)
@@ -95,6 +107,7 @@ def break_disk(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(store, "keep", fail)
     monkeypatch.setattr(store, "journal", fail)
+    monkeypatch.setattr(store, "task", fail)
 
 
 def test_a_fact_is_kept_before_the_next_message_leaves(plant):
@@ -102,16 +115,24 @@ def test_a_fact_is_kept_before_the_next_message_leaves(plant):
     assert plant.robots.seen == [(Heartbeat(epoch=7), {}), (ON, {"ra1": "switching"})]
 
 
+def test_a_reaction_is_timed_from_the_last_event_to_the_command_that_left(plant, monkeypatch):
+    monkeypatch.setattr(orchestrator.clock, "seconds", lambda: 100.25)
+    reactions = []
+    plant.reacted = reactions.append
+    for at, messages in ((99.0, [ON]), (99.5, [Heartbeat(epoch=7)])):
+        for event_at in (at - 0.5, at):
+            plant.loop.post(Report(at=event_at, robot="ra1"))
+        turn(plant, *messages)
+    turn(plant, ON)
+    assert reactions == [1.25]
+
+
 def test_a_plant_is_told_what_the_one_before_it_kept(plant, store):
     turn(plant, GRIP)
     turn(plant, Remember(fact=Fact.LATCH, name="ra1", value="on"))
     after = Orchestrator(shipped("sis_a"), 8, pytest.fail, store)
-    assert after.plant.memory == {
-        Fact.LATCH: {"ra1": "on"},
-        Fact.EFFECTOR: {"ra1": "switching"},
-        Fact.QUARANTINE: {},
-        Fact.STORED: {},
-    }
+    kept = {fact: values for fact, values in after.plant.memory.items() if values}
+    assert kept == {Fact.LATCH: {"ra1": "on"}, Fact.EFFECTOR: {"ra1": "switching"}}
 
 
 def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monkeypatch):
@@ -121,7 +142,10 @@ def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monke
     assert (entry.unix_s, entry.verb, entry.sentence) == (1_700_000_000.5, "stop", "everything stopped")
 
 
-@pytest.mark.parametrize("lost", [GRIP, ACT], ids=["fact", "journal"])
+TASK = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)
+
+
+@pytest.mark.parametrize("lost", [GRIP, ACT, TASK], ids=["fact", "journal", "task"])
 def test_once_something_cannot_be_kept_robots_are_only_told_to_stop(plant, store, crashes, monkeypatch, lost):
     break_disk(store, monkeypatch)
     halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
@@ -228,6 +252,7 @@ def test_topics_on_which_nobody_listens_are_told_changes_only(
     now, _ = shows
     plant.watchers.clear()
     topics = Topics(store, watched=watched, diagnosed=diagnosed)
+    plant.connect(topics)
     plant.connect_ros(topics)
     monkeypatch.setattr(orchestrator.diagnostics, "diagnostics", lambda snapshot: [])
     for told in (changed, unchanged):
@@ -237,6 +262,26 @@ def test_topics_on_which_nobody_listens_are_told_changes_only(
         turn(plant)
         assert topics.told == told
         topics.told.clear()
+
+
+def test_a_record_that_has_stopped_is_diagnosed(plant, store, shows):
+    now, _ = shows
+    topics = Topics(store, watched=True, diagnosed=True)
+    rows = []
+    topics.publish_diagnostics = lambda statuses: iter(rows.extend(statuses) or ())
+    plant.connect(topics)
+    plant.connect_ros(topics)
+    plant.recorder = SimpleNamespace(trouble="", stepped=lambda *_: None)
+    told = []
+    for trouble in ("", "the disk is full"):
+        plant.recorder.trouble = trouble
+        rows.clear()
+        now[0] += orchestrator.VIEW_S
+        turn(plant)
+        now[0] += orchestrator.SETTLE_S
+        turn(plant)
+        told += [row[2:4] for row in rows if row[0] == "arboleda: record"]
+    assert told == [(status.OK, "written"), (status.WARN, "the disk is full")]
 
 
 def test_snapshots_that_take_long_come_seldom_and_none_is_owed_in_the_end(plant, shows, monkeypatch):
@@ -316,6 +361,16 @@ def test_the_last_change_is_shown_before_the_end(plant, shows):
     assert shown == [1]
 
 
+def test_once_something_cannot_be_kept_nobody_hears_of_the_end_of_a_task(plant, store, crashes, monkeypatch):
+    heard = []
+    plant.listeners.append(heard.append)
+    turn(plant, TASK)
+    break_disk(store, monkeypatch)
+    turn(plant, GRIP, replace(TASK, state=TaskState.FAILED))
+    assert crashes
+    assert heard == plant.robots.messages == [TASK]
+
+
 def test_an_operators_request_is_answered(plant):
     future = plant.operate(Verb.HOME, "ra1", by_hand=True)
     plant.plant.says = lambda events: [answer(events[0], "ra1 moves")]
@@ -333,6 +388,33 @@ def test_an_act_that_could_not_be_kept_is_not_said_to_be_done(plant, store, monk
     plant.loop.turn()
     with pytest.raises(ArboledaError, match="The disk is full"):
         future.result(timeout=0)
+    (said,) = plant.robots.messages  # to whoever asked by ROS 2
+    assert (said.verb, str(said.refusal)) == (Verb.OVERRIDE, "The disk is full.")
+
+
+def test_what_waited_too_long_for_the_disk_is_not_sent_and_a_stop_is(plant, store, monkeypatch):
+    now, keep = [100.0], store.keep
+
+    def slowly(fact):
+        keep(fact)
+        now[0] += 1.0
+
+    monkeypatch.setattr(store, "keep", slowly)
+    monkeypatch.setattr(orchestrator.clock, "seconds", lambda: now[0])
+    monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
+    plant.plant.now = now[0]
+    halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
+    turn(plant, GRIP, ON, GRIP, replace(ON, id="7-3"), halt)
+    assert plant.robots.messages == [ON, halt]
+    (undelivered,) = turn(plant)
+    assert undelivered.id == "7-3"
+    assert str(undelivered.sentence) == "the plant was away for 2.0 s before it could send this"
+
+
+def test_nothing_is_announced_once_something_cannot_be_kept(plant, store, monkeypatch):
+    break_disk(store, monkeypatch)
+    turn(plant, GRIP, SystemStart(cell="sis_a"), Heartbeat(epoch=7))
+    assert plant.robots.messages == [Heartbeat(epoch=7)]
 
 
 def test_a_memory_that_cannot_be_read_keeps_the_plant_from_starting(tmp_path):
@@ -403,3 +485,52 @@ def test_an_absence_is_one_line_in_the_log(plant, caplog):
     plant.loop.turn()
     assert [line for line in caplog.messages if "away for 20.0 s" in line]
     assert plant.robots.messages == []
+
+
+def test_a_task_is_kept_before_whoever_asked_hears_that_it_is_queued(plant, store):
+    kept = []
+    answer = plant.submit("sis_a 0B 1")
+    answer.add_done_callback(lambda _: kept.extend(row.id for row in store.tasks(TaskQuery())))
+    plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
+    plant.loop.turn()
+    assert kept == ["a"]
+
+
+def test_it_is_kept_by_which_way_a_task_came(plant, store):
+    ways = {"a": ("page",), "b": ()}
+    for id, way in ways.items():
+        plant.submit(f"sis_a 0B 1 #{id}", *way)
+        plant.plant.says = lambda events, id=id: [replace(TASK, task=id, request=events[0].request)]
+        plant.loop.turn()
+    turn(plant, replace(TASK, task="c"))  # of a topic, where nobody waits for an answer
+    kept = {row.id: row.asked_by for row in store.tasks(TaskQuery())}
+    assert kept == {"a": "page", "b": "command", "c": "ros2"}
+
+
+@pytest.mark.parametrize("cell", ["sis_a", None], ids=["cell", "plant"])
+def test_a_retry_is_an_attempt_that_is_kept(plant, store, cell):
+    turn(plant, TASK)
+    task = Task("a", Order(text="sis_a 0B 1", cell="sis_a", recipe="storage"))
+    task.attempts = 2
+    plant.plant.cells["sis_a"].task = task
+    turn(plant, replace(ACT, verb=Verb.RETRY, cell=cell))
+    assert [row.attempts for row in store.tasks(TaskQuery())] == [2]
+
+
+def test_the_end_of_a_task_is_kept_with_what_was_answered(plant, store):
+    turn(plant, TASK)
+    task = Task("a", Order(text="sis_a 0B 1", cell="sis_a", recipe="storage"))
+    task.answers = [TaskAnswer(by="eye", asked="look", answer="good")]
+    plant.plant.intake.tasks["a"] = task
+    turn(plant, replace(TASK, state=TaskState.DONE))
+    (row,) = store.tasks(TaskQuery())
+    assert answers_of(row) == (TaskAnswer(by="eye", asked="look", answer="good"),)
+
+
+def test_a_task_that_cannot_be_kept_is_not_acknowledged(plant, store, monkeypatch):
+    break_disk(store, monkeypatch)
+    answer = plant.submit("sis_a 0B 1")
+    plant.plant.says = lambda events: [replace(TASK, request=events[0].request)]
+    plant.loop.turn()
+    with pytest.raises(ArboledaError, match="The disk is full"):
+        answer.result(timeout=0)

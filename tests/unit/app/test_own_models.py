@@ -14,9 +14,9 @@ from arboleda.app import config, layout_check
 from arboleda.app.cli import cli
 from arboleda.app.plant_file.robot_models import arm_models
 from arboleda.app.urdf import robot_urdf, root_link
-from arboleda.core.model import MotionState, PlantModel
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
+from arboleda.model.plant_model import MotionState, PlantModel
 from arboleda.wire import payloads, units
 from arboleda.wire.values import Telemetry
 

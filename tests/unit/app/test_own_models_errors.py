@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 from .own_arms import GANTRY, ONE, TENDER, joint, link, robot, swing, tender, written
 

@@ -10,9 +10,10 @@ from typer.testing import CliRunner
 
 from arboleda.app import config, recipe_trial
 from arboleda.app.cli import cli
-from arboleda.core.errors import ConfigError, TextError
-from arboleda.core.model import PlantModel
+from arboleda.app.plant_file.used import Spot
 from arboleda.core.text import parse
+from arboleda.model.errors import ConfigError, TextError
+from arboleda.model.plant_model import PlantModel
 
 PLANT = """\
 name: lab
@@ -88,7 +89,7 @@ MISTAKES = {  # id: (what the function `heat` is, the line of the problem, what 
 }
 FILES = {  # id: (the whole file, the line of the problem, what is told)
     "class": (HEAD + "@recipe('x')\nclass F: ...\n", 0, 'the recipe "x" is no function'),
-    "no recipe": ("import os\n", 0, "has no recipe; one is a function with @recipe"),
+    "no recipe": ("import os\n", 0, "has neither a recipe nor a kind; one is a function with @recipe"),
     "syntax": (HEAD + "def f(:\n", 3, "cannot be imported: SyntaxError: "),
     "name": (HEAD + "@recipee('x')\ndef f(cell): ...\n", 3, "NameError: name 'recipee' is not defined"),
     "module": ("import nowhere_at_all\n", 1, "No module named 'nowhere_at_all'"),
@@ -296,6 +297,23 @@ def test_a_file_that_never_ends_is_a_problem_like_others(
         return
     (found,) = refused(write(tmp_path, recipes))
     assert found.startswith(told)
+
+
+def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ended(path: Path, *_: object) -> int:
+        path.write_bytes(b"")
+        raise KeyboardInterrupt
+
+    with recipe_trial.watching(tmp_path, 1000.0) as watch:
+        watch(Spot(file="recipes.py", line=3), "importing this")
+        monkeypatch.setattr(Path, "write_text", ended)
+        with pytest.raises(KeyboardInterrupt):
+            watch(Spot(file="recipes.py", line=9), "building heat")
+    assert (
+        recipe_trial.broken_off(tmp_path, -9) == "recipes.py:3:1: importing this ends Python, with status -9"
+    )
 
 
 def test_of_many_tasks_a_sample_is_tried_and_said(tmp_path: Path) -> None:

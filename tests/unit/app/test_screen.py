@@ -13,8 +13,8 @@ from rich.text import Text
 from arboleda.app import screen as shown
 from arboleda.app.parts.orchestrator import task_line
 from arboleda.app.screen import Screen, joints, logged, parting, table
-from arboleda.core.messages import Reason, TaskChanged, TaskState, Verb
-from arboleda.core.model import MotionState
+from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import MotionState
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 
@@ -82,12 +82,26 @@ def test_a_cell_that_is_stopped_is_told_to_be_reset(rig: Rig) -> None:
     assert "sis_a is stopped; reset sis_a" in drawn(rig.snapshot(), 80)
 
 
+def test_what_was_answered_to_the_task_that_runs_is_told() -> None:
+    here = asking()
+    assert "heard" not in drawn(here.snapshot(), 100)
+    assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert "tending heard: ana, Is the pallet full again?: yes" in drawn(here.snapshot(), 100)
+
+
 def test_a_question_is_told_with_the_command_of_each_answer() -> None:
     here = asking()
     here.wait(10.0)
     lines = [line.strip() for line in drawn(here.snapshot(), 100).splitlines()]
     at = lines.index("ana is asked, 50 s left: Is the pallet full again?")
-    assert lines[at + 1 :] == ["arboleda answer ana yes", "arboleda answer ana 'no parts left'"]
+    ids = [
+        f"--question {robot['question']['id']}" for robot in here.snapshot()["robots"] if robot["question"]
+    ]
+    (asked,) = ids
+    assert lines[at + 1 :] == [
+        f"arboleda answer {asked} ana yes",
+        f"arboleda answer {asked} ana 'no parts left'",
+    ]
     assert here.operate(Verb.ANSWER, "ana yes") is None
     assert "is asked" not in drawn(here.snapshot(), 100)
 
@@ -96,7 +110,7 @@ def test_an_answer_that_begins_like_an_option_can_be_typed() -> None:
     snapshot = asking().snapshot()
     person = next(robot for robot in snapshot["robots"] if robot["question"])
     person["question"]["answers"] = ["-1"]
-    assert "arboleda answer -- ana -1" in drawn(snapshot, 100)
+    assert f"arboleda answer --question {person['question']['id']} -- ana -1" in drawn(snapshot, 100)
 
 
 def test_a_question_is_told_once_where_there_is_no_terminal(tmp_path: Path) -> None:
@@ -107,7 +121,7 @@ def test_a_question_is_told_once_where_there_is_no_terminal(tmp_path: Path) -> N
         screen.stepped(here.snapshot(), 0.0)
         here.wait(1.0)
     said = console.file.getvalue()  # type: ignore[attr-defined]
-    assert said.count("is asked") == said.count("arboleda answer ana yes") == 1
+    assert said.count("is asked") == said.count(" ana yes") == 1
 
 
 def test_zones_show_who_is_in_them_and_who_waits(rig: Rig) -> None:

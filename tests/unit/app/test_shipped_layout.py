@@ -11,12 +11,12 @@ import pytest
 
 from arboleda.app.urdf import robot_urdf
 from arboleda.core import text
-from arboleda.core.model import Pose
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.parts import PART_HEIGHT_M, PART_RADIUS_M
 from arboleda.dashboard.twin.scene import deck
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.testing import shipped
 

@@ -18,7 +18,7 @@ from arboleda.app.simulate import setting
 from arboleda.app.simulate.drawn import Drawn
 from arboleda.app.simulate.plants import Plant
 from arboleda.app.simulate.request import Request, shared
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator import judged
 from arboleda.simulator.faults import KINDS
 from arboleda.simulator.invariants import Invariant
@@ -236,7 +236,7 @@ def test_ctrl_c_says_what_was_done_so_far(
     ("words", "sentence"),
     [
         (("--plant", "nowhere.yaml"), "nowhere.yaml: there is no such file"),
-        (("--faults", "hgih"), "'hgih' is neither a file nor a level (none, few, normal, many)"),
+        (("--faults", "hgih"), "'hgih' is neither a file nor a level (none, few, normal, many, crashes)"),
         (("--faults", "."), ".: is a directory"),
         (("--json", "nowhere/out.json"), "nowhere/out.json: cannot be written: No such file or directory"),
         (("--record", "."), ".: cannot be written: Is a directory"),

@@ -13,7 +13,7 @@ import pytest
 
 from arboleda.app import state
 from arboleda.app.state import StateDir, default_state, find_running
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 
 @pytest.fixture(autouse=True)
@@ -123,7 +123,7 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 from arboleda.app.state import StateDir
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 room = int(sys.argv[2])
 state = StateDir(Path(sys.argv[1]))

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.errors import ConfigError
-from arboleda.core.messages import Verb
-from arboleda.core.model import Interlock, PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import Interlock, PlantModel
 
 from ..kinds.lab import Bench
 

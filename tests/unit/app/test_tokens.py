@@ -14,7 +14,7 @@ from arboleda.app import tokens
 from arboleda.app.cli import cli
 from arboleda.app.state import StateDir
 from arboleda.app.tokens import TOKENS, TokenFile
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 
 def test_tokens_are_made_once_long_and_for_their_owner_only(tmp_path: Path) -> None:

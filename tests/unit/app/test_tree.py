@@ -10,8 +10,8 @@ from typer.testing import CliRunner, Result
 
 from arboleda.app.cli import cli
 from arboleda.app.client import PlantClient
-from arboleda.core.errors import ArboledaError
-from arboleda.core.sentence import in_json
+from arboleda.model.errors import ArboledaError
+from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import view

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from arboleda.app import config
 from arboleda.app.cli import cli, main
 from arboleda.app.urdf import robot_urdf
-from arboleda.core.errors import ConfigError, StartError
+from arboleda.model.errors import ConfigError, StartError
 from arboleda.testing import shipped
 from arboleda_description import urdf as drawings
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from arboleda.app import user_file
 from arboleda.app.cli import cli
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 READS = {
     "check": lambda file: ["check", file],

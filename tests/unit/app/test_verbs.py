@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from arboleda.app import verbs
 from arboleda.app.cli import cli
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
 NEED_A_SCOPE = [Verb.CANCEL, Verb.RETRY, Verb.ABANDON, Verb.RELEASE, Verb.HOME, Verb.OVERRIDE, Verb.ANSWER]
@@ -74,6 +74,8 @@ def test_a_person_and_an_answer_are_passed_on(acts: Notes) -> None:
     assert arboleda("answer", "ana", "not", "yet")[0] == 0
     assert acts == [(Verb.ANSWER, "ana not yet", False)]
     assert arboleda("answer", "ana")[0] == 2
+    assert arboleda("answer", "--question", "1000-12", "ana", "yes")[0] == 0
+    assert acts[-1] == (Verb.ANSWER, "ana #1000-12 yes", False)
 
 
 @pytest.mark.parametrize("scope", ["", " "])

@@ -7,7 +7,7 @@ import pytest
 
 from arboleda.app import view_text
 from arboleda.app.parts.slices import Slices
-from arboleda.core.sentence import in_json
+from arboleda.model.sentence import in_json
 from arboleda.testing import Rig, shipped
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ssl
 from concurrent.futures import Future
+from pathlib import Path
 
 import pytest
 
+from arboleda.adapters.server_tls import ServerTls
+from arboleda.adapters.web.names import names_for
 from arboleda.app.parts.web import Side
 from arboleda.app.web_options import WebOptions
-from arboleda.core.errors import ArboledaError, QueueFull, StartError
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.errors import ArboledaError, QueueFull, StartError
+from arboleda.model.messages import TaskChanged, TaskState
 
 
 class Plant:
@@ -28,10 +32,16 @@ class Plant:
     def find(self, task: str) -> None:
         return None
 
+    def history(self, _query: object) -> list:
+        return []
+
+    def oee(self, _query: object) -> list:
+        return []
+
     def operate(self, *_args: object, **_options: object) -> Future:
         return Future()
 
-    def submit(self, _text: str) -> Future:
+    def submit(self, _text: str, _asked_by: str) -> Future:
         self.asked.append(Future())
         return self.asked[-1]
 
@@ -65,7 +75,7 @@ def test_a_watcher_that_fails_is_told_no_more_and_the_others_are(side: Side, cap
 def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
     plant = Plant()
     side = Side(plant)
-    good, bad = side.submit("a"), side.submit("b")
+    good, bad = side.submit("a", "http"), side.submit("b", "http")
     plant.asked[0].set_result(TaskChanged(task="t-1", text="a", cell="sis_a", state=TaskState.QUEUED))
     plant.asked[1].set_exception(ArboledaError("The disk is full."))
     assert good.result(0)["state"] == "queued"
@@ -76,7 +86,7 @@ def test_a_task_and_an_error_come_as_plain_data_and_as_the_error() -> None:
 def test_a_task_that_is_refused_for_now_is_an_error_of_its_own() -> None:
     plant = Plant()
     side = Side(plant)
-    full, wrong = side.submit("a"), side.submit("b")
+    full, wrong = side.submit("a", "http"), side.submit("b", "http")
     facts = {"task": "", "cell": None, "state": TaskState.REFUSED}
     plant.asked[0].set_result(TaskChanged(text="a", sentence="20 tasks wait", for_now=True, **facts))
     plant.asked[1].set_result(TaskChanged(text="b", sentence="no cell b", **facts))
@@ -106,3 +116,11 @@ def test_a_token_is_demanded_wherever_others_may_come_from(options: dict, guarde
 def test_a_host_that_is_no_address_is_refused() -> None:
     with pytest.raises(StartError):
         _ = WebOptions(host="plant").guarded
+
+
+def test_with_a_certificate_its_address_is_that_of_tls() -> None:
+    tls = ServerTls(certificate=Path("x.crt"), context=ssl.create_default_context(), pem="", until=0.0)
+    assert (WebOptions().scheme, WebOptions(tls=tls).scheme) == ("http", "https")
+    names = names_for("0.0.0.0", None, scheme="https")
+    assert names.knows_origin("https://10.0.0.7:8080", "10.0.0.7:8080")
+    assert not names.knows_origin("http://10.0.0.7:8080", "10.0.0.7:8080")

@@ -14,7 +14,7 @@ from arboleda.app.cli import main
 from arboleda.app.client import PlantClient
 from arboleda.app.state import StateDir, default_state, running_plants
 from arboleda.app.where import located
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 
 Typed = Callable[..., tuple[int, str, str]]
 
@@ -124,3 +124,19 @@ def test_submit_of_an_id_whose_task_failed_ends_with_1(
     ended, out, said = typed("submit", "sis_a 0B 7 #lot42")
     assert (ended, out) == (status, f"{state}: sis_a 0B 7 (id lot42)\n")
     assert ("give another id" in said) is (status == 1)
+
+
+def test_the_environment_names_the_plant(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ARBOLEDA_PLANT", str(tmp_path / "lab.yaml"))
+    status, _, said = typed("up")
+    assert status == 2 and str(tmp_path / "lab.yaml") in said
+
+
+def test_the_environment_names_the_state_directory(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("ARBOLEDA_STATE", str(tmp_path))
+    assert f"No plant is running on {tmp_path};" in typed("status")[2]
+    assert "No plant is running on /elsewhere;" in typed("status", "--state", "/elsewhere")[2]

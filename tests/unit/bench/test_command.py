@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from arboleda.core.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda_bench import catalog, command
 from arboleda_bench.result import Aim, Figure, Result
 

@@ -6,7 +6,7 @@ from collections import deque
 
 import pytest
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 from arboleda_bench.flow import NUMBERS, PUMP_S, WINDOW, Flow
 
 

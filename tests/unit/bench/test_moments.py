@@ -1,8 +1,8 @@
 """What the robots of a cell saw, and the figures of it."""
 
-from arboleda.core.commands import Command
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
 from arboleda_bench.moments import Cycle, Moment, cycles, kind, reactions
 
 DRIVE = FollowPath(id="1-1", robot="m1", nodes=(0, 3))

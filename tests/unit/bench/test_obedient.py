@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import TaskChanged, TaskState
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.testing import plants
 from arboleda_bench.obedient import Yard, command_in, is_over
 

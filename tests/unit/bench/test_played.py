@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import Heartbeat, TaskChanged, TaskRequest
 from arboleda.core.plant import Plant
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest
 from arboleda.testing.plants import shipped
 from arboleda_bench import clockwork, played
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Report, TaskChanged, TaskRequest
-from arboleda.core.model import Evidence, MotionState, PlantModel
 from arboleda.core.plant import Plant
+from arboleda.model.messages import Report, TaskChanged, TaskRequest
+from arboleda.model.plant_model import Evidence, MotionState, PlantModel
 from arboleda.testing import shipped
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.app.simulate.request import shared
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 from .conftest import Hand
 

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from arboleda.core.cell_states import TABLE, Cause, CellState, after
-from arboleda.core.errors import IllegalTransition
+from arboleda.model.errors import IllegalTransition
 
 OPERATORS = {Cause.HOLD, Cause.RESUME, Cause.RETRY, Cause.ABANDON, Cause.STOP, Cause.CLEAR, Cause.RESET}
 WAIT_FOR_AN_OPERATOR = {CellState.HELD, CellState.ABORTED, CellState.STOPPED}

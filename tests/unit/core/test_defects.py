@@ -10,13 +10,16 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Sequence
 
-from arboleda.core import evidence
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.leaves import Act
-from arboleda.core.ledger import Feed, Ledger
-from arboleda.core.messages import (
+from arboleda.core.operator import Operator
+from arboleda.core.plant import Plant
+from arboleda.dispatch import evidence
+from arboleda.dispatch.ledger import Feed, Ledger
+from arboleda.kinds.arm import MoveJoints
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import (
     InternalError,
     OperatorAnswer,
     OperatorRequest,
@@ -26,11 +29,8 @@ from arboleda.core.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.core.model import Evidence, MotionState
-from arboleda.core.operator import Operator
-from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints
-from arboleda.kinds.mobile import FollowPath
+from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.trees.leaves import Act
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 Make = Callable[[Evidence], Any]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from arboleda.core.intake import HISTORY, Intake
-from arboleda.core.messages import TaskState
-from arboleda.core.task import Task
+from arboleda.model.messages import TaskState
+from arboleda.model.task import Task
 from arboleda.testing import shipped
 
 
@@ -30,6 +30,13 @@ def test_the_oldest_task_that_has_ended_is_forgotten_not_one_that_waits(intake: 
         remembered(intake, f"lot{number}", ended=True)
     assert len(intake.tasks) == HISTORY
     assert "waits" in intake.tasks and "lot0" not in intake.tasks and "lot1" in intake.tasks
+
+
+def test_no_task_that_waits_is_forgotten_however_many_do(intake: Intake) -> None:
+    for number in range(HISTORY + 2):
+        remembered(intake, f"lot{number}", ended=False)
+    last = intake.task(f"sis_a palletizing #lot{HISTORY + 1}")
+    assert intake.knows(last) and len(intake.tasks) == HISTORY + 2
 
 
 def test_a_task_is_forgotten_only_past_the_limit(intake: Intake) -> None:

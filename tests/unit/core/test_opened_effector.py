@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Reason
-from arboleda.core.model import Evidence, MotionState
 from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import Evidence, MotionState
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
 

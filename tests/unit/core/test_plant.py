@@ -6,10 +6,13 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import leaves
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.messages import (
+from arboleda.core.plant import Plant
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import (
+    Fact,
     Heartbeat,
     Interference,
     OperatorRequest,
@@ -18,13 +21,12 @@ from arboleda.core.messages import (
     SystemStart,
     TaskChanged,
     TaskRequest,
+    TaskState,
     Verb,
 )
-from arboleda.core.model import Evidence, MotionState, Timing
-from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath
+from arboleda.model.plant_model import Evidence, MotionState, Timing
 from arboleda.testing import shipped
+from arboleda.trees import leaves
 from arboleda.views import view
 
 MOVING, STILL = MotionState.MOVING, MotionState.STOPPED
@@ -289,18 +291,24 @@ def test_a_leaf_that_raises_fails_its_task_and_halts_its_robot(
     assert last_change(plant).state.value == "running"
 
 
+@pytest.mark.parametrize("drops_waiting", [False, True])
 @pytest.mark.parametrize("evidence", list(Evidence))
 def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
-    hand: Any, evidence: Evidence
+    hand: Any, evidence: Evidence, drops_waiting: bool
 ) -> None:
     plant, move = driven_to_the_arm(hand, evidence)
     plant.tell("ra1", state=MOVING, q=(0.05, 0.0, 0.0), accepted=move.id)
-    plant.plant.step(plant.now, [Shutdown(at=plant.now)])
+    plant.plant.step(plant.now, [Shutdown(at=plant.now, drops_waiting=drops_waiting)])
     assert not plant.plant.at_rest
     for _ in range(2 if evidence is not Evidence.JOINTS else 6):
         plant.tell("ra1", state=STILL, q=(0.08, 0.0, 0.0), accepted=move.id)
     assert plant.plant.at_rest
-    assert plant.plant.intake.tasks.popitem()[1].failure.reason is Reason.INTERRUPTED
+    (task,) = plant.plant.intake.tasks.values()
+    if drops_waiting:
+        assert task.failure is not None and task.failure.reason is Reason.INTERRUPTED
+    else:
+        assert task.state is TaskState.RUNNING
+        assert plant.plant.dispatcher.kept(Fact.STEP, task.id), "the next start finds it at its step"
 
 
 def test_a_plant_that_ends_takes_no_task_and_shows_that_it_ends(hand: Any) -> None:

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.belief import Belief
-from arboleda.core.commands import Home
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, MotionState
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.testing import shipped
 
 EPOCH = 7

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core.messages import OperatorRequest, Verb
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import MoveJoints
+from arboleda.model.messages import OperatorRequest, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.views import diagnostics, view
 
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.errors import TextError
-from arboleda.core.model import Link
-from arboleda.core.task import Order
 from arboleda.core.text import compose, parse
+from arboleda.model.errors import TextError
+from arboleda.model.plant_model import Link
+from arboleda.model.task import Order
 from arboleda.testing import shipped
 
 SHIPPED = shipped()

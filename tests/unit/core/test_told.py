@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
 from arboleda.core.plant import Plant
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
 from arboleda.testing import shipped
 
 MODEL = shipped()

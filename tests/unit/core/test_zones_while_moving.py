@@ -7,8 +7,9 @@ from importlib.resources import as_file, files
 import pytest
 
 from arboleda.app.config import load
-from arboleda.core.messages import OperatorRequest, Verb
 from arboleda.kinds.arm import MoveJoints
+from arboleda.model.messages import OperatorRequest, Verb
+from arboleda.model.plant_model import MotionState
 
 from .conftest import Hand
 
@@ -30,3 +31,16 @@ def test_an_arm_that_is_stopped_before_it_says_that_it_moves_keeps_its_zones(han
     hand.plant.step(hand.now, [OperatorRequest(at=hand.now, verb=Verb.STOP, scope="arm_right")])
     hand.wait(0.05)
     assert hand.plant.zones.holder("table") == "arm_right"
+
+
+def test_an_arm_whose_move_failed_at_once_may_be_anywhere_until_it_could_have_answered(hand: Hand) -> None:
+    hand.submit("right palletizing")
+    while not [each for each in hand.commands(MoveJoints) if each.robot == "arm_right"]:
+        hand.wait(0.05)
+    hand.tell("arm_right", after=0.0, state=MotionState.NO_LINK, epoch=1, plant=7)
+    cell = hand.plant.model.cell("right")
+    places = []
+    for _ in range(3):
+        hand.tell("arm_right", after=0.15, state=MotionState.STOPPED, epoch=1, plant=7, q=cell.home.q)
+        places.append(hand.plant.dispatcher.place(cell.workspaces["arm_right"]))
+    assert places == [None, cell.home, cell.home]

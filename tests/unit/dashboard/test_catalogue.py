@@ -15,10 +15,22 @@ from typing import Any
 import pytest
 
 import arboleda
-from arboleda.core.sentence import Phrase, Sentence
 from arboleda.dashboard.wording import LANGUAGES, tree_of, words
+from arboleda.model.sentence import Phrase, Sentence
 
-TOLD_BY = ("core", "recipes", "views", "wire", "app.parts", "app.plant_file", "dashboard")
+TOLD_BY = (
+    "model",
+    "dispatch",
+    "trees",
+    "core",
+    "recipes",
+    "drivers",
+    "views",
+    "wire",
+    "app.parts",
+    "app.plant_file",
+    "dashboard",
+)
 OTHERS = LANGUAGES[1:]
 
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Verb
 from arboleda.dashboard.faces import changed
 from arboleda.dashboard.faces.moment import seconds
 from arboleda.dashboard.faces.stop import stopped
 from arboleda.dashboard.faces.tasks import sorted_tasks
+from arboleda.model.messages import Verb
 from arboleda.testing import faults
 
 
@@ -246,6 +246,7 @@ def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None
     assert face["text/sis_a.state"] == ["idle, blocked", "blocked"]
     assert face["text/sis_a.trouble"] == ["ra1 is offline; bring ra1 back", "blocked"]
     assert face["text/title"] == ["⚠ sis_a: idle, blocked - arboleda", "trouble"]
+    assert face["text/needs"][0] == "sis_a"
     assert face["text/sum"][1] == "blocked"
 
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
-from arboleda.core.messages import Event
-from arboleda.core.model import PlantModel
 from arboleda.dashboard import page
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
 from arboleda.dashboard.story import Story
 from arboleda.dashboard.wording import words
+from arboleda.model.messages import Event
+from arboleda.model.plant_model import PlantModel
 from arboleda.testing import shipped
 from arboleda.views import view
 
 from ..kinds.lab import Bench, model
 from .conftest import LINKS
+from .test_history import CUT
 
 
 class Told(Bench):
@@ -63,8 +65,39 @@ def test_the_card_of_a_cell_shows_the_devices_that_no_drawing_shows() -> None:
     assert "(good)" in face["row/devices.bench/eye"]["texts"][2]
 
 
+def test_the_card_and_the_task_show_what_was_answered() -> None:
+    here = baking()
+    face = here.face("es")
+    (row,) = face["rows/heard.bench"]
+    assert face[f"row/heard.bench/{row}"]["texts"] == ["eye", "look", "good"]
+    here.outcome()
+    after = here.face()
+    assert (after["rows/heard.bench"], after["row/tasks/t-1000-1"]["heard"]) == ([], 1)
+    task = here.story.task_face("t-1000-1", "en")
+    assert task["row/task.heard/0"]["texts"] == ["eye", "look", "good"]
+
+
+def test_a_task_that_only_the_history_knows_is_shown_as_it_was_kept() -> None:
+    here = baking()
+    heard = json.dumps([{"by": "eye", "asked": "look", "answer": True}])
+    kept = replace(CUT, text="bench bake 5", cell="bench", answers=heard)
+    face = here.story.task_face("lot1", "es", kept)
+    assert face["text/task.title"][0] == "bench bake 5 #lot1"
+    assert face["text/task.state"] == ["fallida", "failed"]
+    assert "la planta terminó mientras esta estaba en marcha" in face["text/task.cause"][0]
+    assert face["row/task.heard/0"]["texts"] == ["eye", "look", "sí"]
+    assert "su árbol ya no está" in face["text/task.note"][0]
+    assert "10 s" in face["text/task.when"][0]
+
+
+def test_a_storage_cell_has_no_list_of_answers() -> None:
+    here = Told(shipped("sis_a"))
+    here.wait(1.0)
+    assert not [key for key in here.face() if "heard." in key]
+
+
 def test_an_effector_is_on_or_off_where_other_facts_are_so_or_not() -> None:
-    row = {"facts": {"effector": False, "piece": True, "lid": "open"}, "holding": False}
+    row = {"facts": {"effector": False, "piece": True, "lid": "open"}, "holding": False, "holder": None}
     assert says(words("en"), row) == "effector off, piece yes, lid open"
     assert says(words("es"), row) == "efector desactivado, pieza sí, lid open"
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 from ..kinds.test_people import attended, question, refill
 from .test_own_cells import Told
@@ -32,9 +32,10 @@ def test_the_card_shows_the_question_its_time_and_a_button_for_each_answer(here:
     assert face["text/asked_who.ana"][0] == "ana is asked"
     assert face["text/asked.ana"][0] == "Is the pallet full again?"
     assert face["text/asked_left.ana"][0] == "50 s left to answer"
+    asked = question(here)["id"]
     assert [(each["act"], each["of"], each["label"]) for each in offers(here)] == [
-        ("answer", "ana yes", "yes"),
-        ("answer", "ana no parts left", "no parts left"),
+        ("answer", f"ana #{asked} yes", "yes"),
+        ("answer", f"ana #{asked} no parts left", "no parts left"),
     ]
     assert 'Answers "yes" to: Is the pallet full again?' in offers(here)[0]["does"]
 
@@ -61,10 +62,12 @@ def test_a_button_gives_its_answer_and_the_question_is_gone(here: Told) -> None:
 def test_title_and_header_tell_who_is_waited_for_as_a_wait(here: Told) -> None:
     face = here.face()
     assert face["text/title"] == ["? tending: waits for ana - shop", "waits"]
+    assert face["text/needs"][0] == "tending"
     assert face["text/sum"] == ["execute: 1 · waits for ana", "execute"]
     assert here.face("es")["text/title"][0] == "? tending: espera a ana - shop"
     assert here.operate(Verb.ANSWER, "ana yes") is None
     assert here.face()["text/title"] == ["shop", "well"]
+    assert here.face()["text/needs"][0] == ""
 
 
 def test_trouble_comes_before_a_wait(here: Told) -> None:

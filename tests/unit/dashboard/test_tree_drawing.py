@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.sentence import Phrase
 from arboleda.dashboard.tree_drawing import drawing
 from arboleda.dashboard.wording import LANGUAGES, words
+from arboleda.model.sentence import Phrase
 
 TREE = tuple(
     (path, Phrase(f"step.{name}", name)(), kind)

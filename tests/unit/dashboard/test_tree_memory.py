@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Verb
 from arboleda.dashboard.tree_memory import EndedTree, TreeMemory, ancestors, judged, parent
+from arboleda.model.messages import Verb
 from arboleda.testing import Rig, shipped
 
 

@@ -8,15 +8,18 @@ import pytest
 
 from arboleda.app.plant_file.poses import HOME, STATION
 from arboleda.app.simulate.request import Request
-from arboleda.core import belief, dispatcher, evidence, steps, text, zones
+from arboleda.core import text
 from arboleda.core.cell_states import CellState
-from arboleda.core.ledger import State
-from arboleda.core.messages import Reason, TaskState, Verb
 from arboleda.core.plant import Plant
-from arboleda.core.sentence import Sentence
 from arboleda.dashboard.wording import LANGUAGES, SENTENCES, flat, tree_of, words
+from arboleda.dispatch import belief, dispatcher, evidence, zones
+from arboleda.dispatch.ledger import State
+from arboleda.model.messages import Reason, TaskState, Verb
+from arboleda.model.sentence import Sentence
 from arboleda.recipes import storage
-from arboleda.views.tree_view import IN_RECOVERY, KINDS
+from arboleda.trees import steps
+from arboleda.trees.tree_run import IN_RECOVERY
+from arboleda.views.tree_view import KINDS
 
 ENGLISH = LANGUAGES[0]
 
@@ -143,7 +146,7 @@ def spanish() -> dict[str, str]:
 def test_spanish_frees_zones_and_nothing_else() -> None:
     """ "Liberar" is the override of a zone; a latch is "desenclavar", a part "soltar"."""
     frees = {key for key, text in spanish().items() if "liber" in text.lower()}
-    about_zones = {"zone.not_quarantined", "refusal.still_works"}
+    about_zones = {"zone.not_quarantined", "refusal.still_works", "refusal.still_uses"}
     assert frees == about_zones | {key for key in spanish() if "overrid" in key and key != "js.override_seen"}
 
 

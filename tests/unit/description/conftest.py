@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 
 CHANGES = {
     "twin: r1": "twin: r1\n      limits: {q1_deg: [-90, 80], q3_mm: [0, 60]}\n      speeds: {q2_deg_s: 30}",

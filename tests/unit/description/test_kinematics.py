@@ -10,8 +10,8 @@ import pytest
 from urdf_parser_py.urdf import Robot
 
 from arboleda.app.urdf import robot_urdf, root_link
-from arboleda.core.model import PlantModel
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import PlantModel
 from arboleda.testing import shipped
 from arboleda_description.urdf import render
 

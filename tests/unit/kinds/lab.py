@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import Command, OnStop
-from arboleda.core.messages import TaskChanged
-from arboleda.core.model import Cell, Evidence, Link, PlantModel
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
+from arboleda.model.commands import Command, OnStop
+from arboleda.model.messages import TaskChanged
+from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
 from arboleda.recipes import Choice, Kit, recipe, work
 from arboleda.testing.rig import Rig
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import OnStop
-from arboleda.core.model import Cell, Evidence, Link, PlantModel
-from arboleda.core.recipe import Recipe
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
+from arboleda.model.commands import OnStop
+from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel
+from arboleda.model.recipe import Recipe
 
 ON = FactType(type=bool, first=False)
 WARMTH = FactType(type=float, first=20.0)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Cell, Evidence, Link, PlantModel, Pose, Robot, Workspace
-from arboleda.core.recipe import Recipe
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, Slot
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
+from arboleda.model.plant_model import Cell, Evidence, Link, PlantModel, Pose, Robot, Workspace
+from arboleda.model.recipe import Recipe
 
 HELD = FactType(type=bool, first=False)
 GRIPPER = DeviceKind(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core.advice import sentence
-from arboleda.core.messages import TaskState, Verb
+from arboleda.model.messages import TaskState, Verb
 
 from .lab import Bench, model
 
@@ -14,6 +14,7 @@ def test_after_a_failure_the_device_is_to_be_released() -> None:
     assert here.outcome().state is TaskState.FAILED
     assert here.wait(30.0, lambda: bool(here.plant.advice("bench")))
     assert str(sentence(here.plant.advice("bench"))) == "release oven, then abandon bench"
+    assert "oven may hold a part: clamped is true" in str(here.plant.cells["bench"].held_by)
 
 
 def test_after_a_stop_the_device_is_to_be_released_once_the_cell_is_reset() -> None:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Reason, TaskState, Verb
-from arboleda.core.model import Evidence, Link
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
+from arboleda.model.messages import Reason, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.sentence import OWN
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
 
 from .lab import EYE, ON, OVEN, Bench, bake, careless, model
@@ -261,3 +263,18 @@ def test_a_device_cannot_say_what_its_kind_does_not_have() -> None:
     assert counted.refused > 0
     assert str(counted.last) == "oven/sensores: datos.lid is 'ajar'; allowed: open, closed"
     assert here.plant.dispatcher.beliefs["oven"].fact("lid") == "open"
+
+
+def test_a_second_switch_of_a_fact_is_refused_while_the_first_is_open() -> None:
+    here = Bench(model())
+    here.wait(1.0)
+    make = partial(OVEN.command, robot="oven", verb="clamp")
+    send = partial(here.plant.dispatcher.send, cell="bench", doing=OWN(text="clamping"), now=here.now)
+    first = send(partial(make, values={"on": True}))
+    second = send(partial(make, values={"on": False}))
+    assert first.open
+    assert second.failure is not None and second.failure.reason is Reason.REJECTED
+    assert str(second.failure.sentence) == "oven had not ended switching clamped: no clamping"
+    here.wait(2.0)
+    assert not first.open
+    assert send(partial(make, values={"on": False})).failure is None

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.facts import Value
-from arboleda.core.messages import Heartbeat, Reason, Report, TaskState, Verb
-from arboleda.core.model import Evidence, MotionState
 from arboleda.kinds.arm import SetEffector
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, ToldMotion
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.facts import Value
+from arboleda.model.messages import Heartbeat, Reason, Report, TaskState, Verb
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.wire.bridge import Bridge, Message
 from arboleda.wire.fit import objections
@@ -269,7 +269,7 @@ def test_facts_are_told_as_the_kind_declares_them(alone: Alone) -> None:
             "home_cmd was refused (no_home): it has no homing routine",
         ),
         (
-            ToldMotion(id="5-1", robot="station", verb="fly", values=(), told=STATION.verbs["go"]),
+            ToldMotion(id="5-1", robot="station", verb="fly", values=(), told=STATION.verbs["go"], made=()),
             "formato",
             "order fly was refused (formato): it makes no sense for this robot",
         ),

@@ -8,22 +8,27 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache, partial
-from itertools import combinations
+from itertools import combinations, groupby
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
-import arboleda.recipes as public
+import arboleda.drivers
+import arboleda.kinds
+import arboleda.recipes
 from arboleda.app import config
+from arboleda.app.cli import cli
 from arboleda.app.urdf import robot_urdf
-from arboleda.core.commands import Command, Question
-from arboleda.core.facts import Value
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import Cell, PlantModel
 from arboleda.core.text import parse
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
-from arboleda.kinds.declared import Device, Told
+from arboleda.kinds.declared import Device, Told, ToldMotion
+from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command, Position, Question
+from arboleda.model.facts import Value
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.plant_model import Link, PlantModel, Workspace
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 from arboleda.testing.following import follow, works
@@ -34,7 +39,11 @@ from .lab import Bench
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PAGES = EXAMPLES.parent / "docs/examples"
 FOLDERS = sorted(file.parent.name for file in EXAMPLES.glob("*/plant.yaml"))
+OF_HOW_TOS = ("own_board", "own_driver")  # their pages are in docs/how-to
+SHOWN = [folder for folder in FOLDERS if folder not in OF_HOW_TOS]
+WITH_ARMS = ("assembly", "kitting", "machine_tending")
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)
+PUBLIC = {each.__name__: each.__all__ for each in (arboleda.drivers, arboleda.kinds, arboleda.recipes)}
 SAME_M, APART_M = 0.001, 0.05
 
 
@@ -51,11 +60,17 @@ class Case:
     def __str__(self) -> str:
         return " ".join([self.task, *self.answers.values()])
 
+    @property
+    def cell(self) -> str:
+        return self.task.split()[0]
+
 
 BASE, MILL, PALLET = "station assemble base_1 lid_3", "tending mill slot_2 1002", "tending pallet 1001"
-SOLD = ("tender to belt", "tender lets go", "tender to home", "belt advance")
+SOLD = ("tender to belt", "tender lets go", "tender to home", "belt clear")
+KIT, WAVE, COLLECT = "kitting kit 2 tray_4", "kitting wave tray_1", "packing collect"
 REJECTED = ("tender to reject", "tender lets go", "tender to home")
 bench, tending = partial(Case, folder="lab_bench"), partial(Case, folder="machine_tending")
+kitting = partial(Case, folder="kitting")
 CASES = (
     Case(folder="assembly", task=BASE, ends_with=("left to done", "left lets go", "left to home")),
     bench(task="bench weigh 10", ends_with=("pump dispense", "scale weigh")),
@@ -71,20 +86,30 @@ CASES = (
     tending(task=MILL, answers={"camera": "bad"}, ends_with=REJECTED),
     tending(task=MILL, answers={"camera": "unsure"}, ends_with=SOLD),
     tending(task=MILL, answers={"camera": "unsure", "operator": "bad"}, ends_with=REJECTED),
+    Case(folder="own_board", task="bench fill 5", ends_with=("valve dose", "valve close")),
+    Case(folder="own_board", task="bench fill 10", answers={"valve": "low"}, why="the tank is low"),
+    Case(folder="own_driver", task="shop form 2", ends_with=("press open", "press measure")),
+    Case(
+        folder="own_driver",
+        task="shop form 1",
+        answers={"press": "bad"},
+        why="the part is out of measure",
+    ),
     tending(task=PALLET, ends_with=SOLD),
     tending(task=PALLET, answers={"operator": "no blanks left"}, why="no blanks are left"),
+    kitting(task=KIT, ends_with=("lift roll_in", "cart_2 to home", "lift up", "picker to home")),
+    kitting(task=WAVE, ends_with=("lift roll_in", "cart_3 to home", "lift up")),
+    kitting(task=COLLECT, ends_with=("lift roll_out", "shuttle to table", "shuttle to home")),
+    kitting(task=COLLECT, answers={"lift": "empty"}, why="no kit is on the lift"),
+    kitting(task=COLLECT, answers={"packer": "no"}, why="the kit was not packed"),
 )
 PLAIN = [each for each in CASES if not each.answers and each.task != PALLET]
 
 
 @cache
 def load(folder: str) -> PlantModel:
-    return config.load(EXAMPLES / folder / "plant.yaml")
-
-
-def only_cell(folder: str) -> Cell:
-    (cell,) = load(folder).cells
-    return cell
+    """The plant of an example, as it is simulated."""
+    return config.load(EXAMPLES / folder / "plant.yaml").on_boards(Link.DRIVER)
 
 
 def tried(folder: str, name: str, answers: Iterable[Value]) -> set[Value]:
@@ -146,10 +171,13 @@ class Shop(Bench):
         if isinstance(command, SetEffector):
             return f"{command.robot} {'grips' if command.on else 'lets go'}"
         if isinstance(command, MoveJoints):
-            poses = only_cell(self.case.folder).workspaces[command.robot].poses
-            name = next((pose.name for pose in poses if pose.q == command.q), None)
-            return name and f"{command.robot} to {name}"
-        return None
+            return self._going(command.robot, command.q)
+        return self._going(command.robot, command.nodes[-1]) if isinstance(command, FollowPath) else None
+
+    def _going(self, robot: str, goal: Position) -> str | None:
+        poses = self.model.cell_of[robot].workspaces[robot].poses
+        name = next((pose.name for pose in poses if pose.q == goal), None)
+        return name and f"{robot} to {name}"
 
     def _answer(self, name: str, goal: OrderGoal) -> Value:
         return self.case.answers[name]
@@ -165,10 +193,10 @@ class Shop(Bench):
 def test_every_recipe_of_every_example_and_every_answer_is_tried() -> None:
     assert {case.folder for case in CASES} == set(FOLDERS)
     for folder in FOLDERS:
-        cell = only_cell(folder)
-        names = {case.task.split()[1] for case in CASES if case.folder == folder}
-        assert names == {recipe.name for recipe in cell.recipes}
-        for device in cell.robots:
+        model = load(folder)
+        names = {tuple(case.task.split()[:2]) for case in CASES if case.folder == folder}
+        assert names == {(cell.name, recipe.name) for cell in model.cells for recipe in cell.recipes}
+        for device in model.robots.values():
             for verb in device.kind.verbs.values() if isinstance(device, Device) else ():
                 if verb.answers:
                     assert tried(folder, device.name, verb.answers) == set(verb.answers)
@@ -182,7 +210,7 @@ def test_a_task_ends_as_its_recipe_says_whatever_is_answered(case: Case) -> None
     if case.why:
         assert str(here.changes[-1].sentence) == case.why
     assert tuple(here.said[len(here.said) - len(case.ends_with) :]) == case.ends_with
-    assert here.wait(60.0, lambda: works(here, only_cell(case.folder).name))
+    assert here.wait(60.0, lambda: works(here, case.cell))
     assert here.holding() == []
 
 
@@ -204,7 +232,7 @@ def test_after_any_device_gave_up_the_first_advice_leads_back_to_work(case: Case
 
         here.body(name).fails = fails
         assert here.do() is TaskState.FAILED, (name, verb)
-        done = follow(here, only_cell(case.folder).name)
+        done = follow(here, case.cell)
         assert here.holding() == [], (name, verb, done)
         assert here.do() is TaskState.DONE, (name, verb, done, here.changes[-1])
 
@@ -219,7 +247,7 @@ def test_after_a_stop_at_any_time_the_first_advice_leads_back_to_work(case: Case
         assert here.wait(200.0, lambda here=here, count=count: len(here.said) >= count)
         assert here.operate(Verb.STOP) is None
         here.wait(1.0)
-        done = follow(here, only_cell(case.folder).name)
+        done = [each for cell in here.plant.cells for each in follow(here, cell)]
         assert here.holding() == [], (here.said[-1], done)
         assert here.do() is TaskState.DONE, (done, here.changes[-1])
 
@@ -233,14 +261,23 @@ def test_recipes_import_nothing_else_of_arboleda_than_what_is_public(folder: str
             if isinstance(node, ast.Import):
                 assert not [each.name for each in node.names if each.name.split(".")[0] == "arboleda"]
             elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "arboleda":
-                assert node.module == "arboleda.recipes"
-                assert {each.name for each in node.names} <= set(public.__all__)
+                assert {each.name for each in node.names} <= set(PUBLIC[node.module or ""])
 
 
-@pytest.mark.parametrize("folder", [each for each in FOLDERS if only_cell(each).spaces])
+def arms(folder: str) -> list[Workspace]:
+    """The workspaces of all arms of an example."""
+    spaces = [space for cell in load(folder).cells for space in cell.spaces]
+    return [space for space in spaces if isinstance(space.robot, Arm)]
+
+
+def test_the_examples_with_arms_that_reach_targets_are_these() -> None:
+    assert [each for each in FOLDERS if arms(each)] == list(WITH_ARMS)
+
+
+@pytest.mark.parametrize("folder", WITH_ARMS)
 def test_a_target_is_the_same_place_for_all_arms_and_another_one_than_the_others(folder: str) -> None:
     places: dict[str, list[tuple[float, ...]]] = {}
-    for space in only_cell(folder).spaces:
+    for space in arms(folder):
         assert isinstance(space.robot, Arm)
         body, base = bodies.read(robot_urdf(load(folder), space.robot.name)), space.robot.base.on_floor
         for pose in space.poses:
@@ -258,4 +295,65 @@ def test_a_page_shows_tasks_that_its_example_takes(page: Path) -> None:
     tasks = re.findall(r'arboleda (?:up|tree) "(.+)" --plant (\S+)', page.read_text("utf-8"))
     assert {file for _, file in tasks} == {f"examples/{folder}/plant.yaml"}
     for task, _ in tasks:
-        assert parse(task, load(folder)).text.split()[0] == only_cell(folder).name
+        assert parse(task, load(folder)).text.split()[0] in [cell.name for cell in load(folder).cells]
+
+
+@pytest.mark.parametrize("folder", SHOWN)
+def test_an_example_has_a_page_in_both_languages_with_its_tree_and_a_picture(folder: str) -> None:
+    for name in (f"{folder}.md", f"{folder}.es.md"):
+        text = (PAGES / name).read_text("utf-8")
+        assert "![" in text and f"../images/examples/{folder}.png" in text
+        assert f"../images/examples/{folder}-tree.svg" in text
+
+
+@pytest.mark.parametrize("folder", SHOWN)
+def test_the_picture_of_a_tree_is_the_tree_as_it_is(folder: str) -> None:
+    page = (PAGES / f"{folder}.md").read_text("utf-8")
+    (task,) = set(re.findall(r'arboleda tree "(.+)" --plant', page))
+    drawn = CliRunner().invoke(
+        cli, ["tree", task, "--plant", str(EXAMPLES / folder / "plant.yaml"), "--format", "svg"]
+    )
+    picture = PAGES.parent / f"images/examples/{folder}-tree.svg"
+    assert drawn.output == picture.read_text("utf-8"), "take it anew: make example-pictures"
+
+
+def test_a_cell_without_the_targets_that_a_recipe_chooses_from_does_not_offer_it() -> None:
+    offered = {cell.name: [recipe.name for recipe in cell.recipes] for cell in load("kitting").cells}
+    assert offered == {"kitting": ["kit", "wave"], "packing": ["collect"]}
+
+
+def test_no_two_carts_meet_on_their_grid_and_none_is_below_a_lift_that_comes_down() -> None:
+    here = Shop(kitting(task=WAVE))
+    carts = [robot for robot in here.model.cell("kitting").robots if isinstance(robot, Mobile)]
+    platform = here.model.cell("kitting").workspaces["cart_1"].poses[-1].q
+    met: list[list[Position | None]] = []
+    moved: set[Position | None] = set()
+
+    def look() -> bool:
+        at = [here.boards[cart.mqtt].body.true_place for cart in carts]
+        met.extend([at] if len(set(at)) < len(at) else [])
+        moved.update(at)
+        work = here.plant.dispatcher.work_of("lift")
+        if work is not None and isinstance(work.command, ToldMotion) and platform in at:
+            met.append(at)
+        return here.changes[-1].state in ENDED
+
+    here.submit(WAVE)
+    while not look():
+        here.wait(0.05)
+    assert here.changes[-1].state is TaskState.DONE
+    assert platform in moved and len(moved) > len(carts)
+    assert met == []
+
+
+def test_the_other_cell_gets_the_lift_between_two_carts() -> None:
+    here = Shop(kitting(task=WAVE))
+    here.submit(WAVE)
+    assert here.wait(60.0, lambda: here.plant.zones.holder("lift") == "kitting")
+    here.submit(COLLECT)
+    holders: list[str | None] = []
+    while here.plant.cells["kitting"].task is not None:
+        here.wait(0.1)
+        holders.append(here.plant.zones.holder("lift"))
+    order = [name for name, _ in groupby(each for each in holders if each)]
+    assert order == ["kitting", "packing", "kitting"], order

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from arboleda.core.messages import Reason, Verb
-from arboleda.core.model import Interlock, PlantModel
-from arboleda.core.recipe import Recipe
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.messages import Fact, Reason, Verb
+from arboleda.model.plant_model import Interlock, PlantModel
+from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.testing.following import advised, follow
 
 from .lab import Bench
 from .tending import IDS, plant
@@ -143,3 +144,89 @@ def without_zones(step: Any) -> list[Any]:
     for child in parts:
         child.parent = None
     return parts
+
+
+SLIDE = FactType(type=str, words=("left", "right"), first="left")
+GATE = DeviceKind(
+    name="gate",
+    facts={"at": SLIDE},
+    verbs={
+        f"go_{at}": DeviceVerb(
+            name=f"go_{at}", effect=Effect.MOTION, sets=(("at", at),), takes_s=2.0, at_most_s=8.0
+        )
+        for at in ("left", "right")
+    },
+)
+
+
+@recipe("slide")
+def slide(cell: Kit):  # type: ignore[no-untyped-def]
+    """An arm is in the vise while the gate, which shuts the feed, is to shut the vise instead."""
+    left, gate = cell.devices("left", "gate")
+    return parallel(left.visit("vise", cell.wait(4.0)), work(cell.wait(1.0), gate.go_left()))
+
+
+def with_gate() -> PlantModel:
+    """A gate that is always in the way: of the vise on its left, of the feed on its right."""
+    model = with_mill(slide)
+    (cell,) = model.cells
+    gate = Device(name="gate", mqtt="gate", **IDS, timeout_s=5.0, kind=GATE)
+    locks = (
+        Interlock(device="gate", zone="vise", free_while=(("at", "right"),)),
+        Interlock(device="gate", zone="feed", free_while=(("at", "left"),)),
+    )
+    cell = replace(cell, members=(*cell.members, ("gate", gate)), interlocks=locks)
+    return replace(model, cells=(cell,), zones=(*model.zones, "feed"))
+
+
+def test_a_machine_in_the_way_of_one_zone_moves_over_into_another_one_once_nobody_is_there() -> None:
+    here = Bench(with_gate())
+    here.machines["gate"].facts["at"] = "right"
+    here.wait(1.0)
+    assert here.plant.zones.holder("feed") == "gate"
+    assert here.plant.zones.holder("vise") is None
+    here.submit("tending slide")
+    assert here.wait(10.0, lambda: "gate" in dict(here.plant.zones.waiting))
+    assert here.plant.zones.holder("vise") == "left"
+    assert here.outcome().state.value == "done"
+    assert here.machines["gate"].facts["at"] == "left"
+    here.wait(1.0)
+    assert (here.plant.zones.holder("vise"), here.plant.zones.holder("feed")) == ("gate", None)
+
+
+def test_a_machine_that_is_heard_again_keeps_its_zone_without_quarantine() -> None:
+    here = Bench(with_gate())
+    here.wait(1.0)
+    context = here.plant.cells["tending"].context
+    assert here.plant.zones.request("somebody", frozenset({"feed"}))
+    here.power_off("gate")
+    here.wait(3.0)
+    assert here.plant.zones.is_quarantined("vise")
+    assert not context.take_zones("gate", frozenset({"feed"}))  # nobody knows where it is
+    assert here.plant.zones.waiting == ()
+    here.power_on("gate")
+    here.wait(3.0)
+    assert here.plant.zones.holder("vise") == "gate"
+    assert not here.plant.zones.is_quarantined("vise")
+
+
+def test_a_machine_is_only_in_the_way_of_a_zone_in_which_it_is() -> None:
+    here = Bench(with_gate())
+    here.wait(1.0)
+    context = here.plant.cells["tending"].context
+    assert context.in_the_way("gate", ["vise"]) == ("at right",)
+    assert context.in_the_way("gate", ["feed"]) is None
+
+
+def test_a_zone_kept_for_a_robot_that_the_plant_file_no_longer_has_is_freed_on_advice() -> None:
+    here = Bench(with_mill(machine))
+    here.memory[Fact.QUARANTINE] = {"vise": "an_arm_of_last_year"}
+    here.crash()
+    here.power_off("left")
+    here.power_on("left")
+    here.wait(3.0)
+    assert here.plant.zones.holder("vise") == "an_arm_of_last_year"
+    assert advised(here, "tending")[:3] == ["see that nobody is in vise", "override vise", "home left"]
+    follow(here, "tending")
+    here.submit("tending machine")
+    assert here.outcome().state.value == "done"

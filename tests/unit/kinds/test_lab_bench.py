@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.core.messages import TaskState
+from arboleda.model.messages import TaskState
 
 from .lab import Bench
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState
 from arboleda.kinds.declared import Device
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState
 from arboleda.wire import order
 from arboleda.wire.status import from_status, to_status
 

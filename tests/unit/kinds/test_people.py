@@ -8,11 +8,12 @@ from typing import Any
 import pytest
 
 from arboleda.app.screen import parting
-from arboleda.core.messages import Reason, Verb
-from arboleda.core.model import PlantModel
-from arboleda.core.recipe import Recipe
 from arboleda.kinds.person import person
+from arboleda.model.messages import Reason, TaskAnswer, Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Recipe
 from arboleda.recipes import Kit, RecipeError, recipe, work
+from arboleda.trees.context import MOST_ANSWERS
 from arboleda.views import view
 
 from .lab import Bench
@@ -59,6 +60,36 @@ def test_the_task_goes_on_with_the_answer() -> None:
     assert question(here) is None
     assert here.outcome().state.value == "done"
     assert str(here.plant.acts[-1].sentence) == "answer ana yes"
+
+
+def test_what_was_answered_is_kept_with_the_task() -> None:
+    here = asking()
+    assert view.task_by_id(here.plant, "t-1000-1")["answers"] == []  # type: ignore[index]
+    assert here.operate(Verb.ANSWER, "ana Yes") is None
+    answers = [{"by": "ana", "asked": "Is the pallet full again?", "answer": "yes"}]
+    (cell,) = view.snapshot(here.plant)["cells"]
+    assert cell["task"]["answers"] == answers
+    here.outcome()
+    (task,) = view.snapshot(here.plant)["tasks"]
+    assert (task["state"], task["answers"]) == ("done", answers)
+
+
+def test_a_task_has_the_answers_of_its_own() -> None:
+    here = asking()
+    assert here.operate(Verb.ANSWER, "ana yes") is None
+    here.outcome()
+    here.submit("tending refill")
+    assert here.wait(10.0, lambda: question(here) is not None)
+    first, second = view.snapshot(here.plant)["tasks"]
+    assert (len(first["answers"]), second["answers"]) == (1, [])
+
+
+def test_of_very_many_answers_the_last_ones_are_kept() -> None:
+    here = asking()
+    context = here.plant.cells["tending"].context
+    for number in range(MOST_ANSWERS + 5):
+        context.note(TaskAnswer(by="ana", asked="more?", answer=number))
+    assert [each.answer for each in context.answers] == [*range(5, MOST_ANSWERS + 5)]
 
 
 def test_who_was_asked_is_no_robot_that_was_left_moving() -> None:
@@ -150,4 +181,38 @@ def test_a_question_that_nobody_could_answer_is_refused(words: tuple[str, list[s
 
     here = Bench(attended(wrong))
     here.submit("tending refill")
+    assert here.outcome().state.value == "done"
+
+
+@recipe("refill")
+def twice(cell: Kit):  # type: ignore[no-untyped-def]
+    """The same person is asked two questions, with the same answers."""
+    ana = cell.device("ana")
+    return work(ana.ask("Is the door shut?", ["yes", "no"]), ana.ask("Open the door?", ["yes", "no"]))
+
+
+def test_an_answer_to_a_question_that_is_over_is_none_to_the_next_one() -> None:
+    here = asking(twice)
+    first = question(here)["id"]
+    assert here.operate(Verb.ANSWER, f"ana #{first} yes") is None
+    assert str(here.plant.acts[-1].sentence) == "answer ana yes"
+    assert here.wait(1.0, lambda: question(here) is not None)
+    late = here.operate(Verb.ANSWER, f"ana #{first} yes")
+    assert late == f"question {first} to ana is over; now it is asked: Open the door?"
+    assert question(here)["text"] == "Open the door?"
+    assert here.operate(Verb.ANSWER, "ana yes") is None  # the short form is for what is asked now
+    assert here.outcome().state.value == "done"
+    over = here.operate(Verb.ANSWER, f"ana #{first} yes")
+    assert over == f"question {first} to ana is over; nobody asks ana anything now"
+
+
+def test_an_answer_may_begin_with_what_is_no_id() -> None:
+    @recipe("refill")
+    def numbers(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.device("ana").ask("Which one?", ["#1", "#1-2 x"])
+
+    here = asking(numbers)
+    asked = question(here)["id"]
+    assert here.operate(Verb.ANSWER, "ana #2") is not None
+    assert here.operate(Verb.ANSWER, f"ana #{asked} #1-2 x") is None
     assert here.outcome().state.value == "done"

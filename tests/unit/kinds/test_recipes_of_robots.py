@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.commands import Command
-from arboleda.core.errors import TextError
-from arboleda.core.messages import Reason, Verb
 from arboleda.core.text import parse
+from arboleda.model.commands import Command
+from arboleda.model.errors import TextError
+from arboleda.model.messages import Reason, Verb
 from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
 
 from .lab import Bench
@@ -83,6 +83,29 @@ def test_what_the_gripper_holds_is_brought_back_where_it_was_taken(blank: str, w
     assert here.wait(30.0, lambda: here.plant.cells["tending"].state.value == "idle")
     back = moved(here)[moved(here).index("left 0.0 0.0") + 1 :]
     assert [each for each in back if each in way_back] == way_back
+
+
+def test_a_gripper_that_opens_by_itself_is_named_as_what_it_is() -> None:
+    here = Bench(plant(load))
+    here.submit("tending load feed")
+    assert here.wait(60.0, lambda: moved(here)[-1:] == ["left 0.5 0.0"] and "jaw close" in moved(here))
+    here.power_off("jaw")
+    here.power_on("jaw")
+    ended = here.outcome()
+    assert ended.reason is Reason.PART_LOST
+    assert str(ended.sentence) == "jaw let go of the part that it held, as its board rebooted"
+
+
+def test_a_robot_grips_and_lets_go_with_its_tool() -> None:
+    @recipe("plain")
+    def plain(cell: Kit):  # type: ignore[no-untyped-def]
+        left = cell.device("left")
+        return work(left.visit("feed", left.grip()), left.visit("vise", left.let_go()))
+
+    here = Bench(plant(plain))
+    here.submit("tending plain")
+    assert here.outcome().state.value == "done"
+    assert [each for each in moved(here) if each.startswith("jaw")] == ["jaw close", "jaw open"]
 
 
 def test_a_recipe_says_where_a_recovery_brings_what_a_robot_holds() -> None:

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.commands import StopMode
-from arboleda.core.facts import Value
-from arboleda.core.model import Evidence, MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.sim.devices import Devices, Reboot, ToBoard
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Beat, OrderGoal, Payload, StopGoal, Telemetry, decode, encode

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.sim.devices import Devices, Reboot, ToBoard
 from arboleda.testing import shipped
 from arboleda.wire.payloads import Payload, Telemetry, decode, encode

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.commands import StopMode
-from arboleda.core.model import MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.plant_model import MotionState
 from arboleda.sim.arm import ArmBody
 from arboleda.testing import shipped
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal

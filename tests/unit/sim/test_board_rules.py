@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import StopMode
-from arboleda.core.model import Evidence, MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.wire.payloads import Beat, EffectorGoal, HomeGoal, JointsGoal, StopGoal
 from arboleda.wire.topics import Channel
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from arboleda.core.model import Link
+from arboleda.model.plant_model import Link
 from arboleda.wire.payloads import JointsGoal, PathGoal
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Publication

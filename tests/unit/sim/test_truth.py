@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import StopMode
-from arboleda.core.model import MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.plant_model import MotionState
 from arboleda.wire.payloads import EffectorGoal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
 

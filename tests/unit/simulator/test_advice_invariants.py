@@ -8,8 +8,8 @@ import pytest
 
 from arboleda.core import advisor
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Verb
 from arboleda.core.operator import Operator
+from arboleda.model.messages import Verb
 from arboleda.simulator.invariants.advice import ADVICE, ENOUGH
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.people import Attendant

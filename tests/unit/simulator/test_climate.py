@@ -7,9 +7,10 @@ from dataclasses import asdict
 
 import pytest
 
-from arboleda.core.model import Evidence
-from arboleda.simulator.climate import LEVELS, BadFaults, Climate
+from arboleda.model.plant_model import Evidence
+from arboleda.simulator.climate import BadFaults, Climate
 from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
+from arboleda.simulator.levels import LEVELS
 from arboleda.testing import shipped
 
 MODEL = shipped()

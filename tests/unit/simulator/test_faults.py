@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Heartbeat, Verb
-from arboleda.core.model import Evidence
 from arboleda.core.plant import HEARTBEAT_S
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Heartbeat, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator.chance import Dice
-from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
+from arboleda.simulator.faults import KINDS, OF_CRASHES, OF_DEVICES, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
 from arboleda.simulator.faults.operators import SAID
 from arboleda.simulator.world import BRIDGE, PLANT, World
@@ -252,6 +252,10 @@ def test_every_kind_is_in_one_of_the_tables():
         "lost_part",
         "opened_effector",
         "plant_crash",
+        "crash_in_step",
+        "power_cut",
+        "full_disk",
+        "slow_disk",
         "second_orchestrator",
         "foreign_beat",
         "foreign_command",
@@ -350,11 +354,15 @@ def test_a_lost_part_is_gone(world):
     assert not body.holding
 
 
-def test_a_crashed_plant_is_another_plant_and_is_never_drawn(world):
+def test_a_crashed_plant_is_another_plant(world):
     epoch = world.plant.epoch
     begin(world, fault("plant_crash", PLANT))
     assert world.plant.epoch > epoch
-    assert KINDS["plant_crash"].weight == 0
+
+
+def test_a_plant_crashes_only_at_the_level_that_is_made_for_that():
+    for name in OF_CRASHES:
+        assert KINDS[name].weight == 0
 
 
 @pytest.mark.parametrize("board", ["ra_1", "rm_sis_a"])

@@ -1,37 +1,79 @@
-"""Each invariant of plants of any devices holds by itself, and finds a bug that was planted for it."""
+"""Each invariant of devices holds, and finds a bug that was planted for it, as do those of storage."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from arboleda.core.context import Context
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.evidence import Verdict
-from arboleda.core.ledger import Feed
 from arboleda.core.plant import Plant
+from arboleda.dispatch import evidence
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.evidence import Verdict
+from arboleda.dispatch.ledger import Feed
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.commands import OnStop, Query
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import Evidence, Interlock, PlantModel
 from arboleda.recipes import Kit, parallel, recipe, work
+from arboleda.sim.board import Board
 from arboleda.sim.machine import MachineBody
+from arboleda.sim.receipts import Receipts
 from arboleda.simulator.climate import Climate
+from arboleda.simulator.faults import GENERAL as JUDGED
+from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.general import GENERAL
+from arboleda.simulator.general import GENERAL, OF_DEVICES
+from arboleda.simulator.judged import judged_by
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.watched import Broken, Watched
-from arboleda.wire.payloads import OrderGoal
+from arboleda.trees.context import Context
+from arboleda.wire.bridge import Bridge
+from arboleda.wire.payloads import OrderGoal, encode
+from arboleda.wire.transport import Publication
 
-from ..kinds.test_interlocks import with_mill
+from ..kinds.tending import IDS, plant
+from ..kinds.test_shared_devices import plant as sharing
 
 Patch = pytest.MonkeyPatch
+SHARING = sharing()
+Weather = str | Mapping[str, float]
+Bug = Callable[[Patch], None]
+DOOR = FactType(type=str, words=("open", "closed"), first="open")
+SHUT = (("door", "closed"),)
+MILL = DeviceKind(
+    name="mill",
+    facts={"door": DOOR},
+    verbs={
+        "open": DeviceVerb(
+            name="open", effect=Effect.MOTION, sets=(("door", "open"),), takes_s=2.0, at_most_s=8.0
+        ),
+        "close": DeviceVerb(name="close", effect=Effect.MOTION, sets=SHUT, takes_s=2.0, at_most_s=8.0),
+        "run": DeviceVerb(name="run", effect=Effect.PROCESS, needs=SHUT, takes_s=4.0, at_most_s=20.0),
+        "cool": DeviceVerb(
+            name="cool",
+            effect=Effect.PROCESS,
+            needs=SHUT,
+            takes_s=6.0,
+            at_most_s=20.0,
+            on_stop=OnStop.FINISH,
+        ),
+    },
+)
+LOOK = DeviceVerb(name="look", effect=Effect.QUERY, takes_s=0.3, at_most_s=3.0, answers=("good", "bad"))
+EYE = DeviceKind(name="eye", facts={}, verbs={"look": LOOK})
 
 
 @recipe("load")
 def load(cell: Kit):  # type: ignore[no-untyped-def]
-    """One arm brings a blank into the mill, which shuts its door and opens it again."""
-    left, jaw, mill = cell.devices("left", "jaw", "mill")
+    """One arm brings a blank that was looked at into the mill, which works behind its door."""
+    left, jaw, mill, eye = cell.devices("left", "jaw", "mill", "eye")
+    seen = eye.look()
     fetch = left.visit("feed", jaw.close())
-    return work(fetch, left.visit("vise", jaw.open()), mill.close(), mill.open(), left.home())
+    mills = work(mill.close(), mill.run(), mill.cool(), mill.open())
+    return work(seen, fetch, left.visit("vise", jaw.open()), mills, left.home())
 
 
 @recipe("both")
@@ -41,41 +83,222 @@ def both(cell: Kit):  # type: ignore[no-untyped-def]
     return parallel(left.visit("vise"), right.visit("vise"), work(mill.close(), mill.open()))
 
 
-def run(seed: int, level: str = "none", cycles: int = 4) -> Broken | None:
-    model = with_mill(load, both)
-    climate = Climate.draw(model, seed, level)
-    return Simulation(model, seed, climate.faults).run(cycles=cycles).broken
+@recipe("careless")
+def careless(cell: Kit):  # type: ignore[no-untyped-def]
+    """The mill is told to run with its door open, which is refused."""
+    return cell.device("mill").run()
+
+
+@recipe("drops")
+def drops(cell: Kit):  # type: ignore[no-untyped-def]
+    """What the gripper holds is let go on its way."""
+    left, jaw = cell.devices("left", "jaw")
+    return work(
+        left.visit("feed_2", jaw.close()), parallel(left.visit("vise"), work(cell.wait(0.3), jaw.open()))
+    )
+
+
+@recipe("looks")
+def looks(cell: Kit):  # type: ignore[no-untyped-def]
+    """The camera is asked twice."""
+    return work(cell.device("eye").look(), cell.wait(1.0), cell.device("eye").look())
+
+
+RECIPES = (load, both, careless, drops, looks)
+
+
+def shop(*recipes: Any) -> PlantModel:
+    """Two arms at a mill whose open door is what lets them into its vise, and a camera."""
+    model = plant(*recipes)
+    (cell,) = model.cells
+    mill = Device(name="mill", mqtt="mill", **IDS, timeout_s=5.0, kind=MILL)
+    eye = Device(name="eye", mqtt="eye", **IDS, timeout_s=5.0, kind=EYE)
+    lock = Interlock(device="mill", zone="vise", free_while=(("door", "open"),))
+    members = (*cell.members, ("mill", mill), ("eye", eye))
+    return replace(model, cells=(replace(cell, members=members, interlocks=(lock,)),))
+
+
+def run(
+    seed: int,
+    weather: Weather = "none",
+    *,
+    only: str = "",
+    cycles: int = 4,
+    model: PlantModel | None = None,
+) -> Broken | None:
+    """What breaks; `only`: by this invariant alone."""
+    model = model or shop(load, both, careless)
+    if isinstance(weather, str):
+        climate = Climate.draw(model, seed, weather)
+    else:
+        climate = Climate.from_file(model, seed, {"rates": weather})
+    judges = tuple(each for each in judged_by(model) if only in ("", each.name))
+    return Simulation(model, seed, climate.faults, invariants=judges).run(cycles=cycles).broken
 
 
 @pytest.mark.parametrize("seed", range(1, 5))
 def test_all_of_them_hold_in_bad_weather(seed: int) -> None:
     assert run(seed, "normal", cycles=3) is None
+    assert run(seed, "normal", cycles=6, model=SHARING) is None
+
+
+@pytest.mark.parametrize("kind", FAULTS_OF_DEVICES)
+def test_all_of_them_hold_where_devices_fail_in_this_way_alone(kind: str) -> None:
+    assert kind in JUDGED
+    assert run(1, {kind: 12.0}, cycles=3) is None
+
+
+def machine_of(watched: Watched, name: str = "mill") -> MachineBody:
+    body = watched.world.boards[name].body
+    assert isinstance(body, MachineBody)
+    return body
 
 
 def test_a_device_gives_up_until_all_such_faults_have_ended() -> None:
-    watched = Watched(with_mill(load))
+    watched = Watched(shop(load))
     for seconds in (5.0, 10.0):
         watched.begin(Fault(kind="gives_up", at=0.0, target="mill", word="atasco", seconds=seconds))
     order = OrderGoal(verb="open", values=(), seq=1, epoch=1)
-    body = watched.world.boards["mill"].body
-    assert isinstance(body, MachineBody)
     told = []
     for _ in range(3):
-        told.append(body.fails(order))
+        told.append(machine_of(watched).fails(order))
         watched.world.advance(6.0)
     assert told == ["atasco", "atasco", None]
+
+
+def test_what_never_ends_ends_when_that_is_over() -> None:
+    watched = Watched(shop(load), invariants=())  # nobody has asked for what it does
+    watched.begin(Fault(kind="never_ends", at=0.0, target="mill", seconds=30.0))
+    mill = machine_of(watched)
+    mill.start(round(watched.world.now * 1e6), OrderGoal(verb="close", values=(), seq=1, epoch=1))
+    watched.world.advance(29.0)
+    assert mill.moving and mill.facts["door"] == "open"
+    watched.world.advance(2.0)
+    assert not mill.moving and mill.facts["door"] == "closed"
+
+
+def test_no_day_passes_at_once_while_a_switch_is_late() -> None:
+    watched = Watched(shop(load), invariants=())  # nobody has asked for what it does
+    watched.begin(Fault(kind="never_ends", at=0.0, target="jaw", seconds=30.0))
+    watched.begin(
+        Fault(kind="plant_freeze", at=0.0, target="plant", word="plant", seconds=2.0, amount=80_000.0)
+    )
+    jaw = machine_of(watched, "jaw")
+    jaw.start(round(watched.world.now * 1e6), OrderGoal(verb="close", values=(), seq=1, epoch=1))
+    assert not jaw.moving
+    watched.world.advance(3.0)
+    assert watched.world.skipped_s == 0
 
 
 def believed_at_once(patch: Patch) -> None:
     """A command counts as done when its robot has only accepted it."""
     done = Verdict(feed=Feed.DONE)
-    patch.setattr("arboleda.core.evidence.judge", lambda *_: done)
+    patch.setattr("arboleda.dispatch.evidence.judge", lambda *_: done)
+
+
+def believed_on_its_word(patch: Patch) -> None:
+    """What a device says of its facts is not looked at when it says that it is done."""
+    patch.setattr(evidence, "reached", lambda entry, belief: True)
+
+
+def moves_while_its_tool_may_open(patch: Patch) -> None:
+    """An arm moves although its gripper may still let go, late, as it was told to."""
+    patch.setattr(Dispatcher, "opening_tool", lambda self, robot: None)
 
 
 def zones_for_all(patch: Patch) -> None:
     """Zones are given to whoever asks, and nothing guards them."""
     patch.setattr(Context, "take_zones", lambda self, robot, zones, *, inside=False: True)
+    unguarded(patch)
+
+
+def unguarded(patch: Patch) -> None:
+    """Nothing is looked at before a command leaves, whatever the tree says."""
     patch.setattr(Context, "_barrier", lambda self, command: None)
+
+
+def forgets_doors(patch: Patch) -> None:
+    """A machine that shuts its door takes no zone."""
+    patch.setattr(Context, "keep_interlocks", lambda self, device: None)
+    patch.setattr(Context, "occupied_by", lambda self, device: frozenset())
+    zones_for_all(patch)
+
+
+def ignores_needs(patch: Patch) -> None:
+    """What a verb needs is not looked at before it is sent."""
+    patch.setattr(Dispatcher, "_unmet", lambda self, command, *, was: None)
+
+
+def ignores_needs_everywhere(patch: Patch) -> None:
+    """Neither the plant nor the board of a device looks at what a verb needs."""
+    ignores_needs(patch)
+    objection = MachineBody.objection
+
+    def lax(self: MachineBody, goal: OrderGoal, **state: bool) -> str | None:
+        word = objection(self, goal, **state)
+        return None if word == "condicion" else word
+
+    patch.setattr(MachineBody, "objection", lax)
+
+
+def stops_what_should_finish(patch: Patch) -> None:
+    """A stop ends work that goes on through a stop."""
+
+    def stop(self: Board, *, latch: bool) -> None:
+        self.latched = self.latched or latch
+        self._break_off()
+
+    patch.setattr(Board, "_stop", stop)
+
+
+def runs_through_a_stop(patch: Patch) -> None:
+    """A stopped machine finishes whatever it does."""
+    patch.setattr(MachineBody, "stop", lambda self, now_us: None)
+
+
+def forgets_its_latch(patch: Patch) -> None:
+    """A stopped device takes orders."""
+    objection = MachineBody.objection
+
+    def lax(self: MachineBody, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
+        return objection(self, goal, latched=False, faulted=faulted)
+
+    patch.setattr(MachineBody, "objection", lax)
+
+
+def any_answer_counts(patch: Patch) -> None:
+    """Whatever a device answered last is taken for the answer to what it was asked now."""
+
+    def answered(entry: Any, belief: Any, report: Any) -> Verdict | None:
+        return None if report.answer is None else Verdict(feed=Feed.DONE, answer=report.answer)
+
+    patch.setitem(evidence.RULES, (Query, Evidence.IDS), answered)
+
+
+def tells_nobody(patch: Patch) -> None:
+    """Commands of other nodes are refused without a word."""
+    patch.setattr(Bridge, "_told_of", lambda self, unsure: [])
+
+
+def obeys_anybody(patch: Patch) -> None:
+    """Commands of other nodes are obeyed though a plant is heard."""
+    patch.setattr(Bridge, "_is_commanded", lambda self, at: False)
+
+
+def takes_old_orders(patch: Patch) -> None:
+    """A board takes every number."""
+    patch.setattr(Receipts, "objection", lambda self, goal: None)
+    patch.setattr(Receipts, "repeats", lambda self, goal: False)
+
+
+def halts_nothing(patch: Patch) -> None:
+    """Work whose step is left is not halted."""
+    patch.setattr(Dispatcher, "_stop", lambda self, robot, mode: None)
+
+
+def forgets_grips(patch: Patch) -> None:
+    """What a device holds is not kept for the next start."""
+    patch.setattr(Dispatcher, "_grip", lambda self, arm, grip: self.grips.set(arm, grip))
 
 
 def told_twice(patch: Patch) -> None:
@@ -104,33 +327,102 @@ def advises_nothing(patch: Patch) -> None:
     patch.setattr(Plant, "advice", lambda self, cell: ())
 
 
-def forgets_a_task(patch: Patch) -> None:
-    """A task that is done is never said to have ended."""
-    step = Plant.step
-
-    def silent(self: Plant, now: float, events: Any) -> list[Any]:
-        out = step(self, now, events)
-        return [each for each in out if getattr(getattr(each, "state", None), "value", "") != "done"]
-
-    patch.setattr(Plant, "step", silent)
+def shared_with_all(patch: Patch) -> None:
+    """What cells share is given to whoever asks, and nothing guards it."""
+    patch.setattr(Context, "take_devices", lambda self, devices: True)
+    unguarded(patch)
 
 
-BITES: list[tuple[str, Callable[[Patch], None]]] = [
-    ("no_step_raises", raises_at_a_verb),
-    ("a_task_ends_once", told_twice),
-    ("what_is_done_was_so", believed_at_once),
-    ("a_zone_has_one_occupant_who_holds_it", zones_for_all),
-    ("everything_comes_to_rest", advises_nothing),
-    ("an_accepted_task_has_ended", forgets_a_task),
+Scenario = Callable[[Watched], None]
+
+
+def at_work(watched: Watched, verb: str) -> None:
+    """A task is on its way until the mill carries out this verb."""
+    watched.world.request_task("tending load")
+    seen = watched.world.obeyed
+    assert watched.world.advance(60.0, lambda: getattr(seen.get("mill"), "verb", None) == verb)
+    watched.world.advance(1.0)
+
+
+def stopped_at(verb: str) -> Scenario:
+    def scenario(watched: Watched) -> None:
+        at_work(watched, verb)
+        watched.world.request_verb(Verb.STOP)
+        watched.world.advance(10.0)
+
+    return scenario
+
+
+def ordered_while_stopped(watched: Watched) -> None:
+    """Somebody tells a stopped mill to shut its door, under a number that counts."""
+    watched.world.request_verb(Verb.STOP)
+    watched.world.advance(1.0)
+    goal = OrderGoal(verb="close", values=(), seq=1, epoch=4_000_000_000)
+    watched.world.publish(Publication(topic="mill/orden", payload=encode(goal)))
+    watched.world.advance(1.0)
+
+
+def told(text: str) -> Scenario:
+    def scenario(watched: Watched) -> None:
+        watched.world.request_task(f"tending {text}")
+        watched.world.advance(60.0)
+
+    return scenario
+
+
+def no_bug(patch: Patch) -> None:
+    """The recipe itself is wrong."""
+
+
+BITES: list[tuple[str, Bug, Scenario | Weather]] = [
+    ("what_is_done_was_so", believed_at_once, told("load")),
+    ("what_is_done_was_so", believed_on_its_word, {"only_says_done": 20.0}),
+    ("what_a_task_left_is_so", believed_on_its_word, {"only_says_done": 20.0}),
+    ("needs_hold", ignores_needs_everywhere, told("careless")),
+    ("no_command_against_a_need", ignores_needs, told("careless")),
+    ("finishing_work_is_finished", stops_what_should_finish, stopped_at("cool")),
+    ("nothing_is_dropped", no_bug, told("drops")),
+    ("nothing_is_dropped", moves_while_its_tool_may_open, {"never_ends": 10.0}),
+    ("an_answer_is_to_its_question", any_answer_counts, told("looks")),
+    ("commands_of_others_are_told", tells_nobody, {"foreign_command": 10.0}),
+    ("bridge_obeys_only_its_plant", obeys_anybody, {"foreign_command": 10.0}),
+    ("executed_numbers_rise", takes_old_orders, {"foreign_old": 10.0}),
+    ("a_shared_device_serves_one_cell", shared_with_all, "none"),
+    ("speed_never_rises_after_stop", runs_through_a_stop, stopped_at("close")),
+    ("latched_board_stays_still", forgets_its_latch, ordered_while_stopped),
+    ("stop_holds", forgets_its_latch, ordered_while_stopped),
+    ("halted_moves_sent_halt", halts_nothing, {"operator_hold": 10.0}),
+    ("one_robot_per_zone", zones_for_all, told("both")),
+    ("one_robot_per_zone", forgets_doors, told("both")),
+    ("zone_entered_only_when_held", zones_for_all, told("both")),
+    ("ends_are_proven", believed_at_once, told("load")),
+    ("kept_is_what_is", forgets_grips, told("load")),
+    ("each_task_ends_once", told_twice, told("load")),
+    ("no_internal_failure", raises_at_a_verb, told("load")),
+    ("at_rest_at_end", advises_nothing, {"operator_stop": 6.0}),
 ]
 
 
-@pytest.mark.parametrize(("name", "bug"), BITES, ids=[name for name, _ in BITES])
-def test_it_bites(monkeypatch: Patch, name: str, bug: Callable[[Patch], None]) -> None:
+@pytest.mark.parametrize(("name", "bug", "how"), BITES, ids=[f"{n}: {b.__name__}" for n, b, _ in BITES])
+def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weather) -> None:
     bug(monkeypatch)
-    weather = [(seed, level) for level in ("none", "normal") for seed in range(1, 4)]
-    assert any((broken := run(*each)) is not None and broken.invariant == name for each in weather)
+    if callable(how):
+        watched = Watched(shop(*RECIPES), invariants=[each for each in GENERAL if each.name == name])
+        with pytest.raises(Broken, match=name):
+            how(watched)
+    else:
+        model = SHARING if bug is shared_with_all else None
+        found = (run(seed, how, only=name, cycles=3, model=model) for seed in range(1, 11))
+        assert any(broken is not None and broken.invariant == name for broken in found)
 
 
-def test_every_invariant_has_a_bug() -> None:
-    assert [name for name, _ in BITES] == [each.name for each in GENERAL]
+@pytest.mark.parametrize(
+    "how", [each for name, _, each in BITES if callable(each) and name != "nothing_is_dropped"]
+)
+def test_it_finds_nothing_where_there_is_no_bug(how: Scenario) -> None:
+    how(Watched(shop(*RECIPES)))
+
+
+def test_every_invariant_of_devices_has_a_bug() -> None:
+    assert {each.name for each in OF_DEVICES} <= {name for name, _, _ in BITES}
+    assert {name for name, _, _ in BITES} <= {each.name for each in GENERAL}

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import OperatorRequest, Verb
-from arboleda.core.model import Evidence
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.messages import OperatorRequest, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.simulator.invariants.invariant import Look
 from arboleda.simulator.invariants.motion import no_move_after_a_boot_that_was_told
 from arboleda.simulator.people import WAITING, Customers

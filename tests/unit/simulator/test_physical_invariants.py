@@ -8,16 +8,15 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import evidence, steps
-from arboleda.core.commands import Home
-from arboleda.core.context import Context
-from arboleda.core.dispatcher import Dispatcher
-from arboleda.core.evidence import Verdict
-from arboleda.core.ledger import Feed
-from arboleda.core.messages import Verb
-from arboleda.core.model import Evidence, PlantModel
-from arboleda.core.zones import Zones
+from arboleda.dispatch import evidence
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.evidence import Verdict
+from arboleda.dispatch.ledger import Feed
+from arboleda.dispatch.zones import Zones
 from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.commands import Home
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import Evidence, PlantModel
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.invariants.grip import GRIP
@@ -29,6 +28,8 @@ from arboleda.simulator.record import Record
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
+from arboleda.trees import steps
+from arboleda.trees.context import Context
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication

@@ -13,12 +13,12 @@ from arboleda.app.plant_file import shapes
 from arboleda.app.plant_file.robot_models import arm_models, mobile_models
 from arboleda.app.simulate.drawn import Drawn, loaded
 from arboleda.app.simulate.plants import Plant
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import Evidence, Link, PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller
 
 SEEDS = range(120)
-LINKS = set(Link) - {Link.SCREEN}  # by which a robot is reached; that one is of people
+LINKS = set(Link) - {Link.SCREEN, Link.DRIVER}  # a person is a device, and drivers are not drawn
 ARMS = {name: model.joints for name, model in arm_models().items()}
 MOBILES = {name: model.speed for name, model in mobile_models().items()}
 

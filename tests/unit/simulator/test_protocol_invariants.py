@@ -10,25 +10,16 @@ from typing import Any
 
 import pytest
 
-from arboleda.core import (
-    belief,
-    cell,
-    context,
-    dispatcher,
-    evidence,
-    leaves,
-    ledger,
-    operator,
-    plant,
-)
+from arboleda.core import cell, operator, plant
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.ledger import TABLE, Feed, State
-from arboleda.core.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
-from arboleda.core.model import Evidence, ForeignCommands, PlantModel, Retry
-from arboleda.core.sentence import Phrase
+from arboleda.dispatch import belief, dispatcher, evidence, ledger
+from arboleda.dispatch.ledger import TABLE, Feed, State
 from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState, Verb
+from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
+from arboleda.model.sentence import Phrase
 from arboleda.sim.board import Board
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.books import BOOKS
@@ -41,6 +32,7 @@ from arboleda.simulator.record import Record
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing.plants import shipped, slowed
+from arboleda.trees import context, leaves
 from arboleda.wire import board as wire_board
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.hop import FromPlant

@@ -7,12 +7,12 @@ from dataclasses import replace
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.ledger import State
-from arboleda.core.messages import Report, TaskChanged, TaskState, Verb
-from arboleda.core.model import Evidence, MotionState
+from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import Report, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.simulator.record import Record
 from arboleda.simulator.recorded.robots import KnownRobot, Obstacle, Stopped
 from arboleda.simulator.recorded.scopes import Scopes
@@ -235,12 +235,23 @@ def test_ended_tasks_are_forgotten_in_the_end():
     assert tasks.known(f"t{KEPT}").state is TaskState.DONE
 
 
-def test_a_plant_that_crashed_forgets_its_tasks(world, record):
+def test_a_plant_that_crashed_has_no_cell_whose_tasks_wait(world, record):
+    world.crash("ra_1")
+    world.advance(0.5)
+    world.request_task(TASK)
+    world.advance(0.5)
+    assert record.idle == [record.cells["sis_a"]]
+    world.crash(PLANT)
+    world.advance(0.5)
+    assert record.idle == []
+
+
+def test_a_plant_that_crashed_has_its_task_at_work_and_none_of_its_commands(world, record):
     world.request_task(TASK)
     world.advance(1)
     world.crash(PLANT)
     world.advance(0.1)
-    assert record.tasks.open == {}
+    assert [*record.tasks.running] == ["sis_a"]
     assert record.commands.open == {}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.simulator.recorded.tasks import SURE, Tasks
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.commands import StopMode
-from arboleda.core.messages import Report, Verb
-from arboleda.core.model import Crossing, Evidence, PlantModel
+from arboleda.model.commands import StopMode
+from arboleda.model.messages import Fact, Report, Verb
+from arboleda.model.plant_model import Crossing, Evidence, PlantModel
 from arboleda.simulator.truth import Truth
 from arboleda.simulator.truth.arm import ArmTruth
 from arboleda.simulator.world import PLANT, World
@@ -265,12 +265,16 @@ def test_a_board_that_was_told_to_stop_is_latched_until_it_is_cleared_or_boots(s
     assert not stage.arm.latched
 
 
-def test_a_restarted_plant_runs_no_task(stage):
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_stands(stage, kept):
     stage.ask("sis_a palletizing", 0.5)
-    assert stage.truth.cells["sis_a"].task is not None
+    task = stage.truth.cells["sis_a"].task
+    assert task is not None
+    if not kept:
+        del stage.world.memory[Fact.STEP]
     stage.world.crash()
     stage.world.advance(0.1)
-    assert stage.truth.cells["sis_a"].task is None
+    assert stage.truth.cells["sis_a"].task == (task if kept else None)
 
 
 @pytest.mark.parametrize(("stalled_s", "at_home"), [(0.2, False), (30.0, True)])

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import pytest
 
-from arboleda.core.messages import SystemStart
+from arboleda.model.messages import SystemStart
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.invariant import Look, When, invariant
 from arboleda.simulator.watched import Broken, Watched

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.messages import Heartbeat, Verb
+from arboleda.model.messages import Heartbeat, Verb
 from arboleda.simulator.trace import Trace
 from arboleda.simulator.world import BRIDGE, PLANT, World
 from arboleda.testing import shipped

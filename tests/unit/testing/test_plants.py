@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.app.config import load
-from arboleda.core.model import Evidence, Link
+from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing import shipped
 
 

@@ -8,12 +8,12 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.composites import Sequence
 
-from arboleda.core.context import Context
-from arboleda.core.leaves import Dwell
-from arboleda.core.task import Order
+from arboleda.model.task import Order
 from arboleda.recipes import storage as recipes
 from arboleda.simulator.invariants.invariant import Look, When, invariant
 from arboleda.testing import Misuse, Sim, shipped
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Dwell
 
 
 @pytest.fixture

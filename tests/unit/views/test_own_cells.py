@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.model import PlantModel
-from arboleda.core.sentence import in_json
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import in_json
 from arboleda.recipes import Kit, Number, recipe, work
 from arboleda.testing import Rig, shipped
 from arboleda.views import diagnostics, forms, places, twin_view, view
@@ -43,8 +43,15 @@ def renamed(plant: PlantModel, role: str) -> PlantModel:
 
 
 def test_a_cell_names_its_devices_with_role_and_kind(bench: Bench) -> None:
-    oven = {"role": "oven", "name": "oven", "kind": "oven", "position": None, "holds": "clamped"}
-    eye = {"role": "eye", "name": "eye", "kind": "eye", "position": None, "holds": None}
+    oven = {
+        "role": "oven",
+        "name": "oven",
+        "kind": "oven",
+        "position": None,
+        "holds": "clamped",
+        "asked": False,
+    }
+    eye = {"role": "eye", "name": "eye", "kind": "eye", "position": None, "holds": None, "asked": False}
     assert cell_of(bench)["devices"] == [oven, eye]
     (told,) = view.layout(bench.plant.model)["cells"]
     assert told["devices"] == [oven, eye] and not {"arm", "mobile", "grid", "paths"} & set(told)

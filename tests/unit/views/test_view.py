@@ -7,9 +7,9 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.messages import Verb
-from arboleda.core.model import Evidence, MotionState
-from arboleda.core.sentence import in_json
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.sentence import in_json
 from arboleda.testing import Rig, shipped
 from arboleda.views import tree_view, view
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.commands import Home, Stop, StopMode
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, MotionState, Robot
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home, Stop, StopMode
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, MotionState, Robot
 from arboleda.wire.payloads import REFUSALS, Beat
 
 SMALL = st.none() | st.integers(0, 6)

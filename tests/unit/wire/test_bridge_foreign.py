@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.model import ForeignCommands, MotionState
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.plant_model import ForeignCommands, MotionState
 from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
 from arboleda.wire.hop import FromPlant, without_id
 from arboleda.wire.payloads import StopGoal

@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from arboleda.core.commands import Home, Stop, StopMode
-from arboleda.core.messages import Heartbeat
-from arboleda.core.model import Evidence, MotionState
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home, Stop, StopMode
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.model import Evidence, MotionState
 from arboleda.kinds.arm import MoveJoints
+from arboleda.model.plant_model import Evidence, MotionState
 
 MOVING, STOPPED, NO_LINK = MotionState.MOVING, MotionState.STOPPED, MotionState.NO_LINK
 STALE_AFTER_S = 1.5

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.model import MotionState
 from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.plant_model import MotionState
 from arboleda.wire.bridge import Leaving
 from arboleda.wire.payloads import EffectorGoal, StopGoal
 

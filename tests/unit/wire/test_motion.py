@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import Evidence, MotionState
 from arboleda.kinds.arm import MoveJoints
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.testing import shipped
 from arboleda.wire.motion import LINGER_S, OpenMotion
 from arboleda.wire.values import Telemetry

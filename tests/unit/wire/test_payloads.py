@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.commands import StopMode
-from arboleda.core.errors import PayloadError
-from arboleda.core.model import MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.errors import PayloadError
+from arboleda.model.plant_model import MotionState
 from arboleda.wire.payloads import (
     REFUSALS,
     Beat,

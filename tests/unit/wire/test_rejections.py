@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.core.commands import Home
+from arboleda.model.commands import Home
 from arboleda.testing.plants import shipped
 from arboleda.wire.payloads import REFUSALS
 from arboleda.wire.rejections import refused

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.model import Evidence, MotionState
+from arboleda.model.errors import PayloadError
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.wire.payloads import Telemetry, decode, read_angles
 from arboleda.wire.repeats import Words
 from arboleda.wire.strict import LIMIT_BYTES

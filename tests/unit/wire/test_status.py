@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState
-from arboleda.core.sentence import OWN
 from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Receipt, Report
+from arboleda.model.plant_model import MotionState
+from arboleda.model.sentence import OWN
 from arboleda.testing import shipped
 from arboleda.wire import rejections
 from arboleda.wire.status import STALE, Status, from_label, from_status, to_label, to_status
@@ -29,6 +29,7 @@ SAID = {
     "done": IDS,
     "state": st.none() | st.sampled_from(MotionState),
     "homed": FLAG,
+    "receipt": st.none() | st.builds(Receipt, UINT, UINT, st.none() | UINT),
 }
 ON = SetEffector(id="", robot="ra1", on=True)
 FAR = MoveJoints(id="", robot="ra1", q=(9.0, 0.0, 0.0))

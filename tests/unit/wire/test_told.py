@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from arboleda.core.errors import PayloadError
+from arboleda.model.errors import PayloadError
 from arboleda.testing import shipped
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.status import Status, from_label, from_status

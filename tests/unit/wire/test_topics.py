@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.core.errors import PayloadError
+from arboleda.model.errors import PayloadError
 from arboleda.wire.topics import Channel, parse, topic
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.core.errors import PayloadError
+from arboleda.model.errors import PayloadError
 from arboleda.wire.payloads import decode, encode
 from arboleda.wire.topics import Channel
 

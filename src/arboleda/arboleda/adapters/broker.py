@@ -9,20 +9,27 @@ import logging
 import secrets
 import socket
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import ExitStack
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from . import descriptors
-from .mqtt import Address, Credentials
+from .broker_login import Address, Credentials
 from .mqtt_broker.access import Access
 from .mqtt_broker.client import Client
 from .mqtt_broker.packets import Answer, connack
 from .mqtt_broker.router import Router
 from .mqtt_broker.sessions import Sessions
+from .seldom import Seldom
+
+if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+    import ssl
+
+    from .server_tls import ServerTls
 
 log = logging.getLogger(__name__)
 
@@ -42,8 +49,9 @@ class EmbeddedBroker:
     Without `users` anybody on this machine may use it. With users (name -> password) everybody logs in;
     `boards` may write only their own telemetry and presence and read only their own topics; other users only
     read. Other machines are let in only then. The plant's own clients log in with `credentials`, made for
-    this start: the limits for others are not for them. `connections` is how many may be open at once, for
-    None its share of the files that this process may open.
+    this start: the limits for others are not for them. With `tls` everybody speaks TLS, and where that asks
+    for certificates, users show one with their name. `connections` is how many may be open at once, for None
+    its share of the files that this process may open.
     """
 
     def __init__(
@@ -55,12 +63,14 @@ class EmbeddedBroker:
         boards: frozenset[str] = frozenset(),
         credentials: Credentials | None = None,
         connections: int | None = None,
+        tls: ServerTls | None = None,
     ) -> None:
         self.credentials = credentials or Credentials(user=PLANT, password=secrets.token_urlsafe())
         self._host = host
         self._port = port
         self._users = dict(users or {})
         self._boards = boards
+        self._tls = tls
         self._connections = connections or descriptors.shares(len(boards)).mqtt
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -78,11 +88,11 @@ class EmbeddedBroker:
         ready.result()
         try:
             if not access.guests:
-                refuse_strangers(listener)
+                refuse_strangers(listener, self._believing)
         except BaseException:  # whatever it is, an open door is not left open
             self.stop()
             raise
-        return Address(host=host, port=port)
+        return Address(host=host, port=port, tls=self._believing)
 
     def stop(self) -> None:
         """Drop every client, close the port, join; idempotent."""
@@ -92,6 +102,13 @@ class EmbeddedBroker:
             self._loop.call_soon_threadsafe(self._stopping.set)
         self._thread.join()
         self._thread = None
+
+    @property
+    def _believing(self) -> ssl.SSLContext | None:
+        """How the plant's own clients believe this broker."""
+        from .server_tls import pinned
+
+        return pinned(self._tls.pem) if self._tls is not None else None
 
     def _access(self) -> Access:
         if not self._users and not is_loopback(self._host):
@@ -112,6 +129,7 @@ class EmbeddedBroker:
             passwords=self._users,
             boards=self._boards,
             guests=not self._users,
+            certified=self._tls is not None and self._tls.asks,
         )
 
     def _bind(self) -> socket.socket:
@@ -125,12 +143,21 @@ class EmbeddedBroker:
                 raise StartError(f"The broker cannot listen on {where}: the port is taken.") from error
             raise StartError(f"The broker cannot listen on {where}: {error.strerror or error}.") from error
 
+    def _protocols(self, sessions: Sessions, router: Router) -> Callable[[], asyncio.BaseProtocol]:
+        """What makes the protocol of each connection."""
+        if self._tls is None:
+            return lambda: Client(sessions, router)
+        from .tls_layer import TlsLayer
+
+        layered = partial(TlsLayer, self._tls.context, server="The plant's own broker", seldom=Seldom())
+        return lambda: layered(Client(sessions, router))
+
     async def _serve(self, listener: socket.socket, access: Access, ready: Future[None]) -> None:
         self._loop, self._stopping = asyncio.get_running_loop(), asyncio.Event()
         self._loop.set_exception_handler(note_failure)
         sessions, router = Sessions(access, self._connections), Router(access)
         server = await self._loop.create_server(
-            lambda: Client(sessions, router), sock=listener, backlog=descriptors.AT_ONCE
+            self._protocols(sessions, router), sock=listener, backlog=descriptors.AT_ONCE
         )
         ready.set_result(None)
         await self._stopping.wait()
@@ -139,18 +166,20 @@ class EmbeddedBroker:
         await asyncio.sleep(0)  # the connections are told that they are closed
 
 
-def refuse_strangers(listener: socket.socket) -> None:
+def refuse_strangers(listener: socket.socket, tls: ssl.SSLContext | None = None) -> None:
     """Knock as a client would, without a user, without a password and with a wrong one; StartError where that
     opens, or nobody answers."""
     host, port = listener.getsockname()[:2]
     with ExitStack() as opened:
         talks = {}
         for who, hello in STRANGERS.items():
-            talks[who] = opened.enter_context(socket.create_connection((host, port), CHECK_S))
+            talk = opened.enter_context(socket.create_connection((host, port), CHECK_S))
+            talks[who] = opened.enter_context(tls.wrap_socket(talk)) if tls is not None else talk
             talks[who].sendall(hello)
         for who, talk in talks.items():
             try:
-                answer = talk.recv(4, socket.MSG_WAITALL)
+                with talk.makefile("rb") as said:
+                    answer = said.read(4)
             except OSError as error:
                 raise StartError(f"The broker does not answer its own check: {error}.") from error
             if answer != connack(Answer.NOT_AUTHORIZED):

@@ -12,7 +12,7 @@ import socket
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 RAISED_TO = 4096  # a higher limit serves nobody here, and programs that we start inherit it
 SELECT_SEES = 1024  # paho waits with select(), which takes no descriptor with a higher number

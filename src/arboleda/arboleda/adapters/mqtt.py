@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import logging
 import socket
+import ssl
 import struct
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
 from typing import Any
 
 from paho.mqtt.client import Client, MQTTMessage, MQTTMessageInfo
@@ -17,10 +18,11 @@ from paho.mqtt.packettypes import PacketTypes
 from paho.mqtt.properties import Properties
 from paho.mqtt.reasoncodes import ReasonCode
 
-from arboleda.core.errors import ArboledaError
-from arboleda.core.model import MqttVersion
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import MqttVersion
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+from .broker_login import CA, CERTIFICATE, SECURE, Address, Credentials
 from .clock import seconds
 
 log = logging.getLogger(__name__)
@@ -34,30 +36,21 @@ QUEUE_LIMIT = 100
 LARGEST_PACKET = 4096  # bytes; all that plant and boards say is shorter
 AT_ONCE = 40  # topics of one SUBSCRIBE: the plant's own broker takes packets of 4 kB
 EXPIRY_S = 1
+CHECK = "check its certificate"
+MISTRUST = {  # by X509_V_ERR of OpenSSL
+    9: "set the clock of this machine",
+    10: "renew it, or set the clock of this machine",
+    18: f"name the file of its authority in ${CA}",
+    19: f"name the file of its authority in ${CA}",
+    20: f"name the file of its authority in ${CA}",
+    62: "call the broker by a name that its certificate has",
+    64: "call the broker by a name that its certificate has",
+}
 PAHO_VERSION = {MqttVersion.V3_1_1: MQTTProtocolVersion.MQTTv311, MqttVersion.V5: MQTTProtocolVersion.MQTTv5}
 
 
 class NotConnected(ArboledaError):
     """A publication was refused because the broker is not there; it will not be sent later."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Address:
-    """Where a broker listens."""
-
-    host: str
-    port: int
-
-    def __str__(self) -> str:
-        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Credentials:
-    """What a client logs in with."""
-
-    user: str
-    password: str = field(repr=False)
 
 
 class MqttClient:
@@ -91,6 +84,7 @@ class MqttClient:
         self._version = PAHO_VERSION[version]
         self._announce = announce
         self._told: str | None = None  # the trouble that the log already names
+        self._answered = False  # whether the broker of this connection has said anything
         self._refused: str | None = None  # what the broker of this connection said no to
         self._early: list[Delivery] = []
         self._asked: dict[int | None, tuple[str, ...]] = {}  # by packet id, until the broker has answered
@@ -106,6 +100,18 @@ class MqttClient:
 
     def publish(self, publication: Publication) -> None:
         """Send now or raise NotConnected; nothing is kept for a later connection."""
+        self._sent(publication)
+
+    def deliver(self, publication: Publication, within_s: float) -> None:
+        """Send now, and return once the broker has it; NotConnected where it does not say so in time."""
+        sent = self._sent(publication)
+        with suppress(ValueError, RuntimeError):  # the connection is over
+            sent.wait_for_publish(within_s)
+            if sent.is_published():
+                return
+        raise NotConnected(f"the MQTT broker at {self._address} did not say that it has it")
+
+    def _sent(self, publication: Publication) -> MQTTMessageInfo:
         with self._lock:
             if self._paho is None:
                 raise NotConnected(f"the MQTT broker at {self._address} is not connected")
@@ -121,6 +127,7 @@ class MqttClient:
                     f"the MQTT broker at {self._address} does not take messages: {info.rc.name}"
                 )
             self._last = info
+            return info
 
     def close(self) -> None:
         """Let what was published leave, disconnect (no last will) and join; idempotent."""
@@ -156,9 +163,8 @@ class MqttClient:
             delay = min(2 * delay, LAST_RETRY_S)
 
     def _serve_one_connection(self) -> None:
-        self._refused, self._early = None, []
+        self._refused, self._answered, self._early = None, False, []
         paho = self._new_paho()
-        trouble = "connection lost"
         try:
             paho.connect(
                 self._address.host, self._address.port, KEEPALIVE_S, properties=self._largest_packet()
@@ -166,9 +172,24 @@ class MqttClient:
             while paho.loop(WAKE_S) == MQTTErrorCode.MQTT_ERR_SUCCESS:
                 if self._closing.is_set():
                     paho.disconnect()
+            trouble = "connection lost" if self._answered else self._silence()
         except (OSError, ValueError, struct.error) as error:
-            trouble = str(error)
+            trouble = self._refusal_of_tls(error) or str(error)
         self._down(paho, trouble)
+
+    def _silence(self) -> str:
+        """What may be wrong where a broker ends a connection without a word."""
+        wants = f"a certificate of this client: ${CERTIFICATE}" if self._address.tls else f"TLS: {SECURE}"
+        return f"it ended the connection without an answer; it may want {wants}"
+
+    def _refusal_of_tls(self, error: Exception) -> str:
+        """What to do where the two do not come to trust each other; "" for any other error."""
+        if isinstance(error, ssl.SSLCertVerificationError):
+            why = error.verify_message.rstrip(".")
+            return f"its certificate is not believed: {why}; {MISTRUST.get(error.verify_code, CHECK)}"
+        if self._address.tls and isinstance(error, (ssl.SSLError, ConnectionResetError)):
+            return f"no TLS there: {error.strerror}; name its port for TLS, or leave out {SECURE}"
+        return ""
 
     def _largest_packet(self) -> Properties | None:
         """MQTT 5 only: a broker keeps larger packets to itself, which paho would take whole into memory."""
@@ -189,6 +210,8 @@ class MqttClient:
         paho.connect_timeout = CONNECT_TIMEOUT_S
         paho.max_inflight_messages_set(1)
         paho.max_queued_messages_set(QUEUE_LIMIT)
+        if self._address.tls is not None:
+            paho.tls_set_context(self._address.tls)
         if self._credentials is not None:
             paho.username_pw_set(self._credentials.user, self._credentials.password)
         if self._will is not None:
@@ -211,6 +234,7 @@ class MqttClient:
     def _connected(
         self, paho: Client, _userdata: Any, _flags: Any, reason: ReasonCode, _properties: Any
     ) -> None:
+        self._answered = True
         if reason.is_failure:
             user = f" user {self._credentials.user!r}" if self._credentials else " a client without user name"
             spoken = "5" if self._version == MQTTProtocolVersion.MQTTv5 else "3.1.1"

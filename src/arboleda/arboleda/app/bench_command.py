@@ -8,15 +8,15 @@ from typing import Annotated
 
 import typer
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 GROUP = "arboleda.bench"
 MISSING = "the benchmarks are not installed here; `make install` in Arboleda's own folder brings them"
 HELP = """Measure this machine: ours against a floor of the same run, so that figures of two machines compare.
 
 \b
-arboleda bench                   all of them, about ten minutes
-arboleda bench --quick           all of them, under two minutes, figures less certain
+arboleda bench                   all of them, about twelve minutes
+arboleda bench --quick           all of them, about two minutes, figures less certain
 arboleda bench reaction chain    these two
 arboleda bench --list            which there are
 
@@ -29,7 +29,7 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="Be
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write every figure and the machine there.")
 ]
-Quick = Annotated[bool, typer.Option("--quick", help="Short runs: under two minutes for all of them.")]
+Quick = Annotated[bool, typer.Option("--quick", help="Short runs: about two minutes for all of them.")]
 Listed = Annotated[bool, typer.Option("--list", help="Name the benchmarks and what they measure, and exit.")]
 
 

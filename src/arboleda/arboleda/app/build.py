@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import logging
+import os
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
@@ -13,34 +14,47 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arboleda import __version__
 from arboleda.adapters import clock, descriptors
-from arboleda.adapters.mqtt import Credentials
+from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
+from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.store import JournalEntry, Store
-from arboleda.core.errors import ArboledaError, StartError
-from arboleda.core.facts import Value
-from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
-from arboleda.core.model import Link, MqttVersion, PlantModel
+from arboleda.adapters.task_rows import COMMAND, TaskHistory, TaskQuery, TaskRow
 from arboleda.core.operator import ACTS_TOLD
-from arboleda.core.sentence import OWN, Sentence, from_data
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.facts import Value
+from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.model.plant_model import Link, MqttVersion, PlantModel
+from arboleda.model.sentence import OWN, Sentence, from_data
+from arboleda.recorder.beginning import Beginning, Recording
+from arboleda.views.oee import Oee
 
+from .alarm_options import AlarmOptions
 from .log_queue import Output
+from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
-from .parts.broker import MQTT_PORT, OtherBroker, OwnBroker, address
+from .parts.broker import OtherBroker, OwnBroker
+from .parts.cell_times import CellTimes
 from .parts.devices import DevicesPart
+from .parts.drivers import DriversPart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
+from .parts.router import PlantPort, Router
+from .parts.systemd import systemd_part
 from .rate import at_rate
-from .state import StateDir, default_state
+from .state import STORE, StateDir, default_state
 from .waiting import until
 from .web_options import WebOptions
 
 if TYPE_CHECKING:  # its libraries are needed only where this part is
+    from arboleda.adapters.server_tls import ServerTls
+
+    from .parts.metrics import Metrics
     from .parts.web import WebPart
 
 PARTS = ("broker", "devices", "bridge", "orchestrator", "web")
 OF_BOARDS = frozenset({"broker", "devices", "bridge"})  # of no use where no robot is reached over MQTT
-STORE = "plant.sqlite"
 LOG = logging.getLogger(__name__)
 
 
@@ -52,13 +66,18 @@ class Options:
     broker: str | None = None
     broker_host: str = "127.0.0.1"
     broker_users: dict[str, str] | None = None
+    broker_tls: ServerTls | None = None
     credentials: Credentials | None = None
     rate: float = 1.0
     firmware: bool = False  # boards that can be are the firmware's, compiled for Linux
     state_dir: Path | None = None
     web: WebOptions = field(default_factory=WebOptions)
+    alarms: AlarmOptions = field(default_factory=AlarmOptions)
     log_name: str = "arboleda.log"
+    keeps_waiting: bool = True  # for the next start; else what waits at the end is cancelled
     page: bool = True  # the API needs none, and a page takes a second to load
+    recording: Recording | None = None  # None: no record is written
+    notes: tuple[str, ...] = ()  # what else a person should know of this start
 
 
 class App:
@@ -70,25 +89,32 @@ class App:
         self._shares = descriptors.shares(len(model.robots))
         self.orchestrator: Orchestrator | None = None
         self._state = StateDir(options.state_dir or default_state(model.name))
-        self._store = Store(self._state.path / STORE)
+        self._store = Store(self._state.path / STORE, model.name)
+        self._history, self._recalled = (TaskHistory(self._state.path / STORE) for _ in range(2))
+        self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))
+        self._metrics: Metrics | None = None
         self._web = self._web_part(options) if "web" in parts else None
+        options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
+        self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
         self._bridge: BridgePart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
         self._firmware = options.firmware
         self._log_name = options.log_name
+        self._notes = options.notes
         self._over = threading.Event()
         self._callbacks: list[Callable[[], None]] = []
         self._trouble: ArboledaError | None = None
         self._started: list[Part] = []
+        self._freezes = False
         self._parts: list[Part] = [self._broker]
         try:
             if "orchestrator" in parts:
                 self._state.open()
                 self._store.open()
                 self._past_acts = _acts(self._store)
-            self._build(set(parts))
+            self._build(set(parts), options)
         except BaseException:  # whatever it is, the next start finds the state directory free
             self._let_go()
             raise
@@ -96,11 +122,13 @@ class App:
     @property
     def notes(self) -> list[str]:
         """What a person should know of this start, a line each."""
-        notes = list(self._link.notes) if self._link else []
+        notes = [*self._notes, *(self._link.notes if self._link else ())]
         if self.model.has_boards:
             notes.append(f"MQTT broker: {self._broker.address}")
         if self._web is not None:
             notes += self._web.notes
+        if self._alarms is not None and self.orchestrator is not None:
+            notes += self._alarms.notes
         return notes
 
     @property
@@ -116,8 +144,10 @@ class App:
     def start(self) -> None:
         """Start every part in order; where one cannot, nothing is left running."""
         # A full collection would look at every library again: 50 ms in which no thread of Python runs.
-        gc.collect()
-        gc.freeze()
+        if not gc.get_freeze_count():  # else whoever runs this has seen to it
+            gc.collect()
+            gc.freeze()
+            self._freezes = True
         try:
             for part in self._parts:
                 self._started.append(part)
@@ -146,7 +176,8 @@ class App:
         """Halt the robots, then end the parts in reverse order; idempotent."""
         while self._started:
             self._started.pop().stop()
-        gc.unfreeze()
+        if self._freezes:
+            gc.unfreeze()
         self._let_go()
 
     def listen(self, *listeners: Callable[[TaskChanged], None]) -> None:
@@ -157,8 +188,8 @@ class App:
         """Have a snapshot told when more than a position changed; in the plant's thread, before `start`."""
         self._plant.watchers.append(watcher)
 
-    def submit(self, text: str) -> Future[TaskChanged]:
-        return self._plant.submit(text)
+    def submit(self, text: str, asked_by: str = COMMAND) -> Future[TaskChanged]:
+        return self._plant.submit(text, asked_by)
 
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
         return self._plant.operate(verb, scope, by_hand)
@@ -171,6 +202,12 @@ class App:
 
     def find(self, task: str) -> dict[str, Any] | None:
         return self._plant.find(task)
+
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        return self._history.select(query)
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        return self._history.oee(query, [cell.name for cell in self.model.cells])
 
     def offers(self) -> list[dict[str, Any]]:
         return self._plant.offers()
@@ -187,6 +224,7 @@ class App:
 
     def _web_part(self, options: Options) -> WebPart:
         from .parts import page  # its libraries take half a second, and nodes do without them
+        from .parts.metrics import Metrics
         from .parts.web import WebPart
 
         sources = page.Sources(
@@ -196,8 +234,16 @@ class App:
             past_acts=lambda: self._past_acts,
         )
         mount = page.mounting(sources) if options.page else None
-        most = self._shares.http
-        return WebPart(self, self._state.path, self._state.announce, options.web, mount, connections=most)
+        metrics = self._metrics = Metrics(self.snapshot, self.links)
+        return WebPart(
+            self,
+            self._state.path,
+            self._state.announce,
+            options.web,
+            mount,
+            connections=self._shares.http,
+            counts=metrics.text,
+        )
 
     @property
     def _plant(self) -> Orchestrator:
@@ -205,8 +251,34 @@ class App:
             raise ArboledaError("there is no orchestrator in this process")
         return self.orchestrator
 
-    def _build(self, parts: set[str]) -> None:
-        now, bridge = int(time.time()), None
+    def _recorder(self, epoch: int, plant: Orchestrator, options: Options) -> list[Part]:
+        """What writes the flight record of this start, where one is wanted; it ends after the plant."""
+        wanted = options.recording
+        if wanted is None:
+            return []
+        try:  # its libraries are needed only where a record is written
+            from arboleda.recorder.files import FOLDER
+            from arboleda.recorder.recorder import Recorder
+        except ImportError as error:
+            LOG.warning("no record is written: %s; the plant goes on without it", error)
+            return []
+        beginning = Beginning(
+            plant=self.model.name,
+            version=__version__,
+            epoch=epoch,
+            now=plant.began.now,
+            rate=options.rate,
+            virtual=wanted.virtual,
+            memory=plant.began.memory,
+            kept=plant.began.kept,
+            files=wanted.files,
+        )
+        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits)
+        plant.recorder = recorder
+        return [recorder]
+
+    def _build(self, parts: set[str], options: Options) -> None:
+        now, bridge, drivers = int(time.time()), None, None
         virtual, scout = "devices" in parts, "broker" not in parts
         if "bridge" in parts:
             waits = virtual and scout
@@ -216,16 +288,52 @@ class App:
             self._parts += self._boards(now, bridge, scout=scout)
         if "orchestrator" in parts:
             epoch = self._state.next_epoch(now)
-            self.orchestrator = Orchestrator(self.model, epoch, self._crash, self._store)
+            if self.model.driven:
+                drivers = DriversPart(self.model, epoch, self._crash)
+                self._parts.append(drivers)
+            self.orchestrator = Orchestrator(
+                self.model,
+                epoch,
+                self._crash,
+                self._store,
+                history=self._recalled,
+                drops_waiting=not self._keeps_waiting,
+            )
+            self._parts += self._recorder(epoch, self.orchestrator, options)
+            times = CellTimes(self._store, self.model.history_days)
+            self._parts.append(times)  # before the plant, so that it ends after it
+            self.orchestrator.observers.append(times.stepped)
+            if self._alarms is not None:
+                self._parts.append(self._alarms)
+                self.listen(self._alarms.changed)
+                self.orchestrator.observers.append(self._alarms.stepped)
             self._parts.append(self.orchestrator)
         if self._web is not None:
             self.watch(self._web.side.saw)
+            self._count()
             self._parts.append(self._web)
-        self._join(bridge, self._link)
+        self._join(bridge, drivers, self._link)
+        if self.orchestrator is not None:
+            systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
+            self._parts += [systemd] if systemd else []
+
+    def _seen_at(self, cell: str, task: str | None) -> str | None:
+        return self._web.address_of(cell, task) if self._web is not None else None
+
+    def _count(self) -> None:
+        """Have what happens counted."""
+        if self._metrics is not None and self.orchestrator is not None:
+            self.watch(self._metrics.saw)
+            self.listen(self._metrics.changed)
+            self.orchestrator.reacted = self._metrics.reacted
 
     def _boards(self, first_boot: int, bridge: BridgePart | None, *, scout: bool) -> list[Part]:
         """The boards that play the real ones: the firmware's where wanted and possible, else virtual."""
         robots = on_linux(self.model) if self._firmware else ()
+        if robots and self._broker.secure:
+            raise StartError(
+                "the firmware's boards speak no TLS: leave out --boards linux, or mqtts:// and --broker-tls"
+            )
         compiled = [LinuxBoards(self.model, robots, self._broker, self._crash, scout=scout)] if robots else []
         joined = bridge.join if bridge is not None and scout else _nothing
         elsewhere = [robot.name for robot in robots]
@@ -236,25 +344,40 @@ class App:
 
     def _let_go(self) -> None:
         """Give back what only one process may have; idempotent."""
+        self._history.close()
+        self._recalled.close()
         self._store.close()
         self._state.close()
 
-    def _join(self, bridge: BridgePart | None, link: Any | None) -> None:
-        """Join plant and bridge: over ROS 2 where there is a link, else directly."""
+    def _join(self, bridge: BridgePart | None, drivers: DriversPart | None, link: Any | None) -> None:
+        """Join the plant and what reaches its robots: its bridge directly or over ROS 2, and drivers."""
         plant = self.orchestrator
-        if link is None:
-            if plant is not None:
-                _refuse_ros_robots(self.model)
-            if plant is not None and bridge is not None:
-                plant.connect(bridge)
+        ports: dict[Link, PlantPort] = {}
+        if link is not None:
+            ports |= self._join_ros(bridge, link)
+        elif plant is not None:
+            _refuse_ros_robots(self.model)
+            if bridge is not None:
                 bridge.connect(plant.hear)
-            return
+                ports[Link.MQTT] = bridge
+        if plant is not None and drivers is not None:
+            drivers.connect(plant.hear)
+            ports[Link.DRIVER] = drivers
+        if plant is not None and ports:
+            plant.connect(Router(self.model, ports))
+
+    def _join_ros(self, bridge: BridgePart | None, link: Any) -> dict[Link, PlantPort]:
+        """Plant and bridge on ROS 2; the plant's port there is that to robots on MQTT and on ROS 2."""
+        ports: dict[Link, PlantPort] = {}
         if bridge is not None:
-            port = link.bridge(self.model, bridge.loop.post, clock.seconds)
-            bridge.connect(port.send, port.mqtt_link, port.tell)
-        if plant is not None:
-            plant.connect_ros(link.orchestrator(self.model, plant.hear, clock.seconds))
+            there = link.bridge(self.model, bridge.loop.post, clock.seconds)
+            bridge.connect(there.send, there.mqtt_link, there.tell)
+        if self.orchestrator is not None:
+            port = link.orchestrator(self.model, self.orchestrator.hear, clock.seconds)
+            self.orchestrator.connect_ros(port)
+            ports = {Link.MQTT: port, Link.ROS: port}
         self._parts.insert(1, RosPart(link))
+        return ports
 
     def _crash(self, name: str, error: BaseException) -> None:
         LOG.debug("the %s broke down", name, exc_info=error)
@@ -319,4 +442,6 @@ def _broker(model: PlantModel, options: Options, parts: set[str]) -> OwnBroker |
         return OtherBroker(address(options.broker or f"127.0.0.1:{MQTT_PORT}"), options.credentials)
     boards = frozenset(robot.mqtt for robot in model.robots.values())
     found_by_port = options.broker_users is not None or "bridge" not in parts
-    return OwnBroker(options.broker_host, options.broker_users, boards, found_by_port=found_by_port)
+    return OwnBroker(
+        options.broker_host, options.broker_users, boards, found_by_port=found_by_port, tls=options.broker_tls
+    )

@@ -5,28 +5,50 @@ from __future__ import annotations
 import json
 import shlex
 import sys
+import time
+from contextlib import suppress
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.live import Live
 from rich.text import Text
 
 from arboleda import __version__
+from arboleda.adapters.broker_login import PASSWORD, TLS_PORT, USER, address, login
 from arboleda.adapters.web.names import listen_address, public_origin
 from arboleda.core import text
-from arboleda.core.errors import ArboledaError, ConfigError, QueueFull, StartError, TextError
-from arboleda.core.messages import TaskState
-from arboleda.core.model import PlantModel
-from arboleda.core.outside import plain
+from arboleda.model.errors import ArboledaError, ConfigError, QueueFull, StartError, TextError
+from arboleda.model.messages import TaskState
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.recorder.beginning import Recording
+from arboleda.recorder.errors import NoRecord
 
-from . import bench_command, config, layout_check, new_command, session, token_command, tree_command, verbs
-from .build import OF_BOARDS, PARTS, Options, build
-from .client import Refused
+from . import (
+    backup_command,
+    bench_command,
+    certs_command,
+    config,
+    examples_command,
+    layout_check,
+    logs_command,
+    new_command,
+    oee_command,
+    record_command,
+    replay_command,
+    service_command,
+    tasks_command,
+    token_command,
+    tree_command,
+    verbs,
+)
+from .alarm_options import alarm_options
+from .client import Gone, PlantClient, Refused
 from .conformance import command as conformance
-from .parts.broker import PASSWORD, USER, address, login
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
@@ -35,15 +57,19 @@ from .urdf import robot_urdf
 from .web_options import WebOptions
 from .where import PlantFile, StateFolder, client, folder
 
+if TYPE_CHECKING:
+    from arboleda.adapters.server_tls import ServerTls
+
+    from .build import Options
+
 FAILED, BAD_INPUT = 1, 2
-OVER = {TaskState.FAILED.value, TaskState.CANCELLED.value}
+UNDONE = {TaskState.FAILED.value, TaskState.CANCELLED.value}
 LONGEST = 1000  # characters of a line on the terminal
 
 cli = typer.Typer(
     help="Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    add_completion=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -80,16 +106,23 @@ def _or_bad_parameter(check: Any, value: Any) -> Any:
         raise typer.BadParameter(str(error)) from error
 
 
-NoRos = Annotated[bool, typer.Option("--no-ros", help="Leave ROS 2 out; the plant speaks MQTT directly.")]
+Ros = Annotated[
+    bool | None,
+    typer.Option(
+        "--ros/--no-ros",
+        help="Speak ROS 2, or MQTT alone. [default: ROS 2 where it is installed]",
+    ),
+]
 RosLan = Annotated[
     bool, typer.Option("--ros-lan", help="Let other machines on the network take part in ROS 2.")
 ]
 Broker = Annotated[
     str | None,
     typer.Option(
-        metavar="HOST:PORT",
+        metavar="[mqtts://]HOST:PORT",
         callback=_broker,
-        help=f"MQTT broker to use; login from ${USER} and ${PASSWORD}. [default: one of its own]",
+        help=f"MQTT broker to use, with TLS as mqtts://; login from ${USER} and ${PASSWORD}. "
+        "[default: one of its own]",
     ),
 ]
 BrokerHost = Annotated[
@@ -104,6 +137,38 @@ BrokerUsers = Annotated[
     typer.Option(
         metavar="FILE",
         help="Lines of NAME:PASSWORD for the plant's own broker; a board's name is its MQTT name, e.g. ra_1.",
+    ),
+]
+BrokerTls = Annotated[
+    bool,
+    typer.Option(
+        "--broker-tls",
+        help=f"Have boards speak TLS to the plant's own broker, on port {TLS_PORT}; needs --broker-host and "
+        "--tls-cert.",
+    ),
+]
+BrokerCa = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Have them show a certificate of this authority as well, with their name; needs --broker-tls.",
+    ),
+]
+TlsCert = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        envvar="ARBOLEDA_TLS_CERT",
+        help="Certificate of this machine, e.g. of `arboleda certs`: page and HTTP API speak TLS with it.",
+    ),
+]
+TlsKey = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        envvar="ARBOLEDA_TLS_KEY",
+        help="Its key. [default: in the file of --tls-cert]",
+        show_default=False,
     ),
 ]
 BoardsOption = Annotated[
@@ -150,68 +215,94 @@ Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.
 def up(
     tasks: Tasks = None,
     plant: PlantFile = None,
-    no_ros: NoRos = False,
+    ros: Ros = None,
     ros_lan: RosLan = False,
     broker: Broker = None,
     broker_host: BrokerHost = None,
     broker_users: BrokerUsers = None,
+    broker_tls: BrokerTls = False,
+    broker_ca: BrokerCa = None,
     boards: BoardsOption = None,
     rate: Rate = 1.0,
     host: Host = "127.0.0.1",
     port: Port = None,
     public_url: PublicUrl = None,
+    tls_cert: TlsCert = None,
+    tls_key: TlsKey = None,
     state: StateFolder = None,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
-    model = _model(plant, tasks or [])
-    web = WebOptions(host=host, port=port, public_url=public_url)
-    options = _options(broker, broker_host, broker_users, rate, state, web)
-    _run(model, tasks or [], options, boards=boards, ros=not no_ros, lan=ros_lan, stay=True)
+    model, recording = _model(plant, tasks or [])
+    shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
+    web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
+    options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True)
 
 
 @cli.command()
 def run(
     tasks: Annotated[list[str], typer.Argument(help="Tasks to do, e.g. 'sis_a 0B 7' 'sis_b 1C 3'.")],
     plant: PlantFile = None,
-    no_ros: NoRos = False,
+    ros: Ros = None,
     ros_lan: RosLan = False,
     broker: Broker = None,
     broker_host: BrokerHost = None,
     broker_users: BrokerUsers = None,
+    broker_tls: BrokerTls = False,
+    broker_ca: BrokerCa = None,
     boards: BoardsOption = None,
     rate: Rate = 1.0,
     host: Host = "127.0.0.1",
     port: Port = None,
     public_url: PublicUrl = None,
+    tls_cert: TlsCert = None,
+    tls_key: TlsKey = None,
     state: StateFolder = None,
 ) -> None:
     """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input.
 
     Not for a plant that is up already: that takes tasks by `arboleda submit`.
     """
-    model = _model(plant, tasks)
+    model, recording = _model(plant, tasks)
     _refuse_beside(tasks, plant, state)
-    web = WebOptions(host=host, port=port, public_url=public_url)
-    options = _options(broker, broker_host, broker_users, rate, state, web)
-    _run(model, tasks, options, boards=boards, ros=not no_ros, lan=ros_lan, stay=False)
+    shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
+    web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
+    options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False)
 
 
 @cli.command()
 def submit(
     task: Annotated[str, typer.Argument(help="The task, e.g. 'sis_a 0B 7' or 'sis_a 0B 7 #lot42'.")],
+    wait: Annotated[
+        bool, typer.Option("--wait", help="Print what becomes of it until it has ended.")
+    ] = False,
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
     """Send a task to the plant that runs on this machine.
 
-    Exit status: 0 accepted, 1 a task of that id has failed or was cancelled before, 2 refused.
+    Exit status: 0 accepted, with --wait done; 1 a task of that id has failed or was cancelled before, with
+    --wait also this one; 2 refused. Ctrl-C ends the waiting and not the task.
     """
-    answer = client(plant, state).submit(task)
-    sentence = f"  {answer['sentence']}" if answer["sentence"] else ""
-    print(plain(f"{answer['state']}: {answer['text']} (id {answer['id']}){sentence}", LONGEST))
-    if answer["state"] in OVER:
+    reached = client(plant, state)
+    answer = reached.submit(task)
+    _print_task(answer)
+    if answer["state"] in UNDONE:
         _complain(ArboledaError(f"the task #{answer['id']} is over; give another id to do it once more"))
         raise typer.Exit(FAILED)
+    if not wait:
+        return
+    last = answer
+    for last in reached.follow(answer):
+        _print_task(last)
+    if last["state"] in UNDONE:
+        raise typer.Exit(FAILED)
+
+
+def _print_task(row: dict[str, Any]) -> None:
+    sentence = f"  {row['sentence']}" if row["sentence"] else ""
+    print(plain(f"{row['state']}: {row['text']} (id {row['id']}){sentence}", LONGEST), flush=True)
 
 
 @cli.command()
@@ -219,13 +310,33 @@ def status(
     plant: PlantFile = None,
     state: StateFolder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Show what changes, until Ctrl-C.")] = False,
 ) -> None:
-    """Show what the plant that runs on this machine is doing."""
-    snapshot = client(plant, state).status()
+    """Show what the plant that runs on this machine is doing.
+
+    With --json and --watch each change is a line: its kind, and its row of the snapshot.
+    """
+    reached = client(plant, state)
+    if watch:
+        _watch(reached, as_json=as_json)
+        return
+    snapshot = reached.status()
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
         return
     Console(highlight=False).print(table(snapshot))
+
+
+def _watch(reached: PlantClient, *, as_json: bool) -> None:
+    """Show what changes until the plant ends."""
+    with suppress(Gone):
+        if as_json:
+            for kind, row in reached.changes():
+                print(json.dumps({"kind": kind, "row": row}, ensure_ascii=False), flush=True)
+            return
+        with Live(console=Console(highlight=False), auto_refresh=False) as live:
+            for _ in reached.changes():
+                live.update(table(reached.status()), refresh=True)
 
 
 token_command.add_to(cli)
@@ -250,6 +361,15 @@ def check(
 
 cli.command()(tree_command.tree)
 cli.command()(new_command.new)
+cli.command()(examples_command.examples)
+cli.command()(tasks_command.tasks)
+cli.command()(oee_command.oee)
+cli.command()(certs_command.certs)
+backup_command.add_to(cli)
+cli.add_typer(service_command.cli, name="service")
+cli.add_typer(record_command.cli, name="record")
+replay_command.add_to(cli)
+logs_command.add_to(cli)
 
 
 @cli.command()
@@ -285,9 +405,9 @@ def common(
     """Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2."""
 
 
-def _model(plant: Path | None, tasks: list[str]) -> PlantModel:
-    """The plant, with every task text checked before anything starts."""
-    model = config.load(plant)
+def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording | None]:
+    """The plant and what is recorded of it, with every task text checked before anything starts."""
+    model, recording = config.load_recorded(plant)
     problems = []
     for task in tasks:
         try:
@@ -296,7 +416,7 @@ def _model(plant: Path | None, tasks: list[str]) -> PlantModel:
             problems.append(f"'{task}': {error}")
     if problems:
         raise ConfigError(tuple(problems))
-    return model
+    return model, recording
 
 
 def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> None:
@@ -320,28 +440,65 @@ def _refuse_beside(tasks: list[str], plant: Path | None, state: Path | None) -> 
     )
 
 
+class _Shown:
+    """The certificates that the servers of this plant show, as the options say; StartError where one is of no
+    use."""
+
+    def __init__(
+        self, certificate: Path | None, key: Path | None, *, broker_tls: bool, broker_ca: Path | None
+    ) -> None:
+        self.by_web: ServerTls | None = None
+        self.by_broker: ServerTls | None = None
+        self.notes: tuple[str, ...] = ()
+        if certificate is None and (key is not None or broker_tls):
+            raise typer.BadParameter(
+                f"{'--broker-tls' if broker_tls else '--tls-key'} needs a certificate: --tls-cert FILE"
+            )
+        if broker_ca is not None and not broker_tls:
+            raise typer.BadParameter("--broker-ca is for boards that speak TLS: it needs --broker-tls")
+        if certificate is None:
+            return
+        from arboleda.adapters.server_tls import server_tls
+
+        self.by_web = server_tls(certificate, key)
+        if broker_tls:
+            self.by_broker = server_tls(certificate, key, authority=broker_ca)
+        note = self.by_web.note(time.time())
+        self.notes = (note,) if note else ()
+
+
 def _options(
     broker: str | None,
     host: str | None,
     users: Path | None,
+    shown: _Shown,
     rate: float,
     state: Path | None,
     web: WebOptions,
+    recording: Recording | None,
 ) -> Options:
+    from .build import Options  # what a plant runs on takes a while to load, and only who runs one needs it
+
     if broker and host:
         raise typer.BadParameter(
             "--broker names another broker, --broker-host opens the plant's own: choose one"
         )
     if (host is None) != (users is None):
         raise typer.BadParameter("--broker-host and --broker-users go together: who may log in, and where")
+    if shown.by_broker is not None and host is None:
+        raise typer.BadParameter("--broker-tls is for boards of other machines: it needs --broker-host")
     return Options(
         broker=broker,
         broker_host=host or "127.0.0.1",
         broker_users=config.broker_users(users) if users else None,
+        broker_tls=shown.by_broker,
+        notes=shown.notes,
         credentials=login(),
+        alarms=alarm_options(),
         rate=rate,
         state_dir=state,
         web=web,
+        recording=recording,
     )
 
 
@@ -351,27 +508,62 @@ def _run(
     options: Options,
     *,
     boards: Boards | None,
-    ros: bool,
+    ros: bool | None,
     lan: bool,
     stay: bool,
 ) -> None:
+    from . import session
+    from .build import OF_BOARDS, PARTS, build
+
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
         raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
+    if boards is not Boards.REAL:
+        recording = options.recording and replace(options.recording, virtual=True)
+        options = replace(options, notes=(*options.notes, *_virtual(model)), recording=recording)
+        model = model.on_boards(Link.DRIVER)
     left_out = {"broker"} if options.broker else set()
     left_out |= {"devices"} if boards is Boards.REAL else set()
     left_out |= set() if model.has_boards else OF_BOARDS
-    link = session.ros_link(lan=lan) if ros else None
-    options = replace(options, link=link, page=stay, firmware=boards is Boards.LINUX)
+    link, without_ros = _ros(model, ros, lan=lan)
+    options = replace(
+        options,
+        link=link,
+        notes=(*options.notes, *without_ros),
+        page=stay,
+        keeps_waiting=stay,
+        firmware=boards is Boards.LINUX,
+    )
     app = build(model, set(PARTS) - left_out, options)
     raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
+
+
+def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tuple[str, ...]]:
+    """The link to ROS 2, and what is said where it is left out because it is missing here."""
+    from . import session
+
+    if wanted is False:
+        return None, ()
+    try:
+        return session.ros_link(lan=lan), ()
+    except session.RosMissing as error:
+        if wanted or lan or any(robot.link is Link.ROS for robot in model.robots.values()):
+            raise
+        return None, (f"Without ROS 2, over MQTT alone: {error}",)
+
+
+def _virtual(model: PlantModel) -> tuple[str, ...]:
+    """What is said of devices whose drivers are not used."""
+    names = ", ".join(robot.name for robot in model.driven)
+    how = "simulated; with --boards real their drivers reach them"
+    return (f"{names}: {how}",) if names else ()
 
 
 def main() -> None:
     """The entry point: whatever goes wrong is one sentence on standard error."""
     try:
-        cli()
-    except (ConfigError, TextError, QueueFull, Refused) as error:
+        cli(prog_name="arboleda")
+    except (ConfigError, NoRecord, TextError, QueueFull, Refused) as error:
         _complain(error)
         sys.exit(BAD_INPUT)
     except ArboledaError as error:

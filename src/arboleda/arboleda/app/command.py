@@ -6,11 +6,15 @@ import signal
 
 
 def main() -> None:
-    """Load the command line and run it; Ctrl-C while Python still loads ends the process without a word."""
+    """Load the command line and run it; Ctrl-C while Python loads or ends ends the process without a word."""
     handler = signal.getsignal(signal.SIGINT)
     if handler is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from .cli import main as run  # it takes most of a second, and starts nothing that would have to be ended
 
     signal.signal(signal.SIGINT, handler)
-    run()
+    try:
+        run()
+    finally:
+        if handler is signal.default_int_handler:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)

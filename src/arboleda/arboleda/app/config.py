@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -9,56 +10,108 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Timing
-from arboleda.core.recipe import Recipe
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import DeviceKind
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Robot, Timing
+from arboleda.model.recipe import Recipe
 from arboleda.recipes.storage import RECIPES
+from arboleda.recipes.storage_cell import ARM, MOBILE, StorageCell
 from arboleda.recipes.storage_cell import Path as Route
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recorder.beginning import Limits, PlantFiles, Recording
 
 from . import user_file
-from .plant_file import own_recipes, rack
+from .plant_file import drivers, own_kinds, own_recipes, rack
 from .plant_file.deadlines import check_arrivals_show
-from .plant_file.devices import CELLS, device_cell, is_of_devices
+from .plant_file.devices import CELLS, Kinds, device_cell, is_of_devices, shared_devices
 from .plant_file.document import Document, Place, shown
 from .plant_file.kinds import kinds
 from .plant_file.names import check_names
-from .plant_file.own_recipes import Watch
 from .plant_file.paths import check_nodes_show, paths
 from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
 from .plant_file.recipe_check import MOST, Trial, combinations
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, mobile
-from .plant_file.shapes import CellShape, PlantShape, PoseShape, PositionShape, RetryShape, TimingShape
+from .plant_file.shapes import (
+    CellShape,
+    FileShape,
+    PoseShape,
+    PositionShape,
+    RecordShape,
+    RetryShape,
+    TimingShape,
+)
+from .plant_file.used import Used, Watch
 from .plant_file.yaml_marks import LARGEST
 from .plant_file.zones import with_zones, with_zones_of_targets, zones
-from .recipe_trial import Verdict, offered
+from .recipe_trial import Verdict, brought
 
 Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
 SHARED = ("paths", "stations", "palletizing")
+SHIPPED = "plant.yaml"
+RECORD: Place = ("record",)
+OFF = "off"
 
 
 def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
     """The plant that the file describes, None for the shipped one; ConfigError with every problem.
 
-    Without `recipes` those of its own are not looked at: its cells of devices offer nothing.
+    Without `recipes` nothing of Python is run: its cells of devices offer nothing, and one whose devices are
+    of kinds in Python has no cells.
     """
-    if path is None:
-        return parse("plant.yaml", files("arboleda").joinpath("plants", "plant.yaml").read_bytes())
-    return parse(str(path), user_file.read_bytes(path, LARGEST), path.parent, recipes=recipes)
+    return _parsed(*_content(path), recipes=recipes)[0]
+
+
+def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | None]:
+    """The same plant, and what a record of it begins with; None where its file says `record: off`."""
+    plant, document = _parsed(*_content(path), recipes=True)
+    if document.value(RECORD) == OFF:
+        return plant, None
+    return plant, Recording(files=_files(document), limits=_limits(document) or Limits())
 
 
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
     """The same for the content of a file that problems call `name`; `folder` is where those beside it are."""
+    return _parsed(name, content, folder, recipes=recipes)[0]
+
+
+def _content(path: Path | None) -> tuple[str, bytes, Path | None]:
+    """What a plant file is called, what is in it, and the folder of those beside it."""
+    if path is None:
+        return SHIPPED, files("arboleda").joinpath("plants", SHIPPED).read_bytes(), None
+    return str(path), user_file.read_bytes(path, LARGEST), path.parent
+
+
+def _parsed(name: str, content: bytes, folder: Path | None, *, recipes: bool) -> tuple[PlantModel, Document]:
     document = Document(name, content, folder)
-    plant = _plant(document, partial(offered, document, content) if recipes else _nothing)
+    document.files[(folder or Path()) / Path(name).name] = content
+    if recipes:
+        code = brought(document, content)
+        plant = drivers.with_drivers(document, _plant(document, code.used, code.offered), code.used)
+    elif own_kinds.needs_python(document):
+        plant = _named(document)
+    else:
+        plant = _plant(document, Used(), _nothing)
     document.finish()
     if plant is None:
         raise ConfigError((f"{document.name}: the file cannot be read as a plant",))
-    return plant
+    return plant, document
+
+
+def _files(document: Document) -> PlantFiles:
+    """All that was read, under paths from the folder that holds all of it."""
+    paths = {os.path.normpath(path.absolute()): content for path, content in document.files.items()}
+    plant, *_ = paths  # it is read first
+    folder = os.path.commonpath([os.path.dirname(path) for path in paths])
+    names = {path: Path(os.path.relpath(path, folder)).as_posix() for path in paths}
+    return PlantFiles(plant=names[plant], contents={names[path]: each for path, each in paths.items()})
+
+
+def _limits(document: Document) -> Limits | None:
+    """How much of the record is kept; None, with its problems kept, where that cannot be read."""
+    if not document.has(RECORD) or document.value(RECORD) == OFF:
+        return Limits()
+    shape = document.read(RecordShape, RECORD)
+    return None if shape is None else Limits(**shape.model_dump())
 
 
 def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdict:
@@ -69,11 +122,12 @@ def trial(name: str, content: bytes, folder: Path | None, watch: Watch) -> Verdi
     document, found = Document(name, content, folder), Verdict()
 
     def tried(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-        used = own_recipes.imported(document, own_recipes.listed(document), watch)
         found.offers = Trial(document=document, used=used, watch=watch).run(cells)
         return {}
 
-    _plant(document, tried)
+    used = own_recipes.imported(document, own_recipes.listed(document), watch)
+    _plant(document, used, tried)
+    drivers.found(document, used)
     found.here, found.elsewhere = document.kept
     return found
 
@@ -93,7 +147,7 @@ def notes(plant: PlantModel) -> tuple[str, ...]:
     described = {
         robot.description: robot.name
         for robot in reversed(plant.robots.values())
-        if isinstance(robot, Arm) and robot.description
+        if robot.has_joints and robot.description
     }
     own_models = [f"{name}: {note}" for own, name in described.items() for note in own.notes]
     many = [(cell, each, combinations(cell, each)) for cell in plant.cells for each in cell.recipes]
@@ -130,35 +184,46 @@ def _nothing(cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
     return {}
 
 
-def _plant(document: Document, recipes: Offers) -> PlantModel | None:
-    shape = document.read(PlantShape)
-    known = kinds(document)
-    cells = [_cell(document, name, known) for name in document.keys(("cells",))]
+def _named(document: Document) -> PlantModel | None:
+    shape = document.read(FileShape)
+    return None if shape is None else PlantModel(name=shape.name, cells=())
+
+
+def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None:
+    shape = document.read(FileShape)
+    own_kinds.complete(document, used)
+    known = Kinds(declared=kinds(document), names=document.keys(("kinds",)), used=used)
+    common = shared_devices(document, known)
+    cells = [_cell(document, name, known, common) for name in document.keys(("cells",))]
     timing = _timing(document)
-    check_names(document)
+    check_names(document, partial(known.has_twin, document))
     _check_sections(document)
     whole = [cell for cell in cells if cell is not None]
     regions = zones(document, whole)
     zoned: dict[str, Cell] = {
         cell.name: with_zones(document, cell, regions)
-        if isinstance(cell, StorageCell)
+        if cell.is_storage
         else with_zones_of_targets(document, cell, regions)
         for cell in whole
     }
-    offers = recipes([cell for cell in zoned.values() if not isinstance(cell, StorageCell)])
+    offers = recipes(list(zoned.values()))
     if timing is None:
         return None
+    _limits(document)
     times = Timing(**timing.model_dump())
     check_arrivals_show(document, whole, times)
     if shape is None or len(whole) < len(cells):
         return None
     return PlantModel(
         name=shape.name,
-        cells=tuple(replace(cell, recipes=offers.get(cell.name, cell.recipes)) for cell in zoned.values()),
+        cells=tuple(
+            replace(cell, recipes=(*cell.recipes, *offers.get(cell.name, ()))) for cell in zoned.values()
+        ),
         timing=times,
         mqtt_version=MqttVersion(shape.mqtt_version),
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),
+        history_days=shape.history_days,
     )
 
 
@@ -176,19 +241,19 @@ def _timing(document: Document) -> TimingShape | None:
     return shape
 
 
-def _cell(document: Document, name: str, kinds: Mapping[str, DeviceKind]) -> Cell | None:
+def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:
     place: Place = ("cells", name)
     if is_of_devices(document, place):
-        return device_cell(document, place, kinds)
+        return device_cell(document, place, kinds, common)
     shape = document.read(CellShape, place)
-    kind = arm_model(document, (*place, "arm"))
-    the_arm = arm(document, (*place, "arm"), kind)
-    the_mobile = mobile(document, (*place, "mobile"))
+    kind = arm_model(document, (*place, ARM))
+    the_arm = arm(document, (*place, ARM), kind)
+    the_mobile = mobile(document, (*place, MOBILE))
     routes = paths(document, _section(document, place, "paths"))
     poses = _poses(document, place, kind, routes)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
     if the_mobile and routes:
-        check_nodes_show(document, (*place, "mobile"), routes, the_mobile)
+        check_nodes_show(document, (*place, MOBILE), routes, the_mobile)
     if not (shape and retry and the_arm and the_mobile and routes and poses):
         return None
     return StorageCell(
@@ -198,6 +263,7 @@ def _cell(document: Document, name: str, kinds: Mapping[str, DeviceKind]) -> Cel
         mobile=the_mobile,
         paths=routes,
         queue_limit=shape.queue_limit,
+        goes_on=shape.on_restart == "go_on",
         drive_to_start=shape.drive_to_start,
         retry=Retry(**retry.model_dump()),
         piece_check=shape.piece_check,

@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from arboleda.core.errors import ArboledaError
-from arboleda.core.model import PlantModel, Pose
 from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
@@ -18,24 +16,52 @@ from arboleda.dashboard.twin.scene import deck
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import PlantModel, Pose, Robot
 from arboleda.recipes.storage_cell import StorageCell
 
+from .plant_file.arrays import Array
 from .urdf import robot_urdf
 
 BESIDE_M = 0.010  # a pick-up may be so far beside the part that it takes
 ABOVE_M = 0.010  # and so far above it, which a suction cup bridges
 ROUNDING_M = 0.001
+EVEN_M = 0.001  # a target of an array may be so far beside an even grid
 Outline = Sequence[Sequence[float]]  # counterclockwise corners of a convex shape on the floor
 
 
 def warnings(plant: PlantModel) -> tuple[str, ...]:
     """What cannot be as the file says it; also where that cannot be told."""
     try:
-        cells = [Stand.of(plant, cell) for cell in plant.cells if isinstance(cell, StorageCell)]
+        cells = [Stand.of(plant, cell) for cell in plant.cells if cell.is_storage]
+        uneven = [*_uneven(plant)]
     except ArboledaError as error:
         return (f"nobody has looked where things stand: {error}",)
     found = [each for cell in cells for each in (*_pickups(cell), *_stations(cell), *_below(cell))]
-    return (*found, *_crowded(cells))
+    return (*found, *_crowded(cells), *uneven)
+
+
+def _uneven(plant: PlantModel) -> Iterator[str]:
+    """Arrays of targets in which the tool of an arm is beside an even grid between the corners."""
+    for cell in plant.cells:
+        for group, rows, columns in cell.grids:
+            array = Array(group=group, rows=rows, columns=columns)
+            for space in cell.spaces:
+                poses = {pose.name: pose for pose in space.poses}
+                if space.robot.has_joints and array.names[0] in poses:
+                    yield from _uneven_of(plant, space.robot, array, [poses[name] for name in array.names])
+
+
+def _uneven_of(plant: PlantModel, arm: Robot, array: Array, poses: Sequence[Pose]) -> Iterator[str]:
+    body, base = _body(plant, arm.name), _frame(arm.base)
+    points = [kinematics.at(kinematics.tool(body, pose.q, base)) for pose in poses]
+    corners = [points[index] for index in array.corners]
+    off = [math.dist(point, array.even(index, corners)) for index, point in enumerate(points)]
+    worst = max(range(len(off)), key=off.__getitem__)
+    if off[worst] > EVEN_M:
+        where = f"{array.names[worst]}, {_mm(off[worst])} beside an even grid"
+        why = f"the joints of {arm.name} are interpolated between the corners of {array.group}"
+        yield f"{where}: {why}; where that matters, name these targets one by one"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,8 +224,11 @@ def _slide_m(arm: Arm, frames: Mapping[str, Matrix], link: Body, upright: bool) 
 
 
 def _overlap(a: Outline, b: Outline) -> bool:
-    """Whether two convex outlines share a piece of floor: no edge of either has them on two sides."""
-    return not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
+    """Whether two convex outlines share a piece of floor: no edge of either has them on two sides.
+
+    What is too thin for an outline takes none.
+    """
+    return bool(a and b) and not any(_parts(edge, a, b) for outline in (a, b) for edge in _edges(outline))
 
 
 def _edges(outline: Outline) -> Iterator[tuple[Sequence[float], Sequence[float]]]:

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from queue import Empty, Full, Queue
 
-from arboleda.core.outside import plain
+from arboleda.model.outside import plain
 
 OURS = "arboleda"
 RATE = (100, 5.0)  # lines of one place in the program: at once, and each second after that

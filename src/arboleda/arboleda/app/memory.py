@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from arboleda.adapters.store import MOVE_AWAY, Store
-from arboleda.core.dispatcher import CLEARED, LATCHED
-from arboleda.core.errors import StartError
-from arboleda.core.grips import Grip
-from arboleda.core.messages import Fact
-from arboleda.core.outside import quoted
+from arboleda.adapters.memory_file import MOVE_AWAY
+from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, sentence_of
+from arboleda.core.intake import HISTORY
+from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
+from arboleda.model.errors import StartError
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState
+from arboleda.model.outside import quoted
 
 MEANS = {  # a quarantined zone has the name of a robot, which may be none of the plant file any more
     Fact.LATCH: frozenset({LATCHED, CLEARED}),
     Fact.EFFECTOR: frozenset(grip.value for grip in Grip),
+    Fact.DISPLACED: frozenset({DISPLACED}),
 }
 
 
@@ -26,3 +30,37 @@ def remembered(store: Store) -> dict[Fact, dict[str, str]]:
                     f"The plant's memory {store.path} says {what}: put a copy in its place, or {MOVE_AWAY}."
                 )
     return facts
+
+
+def kept_tasks(store: Store, *, clock_s: float, unix_s: float) -> list[KeptTask]:
+    """The tasks that have not ended, and the last that have, in the order of their acceptance.
+
+    Their times are on the clock that says `clock_s` at the Unix time `unix_s`.
+    """
+    waiting = store.tasks(TaskQuery(is_open=True, limit=-1))
+    rows = [*waiting, *store.tasks(TaskQuery(is_open=False, limit=HISTORY))]
+    in_order = sorted(rows, key=lambda row: row.number)
+    return [kept_task(row, clock_s=clock_s, unix_s=unix_s) for row in in_order]
+
+
+def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
+    """A task as the plant takes it back, its times on the clock that says `clock_s` at `unix_s`."""
+    back_s = clock_s - unix_s
+    return KeptTask(
+        id=row.id,
+        text=row.text,
+        cell=row.cell,
+        state=TaskState(row.state),
+        failure=failure_of(row),
+        started_at=None if row.started_s is None else row.started_s + back_s,
+        ended_at=None if row.ended_s is None else row.ended_s + back_s,
+        attempts=row.attempts,
+        answers=answers_of(row),
+    )
+
+
+def failure_of(row: TaskRow) -> Failure | None:
+    """Why a task failed, as far as that was kept."""
+    if row.reason is None:
+        return None
+    return Failure(reason=Reason(row.reason), sentence=sentence_of(row))

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from arboleda.core.errors import ConfigError, StartError
-from arboleda.core.outside import quoted
+from arboleda.model.errors import ConfigError, StartError
+from arboleda.model.outside import quoted
 
 from . import invocation
 from .plant_file.shapes import PLANT_NAME_RULE, is_plant_name
@@ -45,23 +46,28 @@ What the devices can do is in plant.yaml, what they do together in recipes.py. C
 
 
 def write(folder: Path) -> list[Path]:
-    """The files of a new plant; ConfigError, and nothing written, where they cannot be.
-
-    StartError where the machine does not take them.
-    """
+    """The files of a new plant; errors are those of `write_files`, and ConfigError for a bad name."""
     name = folder.resolve().name
     if not is_plant_name(name):
         raise ConfigError((f"{quoted(name)} cannot be the name of a plant; it must be {PLANT_NAME_RULE}",))
-    targets = {each: folder / name for each, name in WRITTEN.items()}
-    there = next((each for each in targets.values() if each.exists()), None)
+    starter = files("arboleda").joinpath("starter")
+    texts = {called: starter.joinpath(source).read_text("utf-8") for source, called in WRITTEN.items()}
+    return write_files(folder, {called: text.replace(NAMED, name) for called, text in texts.items()})
+
+
+def write_files(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """The files of a folder, by their paths in it; ConfigError, and nothing written, where one is there.
+
+    StartError where the machine does not take them.
+    """
+    targets = {folder / called: text for called, text in texts.items()}
+    there = next((each for each in targets if each.exists()), None)
     if there is not None:
         raise ConfigError((f"{there} is there already; nothing was written. Choose another folder",))
-    starter = files("arboleda").joinpath("starter")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for source, target in targets.items():
-            text = starter.joinpath(source).read_text("utf-8")
-            target.write_text(text.replace(NAMED, name), "utf-8")
+        for target, text in targets.items():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, "utf-8")
     except OSError as error:
         raise StartError(f"{folder} cannot be written: {error.strerror or error}") from error
-    return list(targets.values())
+    return list(targets)

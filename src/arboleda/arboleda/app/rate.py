@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from arboleda.core.errors import StartError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import StartError
+from arboleda.model.plant_model import PlantModel
 
 
 def check_rate(rate: float) -> float:

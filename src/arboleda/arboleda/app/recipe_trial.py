@@ -1,4 +1,4 @@
-"""Recipes tried in a process of their own: one that never ends, or ends Python, is a problem like others."""
+"""Recipes and kinds tried in a process of their own: whatever never ends, or ends Python, is a problem."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from arboleda.core.model import Cell
-from arboleda.core.recipe import Recipe
+from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import Recipe
 
-from .plant_file import own_recipes
+from .plant_file import drivers, own_kinds, own_recipes
 from .plant_file.devices import CELLS, is_of_devices
 from .plant_file.document import Document
-from .plant_file.own_recipes import Spot
 from .plant_file.problems import Kept
+from .plant_file.used import Spot, Used, unwatched
 
-LONGEST_S = 3.0  # for the import of a file, and for each build of a recipe
+LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
 STUCK_S = 30.0  # after which not even the watch in the other process has done its work
 BEGIN = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); from arboleda.app import recipe_trial; "
 START = BEGIN + "recipe_trial.main(sys.argv[2])"
@@ -41,35 +41,53 @@ class Verdict:
     offers: dict[str, list[str]] = field(default_factory=dict)
 
 
-def offered(document: Document, content: bytes, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
-    """The recipes of one's own of each of these cells; none, with the problems kept, where one is wrong."""
-    names = [(*CELLS, name) for name in document.keys(CELLS)]
-    of_devices = [place for place in names if is_of_devices(document, place)]
+@dataclass
+class Brought:
+    """What a plant has of Python, and which recipes each of its cells offers."""
+
+    document: Document
+    used: Used = field(default_factory=Used)
+    offers: dict[str, list[str]] = field(default_factory=dict)
+
+    def offered(self, cells: Sequence[Cell]) -> dict[str, tuple[Recipe, ...]]:
+        """The recipes of one's own of each of these cells."""
+        known = {cell.name: self.offers.get(cell.name, []) for cell in cells}
+        rows = {name: [self.used.recipes[each] for each in offers] for name, offers in known.items()}
+        beside = {cell.name: cell.recipes for cell in cells}  # those that come with its shape
+        return {name: _marked(self.document, name, each, beside[name]) for name, each in rows.items() if each}
+
+
+def brought(document: Document, content: bytes) -> Brought:
+    """What of Python a plant file uses, tried before; nothing, with the problems kept, where it is wrong."""
+    places = [(*CELLS, name) for name in document.keys(CELLS)]
+    of_devices = [place for place in places if is_of_devices(document, place)]
+    words = own_recipes.listed(document) if document.has(own_recipes.SECTION) else ()
     if not document.has(own_recipes.SECTION):
         for place in of_devices:
             how = 'name a file that has one at the top of this one: "uses: [recipes.py]"'
             document.problem(place, f"offers no recipe; {how}", at=place)
-        return {}
-    words = own_recipes.listed(document)
-    if not of_devices:
-        document.problem(own_recipes.SECTION, "no cell has devices, so this has no effect; delete it")
-    if not words or not of_devices:
-        return {}
+    if not (words or own_kinds.needs_python(document) or any(drivers.named(document))):
+        return Brought(document)
     found = verdict(document.name, document.folder, content)
     document.keep_all(found.here, found.elsewhere)
     if any(document.kept):
-        return {}
-    recipes = own_recipes.imported(document, words, lambda spot, doing: None).recipes
+        return Brought(document, Used(is_whole=False, may_import=False))
+    used = own_recipes.imported(document, words, unwatched)
     if any(document.kept):  # a file may do another thing the second time
-        return {}
-    of_cell = {cell.name: [recipes[each] for each in found.offers[cell.name]] for cell in cells}
-    return {name: _marked(document, name, each) for name, each in of_cell.items()}
+        return Brought(document, used)
+    has_effect = of_devices or used.recipes or any(drivers.named(document))
+    if words and not has_effect:
+        document.problem(own_recipes.SECTION, "brings no recipe, so this has no effect; delete it")
+    return Brought(document, used, found.offers)
 
 
-def _marked(document: Document, cell: str, recipes: Sequence[Recipe]) -> tuple[Recipe, ...]:
+def _marked(
+    document: Document, cell: str, recipes: Sequence[Recipe], beside: Sequence[Recipe]
+) -> tuple[Recipe, ...]:
     """The recipes of a cell, with the one that a task means which names none: as it says, or the only one."""
     default = document.value((*CELLS, cell, "default_recipe"))
-    return tuple(replace(each, is_default=each.name == default or len(recipes) == 1) for each in recipes)
+    alone = len(recipes) == 1 and not beside
+    return tuple(replace(each, is_default=each.name == default or alone) for each in recipes)
 
 
 def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
@@ -83,7 +101,7 @@ def verdict(name: str, beside: Path | None, content: bytes) -> Verdict:
         if (folder / RESULT).exists():
             found = json.loads((folder / RESULT).read_text("utf-8"))
             return Verdict(**found)
-        return Verdict(elsewhere=[_broken_off(folder, status)])
+        return Verdict(elsewhere=[broken_off(folder, status)])
 
 
 def main(name: str) -> None:
@@ -93,21 +111,26 @@ def main(name: str) -> None:
     folder = Path(name)
     request = json.loads((folder / REQUEST).read_text("utf-8"))
     beside = None if request["folder"] is None else Path(request["folder"])
-    with _watching(folder, request["longest_s"]) as watch:
+    with watching(folder, request["longest_s"]) as watch:
         found = config.trial(request["name"], (folder / PLANT).read_bytes(), beside, watch)
-    half = folder / f"{RESULT}.half"
-    half.write_text(json.dumps(vars(found)), "utf-8")
-    half.replace(folder / RESULT)
+    _write_whole(folder / RESULT, vars(found))
     os._exit(0)  # whatever threads the files have started
 
 
+def _write_whole(path: Path, data: dict[str, Any]) -> None:
+    """Write it so that whoever reads finds it whole, or what was there before, whenever this process ends."""
+    half = path.with_suffix(".half")
+    half.write_text(json.dumps(data), "utf-8")
+    half.replace(path)
+
+
 @contextmanager
-def _watching(folder: Path, longest_s: float) -> Iterator[Any]:
+def watching(folder: Path, longest_s: float) -> Iterator[Any]:
     """A watch that ends this process, with the line that it was at, where something takes too long."""
     with open(folder / STACK, "w", encoding="utf-8") as stack:
 
         def watch(spot: Spot, doing: str) -> None:
-            (folder / PHASE).write_text(json.dumps({**vars(spot), "doing": doing}), "utf-8")
+            _write_whole(folder / PHASE, {**vars(spot), "doing": doing})
             faulthandler.dump_traceback_later(longest_s, exit=True, file=stack)
 
         try:
@@ -139,7 +162,7 @@ def _ended(process: subprocess.Popen[bytes], phase: Path) -> int:
             before = now
 
 
-def _broken_off(folder: Path, status: int) -> str:
+def broken_off(folder: Path, status: int) -> str:
     """Why the other process told nothing, with the line that it was at."""
     if not (folder / PHASE).exists():
         return f"the recipes could not be tried: Python ended with status {status}"

@@ -8,7 +8,7 @@ import os
 import shlex
 import stat
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +19,11 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.facts import Value, shown
-from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.core.model import MotionState
-from arboleda.core.outside import plain
-from arboleda.core.sentence import Sentence
+from arboleda.model.facts import Value, shown
+from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import MotionState
+from arboleda.model.sentence import Sentence
 from arboleda.views import view
 
 REFRESH_HZ = 5
@@ -31,6 +31,7 @@ LONGEST = 1000  # characters of one text
 OUTPUT_BYTES = 10_000_000  # of the file that standard output was sent to; whoever wants more empties it
 EFFECTOR = "effector"
 SWITCHED = {True: "on", False: "off"}  # as an effector is, where other facts are so or not
+MOST_ANSWERS = 3  # of a task that runs
 ROLES = 3  # so many columns of robots a row of a cell may have; more are told below, a row for each
 SHORT = ("cell", "state", "task", "time")  # columns that take one line, however narrow the terminal is
 STATES = {
@@ -123,8 +124,8 @@ def logged(line: logging.LogRecord) -> Text:
 
 
 def table(snapshot: dict[str, Any]) -> Group:
-    """A row per cell: state, task, step, robots, time; then other devices, zones, what people are asked, and
-    what is in the way.
+    """A row per cell: state, task, step, robots, time; then other devices, zones, what people are asked, what
+    was answered to the tasks that run, and what is in the way.
     """
     robots = {robot["name"]: robot for robot in snapshot["robots"]}
     columns = _columns(snapshot["cells"])
@@ -136,7 +137,9 @@ def table(snapshot: dict[str, Any]) -> Group:
     others = [] if columns else [_devices(snapshot["cells"], robots)]
     zones = [_zones(snapshot["zones"])] if snapshot.get("zones") else []
     asked = [_words(line, "cyan") for robot in snapshot["robots"] for line in _question(robot)]
-    return Group(drawn, *others, *zones, *asked, *(_words(line, "yellow") for line in _in_the_way(snapshot)))
+    answers = [_words(line) for cell in snapshot["cells"] for line in _answers(cell)]
+    troubles = [_words(line, "yellow") for line in _in_the_way(snapshot)]
+    return Group(drawn, *others, *zones, *asked, *answers, *troubles)
 
 
 def _table(headings: list[str], **settings: Any) -> Table:
@@ -160,19 +163,21 @@ def _heading(device: dict[str, Any]) -> str:
 def _devices(cells: list[dict[str, Any]], robots: dict[str, dict[str, Any]]) -> Table:
     """How each device stands, what it says and what it was told last."""
     drawn = _table(["cell", "device", "kind", "state", "says", "last command"])
-    for cell in cells:
-        for device in cell["devices"]:
-            robot = robots[device["name"]]
-            state = STATES[robot["state"]] if robot["online"] else "offline"
-            words = (
-                cell["name"],
-                device["name"],
-                device["kind"],
-                state,
-                says(robot),
-                _told(robot),
-            )
-            drawn.add_row(*(_words(word, "" if robot["online"] else "dim") for word in words))
+    for _, device in view.devices_once(cells):
+        name = device["name"]
+        robot = robots[name]
+        state = STATES[robot["state"]] if robot["online"] else "offline"
+        having = [cell["name"] for cell in cells if any(each["name"] == name for each in cell["devices"])]
+        held = [f"held by {robot['holder']}"] if robot.get("holder") else []
+        words = (
+            ", ".join(having),
+            name,
+            device["kind"],
+            state,
+            ", ".join(filter(None, [says(robot), *held])),
+            _told(robot),
+        )
+        drawn.add_row(*(_words(word, "" if robot["online"] else "dim") for word in words))
     return drawn
 
 
@@ -262,13 +267,24 @@ def _question(robot: dict[str, Any]) -> list[str]:
     if asked is None:
         return []
     said = f"{robot['name']} is asked, {asked['left_s']:.0f} s left: {asked['text']}"
-    return [said, *(f"  {_command(robot['name'], answer)}" for answer in asked["answers"])]
+    return [said, *(f"  {_command(robot['name'], asked['id'], answer)}" for answer in asked["answers"])]
 
 
-def _command(person: str, answer: str) -> str:
-    """What to type; behind `--` an answer that begins like an option."""
+def _answers(cell: dict[str, Any]) -> list[str]:
+    """What was answered last to the task of a cell."""
+    answers = (cell["task"] or {}).get("answers", [])[-MOST_ANSWERS:]
+    return [f"{cell['name']} heard: {heard(answers)}"] if answers else []
+
+
+def heard(answers: Iterable[Mapping[str, Any]]) -> str:
+    """Who answered what to which question, in one line."""
+    return "; ".join(f"{each['by']}, {each['asked']}: {answered(each['answer'])}" for each in answers)
+
+
+def _command(person: str, question: str, answer: str) -> str:
+    """What to type for this question and no later one; behind `--` an answer that begins like an option."""
     dashes = ["--"] if answer.startswith("-") else []
-    return shlex.join(["arboleda", "answer", *dashes, person, answer])
+    return shlex.join(["arboleda", "answer", "--question", question, *dashes, person, answer])
 
 
 def _in_the_way(snapshot: dict[str, Any]) -> list[str]:
@@ -305,11 +321,14 @@ def joints(robot: dict[str, Any]) -> str:
 
 
 def parting(snapshot: dict[str, Any]) -> list[str]:
-    """How each robot that was ever heard was left."""
+    """How each robot that was ever heard was left, and which tasks go on at the next start."""
     holds = {each["name"]: each["holds"] for cell in snapshot["cells"] for each in cell["devices"]}
-    robots = [robot for robot in snapshot["robots"] if robot["kind"] != "person"]
+    people = {each["name"] for _, each in view.devices_once(snapshot["cells"]) if each["asked"]}
+    robots = [robot for robot in snapshot["robots"] if robot["name"] not in people]
     heard = [robot for robot in robots if robot["age_s"] is not None]
-    return [_left(robot, holds[robot["name"]]) for robot in heard]
+    left = [_left(robot, holds[robot["name"]]) for robot in heard]
+    tasks = [cell for cell in snapshot["cells"] if cell["task"] is not None and snapshot["ending"]]
+    return left + [f"{cell['name']}: {cell['task']['text']} is left for the next start" for cell in tasks]
 
 
 def _left(robot: dict[str, Any], holds: str | None) -> str:

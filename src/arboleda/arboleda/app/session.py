@@ -16,7 +16,7 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from . import invocation
 from .build import App
@@ -28,19 +28,23 @@ from .waiting import taken_from
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
-    "source a ROS 2 installation, or start with --no-ros"
+    "or source a ROS 2 installation"
 )
 
 
+class RosMissing(StartError):
+    """There is no rclpy here."""
+
+
 def ros_link(*, lan: bool) -> Any:
-    """The ROS 2 link behind the entry point `arboleda.links: ros`; StartError where there is none."""
+    """The ROS 2 link behind the entry point `arboleda.links: ros`; RosMissing where there is none."""
     found = next(iter(entry_points(group="arboleda.links", name="ros")), None)
     if found is None:
-        raise StartError(NO_ROS)
+        raise RosMissing(NO_ROS)
     try:
         connect = found.load()
     except ImportError as error:
-        raise StartError(f"{NO_ROS} ({error})") from error
+        raise RosMissing(f"{NO_ROS} ({error})") from error
     return connect(lan=lan)
 
 
@@ -66,10 +70,12 @@ class Session:
         with _interruptible(), self._logging() as self._log:
             self._start()
             try:
-                self._errand.start(self._app.submit)
-                with self._screen, suppress(KeyboardInterrupt):
-                    self._show()
-                    self._app.wait()
+                with suppress(KeyboardInterrupt):
+                    self._tell_notes()
+                    self._errand.start(self._app.submit)
+                    with self._screen:
+                        self._show()
+                        self._app.wait()
             finally:
                 self._stop()
         return 0 if self._stay or self._errand.ok else 1
@@ -99,6 +105,8 @@ class Session:
     def _start(self) -> None:
         with self._console.status("starting ..."):
             self._app.start()
+
+    def _tell_notes(self) -> None:
         for line in self._app.notes:
             self._console.print(Text(line, style="dim"))
 

@@ -14,10 +14,11 @@ from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
-from arboleda.core.errors import ConfigError, StartError
+from arboleda.model.errors import ConfigError, StartError
 
 from .user_file import read_bytes
 
+STORE = "plant.sqlite"
 LOCK = "plant.lock"
 FACTS = "plant.json"
 EPOCH = "epoch"
@@ -49,17 +50,19 @@ def _default_root() -> Path:
 @dataclass(frozen=True, kw_only=True)
 class Running:
     """Who runs the plant, and where this machine reaches its HTTP API: `port` is None until it listens,
-    `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody."""
+    `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody; `certificate` is what it
+    shows where it speaks TLS, as PEM."""
 
     pid: int
     started: str
     port: int | None = None
     host: str = "127.0.0.1"
     guarded: bool = False
+    certificate: str = ""
 
     @property
     def url(self) -> str:
-        return f"http://{self.host}:{self.port}"
+        return f"{'https' if self.certificate else 'http'}://{self.host}:{self.port}"
 
 
 class StateDir:
@@ -113,9 +116,11 @@ class StateDir:
             )
         return int(said)
 
-    def announce(self, port: int, *, host: str = "127.0.0.1", guarded: bool = False) -> None:
-        """Say where the HTTP API is reached (see `Running`), and whether it wants a token."""
-        known = replace(self._running, port=port, host=host, guarded=guarded)
+    def announce(
+        self, port: int, *, host: str = "127.0.0.1", guarded: bool = False, certificate: str = ""
+    ) -> None:
+        """Say where the HTTP API is reached and what it wants and shows (see `Running`)."""
+        known = replace(self._running, port=port, host=host, guarded=guarded, certificate=certificate)
         with self._explained():
             replace_file(self.path / FACTS, json.dumps(asdict(known)))
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from arboleda.adapters.web.auth import Role
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from . import tokens
 from .state import LOCK

@@ -9,7 +9,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from arboleda.adapters.web.auth import Role
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from .state import replace_file
 

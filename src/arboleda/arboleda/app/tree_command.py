@@ -9,10 +9,10 @@ from typing import Annotated, Any
 import typer
 
 from arboleda.core import text
-from arboleda.core.errors import ArboledaError
-from arboleda.core.model import Cell, PlantModel
 from arboleda.core.plant import Plant
-from arboleda.core.task import Order
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.task import Order
 from arboleda.views import tree_view
 
 from . import config

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from xml.etree.ElementTree import SubElement, fromstring, indent, tostring
 
-from arboleda.core.errors import ConfigError, StartError
-from arboleda.core.model import PlantModel
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.errors import ConfigError, StartError
+from arboleda.model.plant_model import PlantModel
 from arboleda_description.urdf import Limits, render
 
 from .plant_file.document import nearest, shown
@@ -25,7 +25,7 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
     ConfigError for a robot that the plant does not have; StartError without xacro or a usable drawing.
     """
     robot = _named(plant, name)
-    if isinstance(robot, Arm) and robot.description is not None:
+    if robot.has_joints and robot.description is not None:
         return _described(robot.description.urdf, prefix(robot), limits(robot))
     try:
         return render(robot.model, prefix=prefix(robot), limits=limits(robot))
@@ -37,17 +37,17 @@ def robot_urdf(plant: PlantModel, name: str) -> str:
 
 def prefix(robot: Arm | Mobile) -> str:
     """What the names of its links and joints begin with, as in its `joint_states`."""
-    return f"{robot.twin if isinstance(robot, Arm) else robot.name}_"
+    return f"{robot.twin if robot.has_joints else robot.name}_"
 
 
 def root_link(robot: Arm | Mobile) -> str:
     """The link whose place in `world` is the arm's base, or node 0 of the mobile's grid."""
-    return prefix(robot) + ("base_link" if isinstance(robot, Arm) else "grid_link")
+    return prefix(robot) + ("base_link" if robot.has_joints else "grid_link")
 
 
 def limits(robot: Arm | Mobile) -> dict[str, Limits]:
     """By joint name without prefix, in SI units; a mobile's joints end where its grid does."""
-    if isinstance(robot, Arm):
+    if robot.has_joints:
         return {joint.name: Limits(joint.lower, joint.upper, joint.speed) for joint in robot.joints}
     far = robot.grid.position(robot.grid.size - 1)
     return {f"{axis}_joint": Limits(0.0, end, robot.speed) for axis, end in zip("xy", far, strict=True)}
@@ -72,11 +72,11 @@ def _described(urdf: str, prefix: str, limits: Mapping[str, Limits]) -> str:
 
 def _named(plant: PlantModel, name: str) -> Arm | Mobile:
     robot = plant.robots.get(name)
-    if isinstance(robot, Arm | Mobile):
-        return robot
-    if robot is not None:
+    if robot is None:
+        known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
+        raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))
+    if not robot.goes:
         raise ConfigError(
             (f"{shown(name)} is neither an arm nor a mobile robot, so there is no drawing of it",)
         )
-    known = f"there are {', '.join(plant.robots)}{nearest(name, plant.robots)}"
-    raise ConfigError((f"{shown(name)} is not a robot of the plant {plant.name}; {known}",))
+    return robot

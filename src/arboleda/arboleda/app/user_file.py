@@ -6,8 +6,8 @@ import os
 import stat
 from pathlib import Path
 
-from arboleda.core.errors import ConfigError
-from arboleda.core.outside import quoted
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import quoted
 
 
 def read_bytes(path: Path, largest: int) -> bytes:

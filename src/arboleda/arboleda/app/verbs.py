@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from arboleda.core.messages import Verb
-from arboleda.core.outside import plain
+from arboleda.model.messages import Verb
+from arboleda.model.outside import plain
 from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
 from .where import PlantFile, StateFolder, client
@@ -18,6 +18,10 @@ STATUS = "Exit status: 0 done, 1 no plant, 2 refused."
 ByHand = Annotated[
     bool,
     typer.Option("--by-hand", help="Move nothing: you declare that the robot stands at its reference."),
+]
+Question = Annotated[
+    str | None,
+    typer.Option("--question", metavar="ID", help="Only if this is still what is asked, by its id."),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 
@@ -87,10 +91,12 @@ def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
     def act(
         person: Annotated[str, typer.Argument(help="Who is asked.", callback=_named)],
         answer: Annotated[list[str], typer.Argument(help="One of the answers that are offered.")],
+        question: Question = None,
         plant: PlantFile = None,
         state: StateFolder = None,
     ) -> None:
-        _ask(verb, " ".join([person, *answer]), plant, state)
+        named = [] if question is None else [f"#{question.removeprefix('#')}"]
+        _ask(verb, " ".join([person, *named, *answer]), plant, state)
 
     return act
 

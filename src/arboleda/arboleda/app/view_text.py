@@ -6,7 +6,7 @@ import json
 from collections.abc import Generator, Mapping
 from typing import Any
 
-from arboleda.core.sentence import in_json
+from arboleda.model.sentence import in_json
 
 _encode = json.JSONEncoder(ensure_ascii=False, default=in_json).encode
 

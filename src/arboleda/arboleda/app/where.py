@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from arboleda.core.outside import plain
+from arboleda.model.outside import plain
 
 from . import config
 from .client import PlantClient
@@ -16,13 +16,17 @@ from .state import default_state, find_running, running_plants
 
 LONGEST = 500  # characters of a line
 PlantFile = Annotated[
-    Path | None, typer.Option("--plant", metavar="FILE", help="Plant file. [default: the shipped plant]")
+    Path | None,
+    typer.Option(
+        "--plant", metavar="FILE", envvar="ARBOLEDA_PLANT", help="Plant file. [default: the shipped plant]"
+    ),
 ]
 StateFolder = Annotated[
     Path | None,
     typer.Option(
         "--state",
         metavar="DIR",
+        envvar="ARBOLEDA_STATE",
         help="Where the plant keeps its state. [default: $XDG_STATE_HOME/arboleda/<plant name>]",
     ),
 ]
@@ -49,3 +53,8 @@ def located(plant: Path | None, state: Path | None) -> Path:
 def folder(plant: Path | None, state: Path | None) -> Path:
     """`state`, or where that plant file keeps its state."""
     return state or default_state(config.load(plant, recipes=False).name)
+
+
+def name_of(plant: Path | None) -> str:
+    """The name of the plant of that file; "" where none is named."""
+    return "" if plant is None else config.load(plant, recipes=False).name

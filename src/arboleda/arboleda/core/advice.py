@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
-from .messages import Verb
-from .sentence import NOTHING, Phrase, Sentence
+from arboleda.model.messages import Verb
+from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
 
 class Hand(str, Enum):

@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from arboleda.dispatch.dispatcher import MAY_LET_GO
+from arboleda.model.messages import OperatorRequest, Reason, Verb
+from arboleda.model.sentence import Phrase, Sentence
+
 from .advice import Advice, Hand
 from .cell import CellRun
 from .cell_states import CellState
-from .messages import OperatorRequest, Reason, Verb
-from .sentence import Phrase, Sentence
 
 WILL_BE_HOMED = Phrase("cell.will_be_homed", "{arm} will have been homed")
 IN_THE_WAY = Phrase("advice.in_the_way", "{device} does not say {facts}")
+HOLDS_ZONES = Phrase("advice.holds_zones", "{arm} holds zone {zones}")
 MAY_BE_IN = Phrase("zone.may_be_in", "{arm} may still be in {zone}, which is quarantined")
 Refusal = Callable[[OperatorRequest], "Sentence | None"]
 
@@ -23,7 +26,10 @@ class Advisor:
     def __init__(self, cells: Mapping[str, CellRun], refusal: Refusal) -> None:
         self._cells = cells
         self._refusal = refusal
-        self._cell_of = {robot.name: run for run in cells.values() for robot in run.cell.robots}
+        self._runs: dict[str, list[CellRun]] = {}
+        for run in cells.values():
+            for robot in run.cell.robots:
+                self._runs.setdefault(robot.name, []).append(run)
 
     def advice(self, cell: str) -> tuple[Advice, ...]:
         """The ways out of a cell, each with why it would be refused now."""
@@ -59,7 +65,7 @@ class Advisor:
             return
         readying = [*self._readying(run, asked)]
         yield from readying
-        if readying and readying[0].do is Verb.STOP:
+        if (readying and readying[0].do is Verb.STOP) or (run.awaits and not readying):
             return
         homed = [
             each.scope for each in readying if each.do is Verb.HOME and each.scope in run.cell.workspaces
@@ -110,6 +116,10 @@ class Advisor:
             obstacle = seen(robot.name)
             if obstacle is None:
                 continue
+            if obstacle.reason is Reason.STOPPED and (others := self._stoppers(run, robot.name)):
+                for other in others:
+                    by_reason += _until_it_moves(self.ways_out(other, asked))
+                continue
             if obstacle.reason is Reason.STOPPED:
                 yield from _stopping(run, obstacle.sentence)
                 return
@@ -122,12 +132,23 @@ class Advisor:
             by_reason += self._homing(run, astray[0], astray[1].sentence, asked)
         yield from by_reason
 
+    def _stoppers(self, run: CellRun, device: str) -> list[str]:
+        """The other cells that share a device and whose stop keeps it; nothing where this one's does."""
+        runs = self._runs[device]
+        if run.state in STOPPING or not run.context.is_stopped(device):
+            return []
+        return [other.cell.name for other in runs if other.state in STOPPING]
+
     def _homing(self, run: CellRun, robot: str, why: Sentence, asked: frozenset[str]) -> Iterator[Advice]:
         by_routine = run.context.homes_by_routine(robot)
         if by_routine:
+            yield from _letting_go(run, robot)
             if robot in run.cell.zone_users:
                 zones = run.cell.workspaces[robot].zones
-                yield from self._freeing(run, run.context.awaited_zones(robot, zones), asked)
+                awaited = run.context.awaited_zones(robot, zones)
+                if any(map(run.context.moves, set(run.cell.interlocked).intersection(awaited.values()))):
+                    return  # a machine at work comes to its end
+                yield from self._freeing(run, awaited, asked)
             yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,))
             return
         if run.context.says_unhomed(robot):
@@ -141,32 +162,61 @@ class Advisor:
         and for a robot that is not heard, somebody may answer for a zone being empty.
         """
         for holder in sorted(set(zones.values())):
-            other = self._cell_of[holder]
-            if (facts := other.context.in_the_way(holder)) is not None:
+            its = [zone for zone in sorted(zones) if zones[zone] == holder]
+            if holder not in self._runs:  # kept from a start whose plant file had it
+                yield from self._overriding(its, holder, instead=False)
+                continue
+            other = self._run_of(holder)
+            if other.state is CellState.EXECUTE and holder in other.cell.shared:
+                continue  # it is not ours to move while a task of another cell uses it
+            if (facts := other.context.in_the_way(holder, its)) is not None:
                 yield Advice(do=Hand.FREE, scope=holder, why=IN_THE_WAY(device=holder, facts=facts))
+                continue
+            if other is run and _can_leave(run, holder):
+                why = HOLDS_ZONES(arm=holder, zones=tuple(its))
+                yield from _letting_go(run, holder)
+                yield Advice(do=Verb.HOME, scope=holder, why=why, moves=(holder,))
                 continue
             waits_too = other.cell.name in asked
             leads = () if waits_too else self.ways_out(other.cell.name, asked)
             by_hand = bool(leads) and leads[0].do in HANDS.values()
             yield from leads[:1] if by_hand else _until_it_moves(leads)
             if waits_too or by_hand:
-                its = [zone for zone in sorted(zones) if zones[zone] == holder]
                 silent = [zone for zone in its if run.context.is_quarantined(zone)]
                 yield from self._overriding(silent, holder, instead=by_hand)
 
+    def _run_of(self, robot: str) -> CellRun:
+        """The cell of a robot; of a shared device that which holds it, where one does."""
+        runs = self._runs[robot]
+        return next((run for run in runs if len(runs) > 1 and run.context.has_device(robot)), runs[0])
+
     def _overriding(self, zones: Sequence[str], holder: str, *, instead: bool) -> Iterator[Advice]:
-        other = self._cell_of[holder]
         for zone in zones:
             why = MAY_BE_IN(arm=holder, zone=zone)
             yield Advice(do=Hand.CHECK, scope=zone, why=why, instead=instead)
             if self._refusal(_request(Verb.OVERRIDE, zone)) is not None:
-                yield Advice(do=Verb.STOP, scope=other.cell.name, why=why)
+                yield Advice(do=Verb.STOP, scope=self._run_of(holder).cell.name, why=why)
             yield Advice(do=Verb.OVERRIDE, scope=zone, why=why)
             instead = False
 
 
 def _request(verb: Verb, scope: str, *, by_hand: bool = False) -> OperatorRequest:
     return OperatorRequest(at=0.0, verb=verb, scope=scope, by_hand=by_hand)
+
+
+def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
+    """What ends that the tool of a robot may open late, for which the robot stays where it is."""
+    tool = run.context.opening_tool(robot)
+    if tool is not None:
+        why = MAY_LET_GO(robot=robot, tool=tool)
+        yield Advice(do=Verb.RELEASE, scope=tool, why=why, drops=(tool,))
+
+
+def _can_leave(run: CellRun, robot: str) -> bool:
+    """Whether a robot of a cell that only stands there can be homed out of its zones."""
+    space, context = run.cell.workspaces.get(robot), run.context
+    ready = space is not None and context.obstacle(robot) is None and context.homes_by_routine(robot)
+    return ready and space is not None and not context.awaited_zones(robot, space.zones)
 
 
 def _until_it_moves(ways: Sequence[Advice]) -> Iterator[Advice]:
@@ -194,9 +244,13 @@ def _running_again(run: CellRun) -> Iterator[Advice]:
 
 
 def _can_bring_back(run: CellRun) -> bool:
-    """Whether a robot carries what holds a part; a clamp on a bench keeps it, however often one tries."""
-    hands = {space.hand.name for space in run.cell.workspaces.values()}
-    return any(holder in hands for holder in run.context.holding)
+    """Whether a robot carries what holds a part, and a recovery knows where that belongs.
+
+    A clamp on a bench, and a robot whose part came from nobody knows where, keep it however often one tries.
+    """
+    context, spaces = run.context, run.cell.workspaces
+    carriers = [name for name, space in spaces.items() if space.hand.name in context.holding]
+    return any(context.way_back(name) is not None for name in carriers)
 
 
 def _recovered(run: CellRun) -> tuple[str, ...]:
@@ -208,6 +262,7 @@ def _movers(run: CellRun) -> tuple[str, ...]:
     return tuple(robot.name for robot in run.cell.reached)
 
 
+STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState.STOPPED)
 AT_HAND = (CellState.IDLE, CellState.HELD)  # where a robot that is stopped was stopped by somebody else
 HANDS: dict[Reason, Hand] = {Reason.LINK_LOST: Hand.BRING_BACK, Reason.DEVICE_FAULT: Hand.REPAIR}
 Lead = Callable[[Advisor, CellRun, "frozenset[str]"], Iterator[Advice]]

@@ -8,20 +8,24 @@ from collections.abc import Callable, Sequence
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from . import advice, steps
+from arboleda.dispatch.belief import Moment
+from arboleda.dispatch.ledger import State
+from arboleda.model.errors import QueueFull
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Failure, Reason, TaskState
+from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import Build
+from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
+from arboleda.model.task import Task
+from arboleda.trees import steps
+from arboleda.trees.context import Context
+from arboleda.trees.keeping import Keeping
+from arboleda.trees.tree_run import TreeRun, path_of, step_of
+from arboleda.trees.walk_back import NO_PART
+
+from . import advice
 from .advice import Advice
-from .belief import Moment
 from .cell_states import TABLE, Cause, CellState, after
-from .context import Context
-from .errors import QueueFull
-from .grips import Grip
-from .ledger import State
-from .messages import Failure, Reason, TaskState
-from .model import Cell
-from .recipe import Build
-from .sentence import Phrase, Sentence
-from .task import Task
-from .tree_run import TreeRun, path_of
 
 
 class CellRun:
@@ -42,12 +46,14 @@ class CellRun:
         self.queue_paused = False
         self.task: Task | None = None
         self.run = TreeRun(context)
+        self.keeping = Keeping(context, self.run, build)
+        self.awaits: Sentence | None = None  # for what a task of an earlier start waits before it can go on
         self.trouble: Failure | None = None  # why it is held
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
+        self.left_over = False  # whether tasks of an earlier start wait, since nobody said `resume`
         self.dirty = False
         self.closed = False
         self._changed = changed
-        self._build = build
         self._ways_out = ways_out
         self._cancelling = False
         self._stopped_after: dict[str, Moment] = {}
@@ -80,6 +86,12 @@ class CellRun:
         return STANDS_BECAUSE(cell=name, state=self.state.said, why=why, next=self._next())
 
     @property
+    def due(self) -> float | None:
+        """When it is to be looked at although nothing happens, s of the plant's time."""
+        walk = self.keeping.walk
+        return self.context.next_deadline if walk is None else walk.due
+
+    @property
     def not_ready(self) -> Sentence | None:
         """Why an idle cell would not start a task; None where it would, or is not idle."""
         if self.state is not CellState.IDLE:
@@ -97,9 +109,32 @@ class CellRun:
         return HELD(cell=name, why=why, next=ways)
 
     @property
+    def is_held(self) -> bool:
+        return self.state is CellState.HELD
+
+    @property
     def why_held(self) -> Sentence:
         """The cause of a hold."""
-        return self.trouble.sentence if self.trouble else BY_OPERATOR()
+        why = self.trouble.sentence if self.trouble else None
+        if (at_work := self._at_work) is None:
+            return why or BY_OPERATOR()
+        return BOTH(first=at_work, second=why) if why else at_work
+
+    @property
+    def _at_work(self) -> Sentence | None:
+        """That its task was at work when an earlier start ended, until somebody says how it goes on."""
+        if self.keeping.walk is None or self.task is None:
+            return None
+        step = step_of(self.tree)
+        return WAS_AT_WORK(task=self.task.id) if step is None else STANDS_AT(task=self.task.id, step=step)
+
+    @property
+    def found(self) -> Sentence | None:
+        """What this start has found of a task that was at work, and what to do."""
+        if (at_work := self._at_work) is None:
+            return None
+        what = FOUND if self.stranded is None else FOUND_STRANDED
+        return what(cell=self.cell.name, found=at_work, why=self.stranded or NOTHING)
 
     @property
     def why_stopped(self) -> Sentence:
@@ -108,6 +143,9 @@ class CellRun:
 
     @property
     def why_paused(self) -> Sentence:
+        if self.left_over and self.queue:
+            one_or_more = LEFT_OVER_ONE if len(self.queue) == 1 else LEFT_OVER
+            return one_or_more(cell=self.cell.name, number=len(self.queue))
         return QUEUE_PAUSED(cell=self.cell.name)
 
     def _next(self) -> Sentence:
@@ -130,6 +168,38 @@ class CellRun:
             did = True
         self.dirty = False
         return did
+
+    def take_back(self, waiting: Sequence[Task], *, cut_off: bool) -> None:
+        """The tasks that waited here when an earlier start ended, be they more than the limit.
+
+        They start once somebody says so, or where the cell goes on by itself and none was cut off at work.
+        """
+        self.queue += waiting
+        if waiting and (cut_off or not self.cell.goes_on):
+            self.queue_paused = self.left_over = True
+
+    def walk_back(self, task: Task, kept: str) -> None:
+        """Hold a task that was at work when an earlier start ended, until a person says how it goes on."""
+        self.task, self.queue_paused, self.state = task, True, CellState.HELD
+        self.context.answers = task.answers
+        self.context.pause()
+        self.stranded = self.keeping.revive(task.order, kept)
+        trail = self.keeping.walk.trail if self.keeping.walk else None
+        if trail is not None:
+            self.trouble, self._cancelling = trail.failure, trail.cancels
+
+    def look_back(self) -> None:
+        """Judge a task of an earlier start by what its devices have said by now."""
+        if self.keeping.walk is not None and self.state is CellState.HELD:
+            self._judged()
+
+    def trail(self) -> str | None:
+        """Where its task stands, to be kept for the next start; None where that is kept already."""
+        if self.task is None or self.run.tree is None:
+            return None
+        holds = self.state in (CellState.HOLDING, CellState.HELD)
+        why, cancels = self.task.failure, self._cancelling
+        return self.keeping.news(failure=why, cancels=cancels, holds=holds, stranded=self.stranded)
 
     def start_in(self, state: CellState) -> None:
         """The plant starts with a stop of an earlier start: it is not over before clear and reset."""
@@ -172,11 +242,13 @@ class CellRun:
         if self.state is CellState.HELD:
             self._again(Cause.RESUME)
         self.queue_paused = False
+        self.left_over = False
         self.dirty = True
 
     def retry(self) -> None:
         """Give the step that failed anew; without a task, recover anew."""
         if self.task is not None:
+            self.task.attempts += 1
             self._again(Cause.RETRY)
         else:
             self.become(Cause.RETRY)
@@ -190,6 +262,8 @@ class CellRun:
             return
         self.become(Cause.ABANDON)
         given_up = Failure(reason=Reason.CANCELLED, sentence=ABANDONED())
+        if self.keeping.walk is not None and self.stranded is not None:
+            given_up = Failure(reason=Reason.INTERRUPTED, sentence=self.stranded)
         self.task.fail(self.trouble or given_up)
         self._recover()
 
@@ -211,10 +285,19 @@ class CellRun:
         if held or not self.run.recovering:
             self._recover()
 
-    def close(self) -> None:
-        """The plant ends: the running task is interrupted, no other one starts."""
+    def close(self, *, drops_waiting: bool) -> None:
+        """The plant ends: what runs is halted and stays as it is for the next start, no other task starts.
+
+        `drops_waiting`: there is no next start for the tasks of this one; they end.
+        """
         self.closed = True
-        self.interrupt(Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END()))
+        asked = Failure(reason=Reason.INTERRUPTED, sentence=ASKED_TO_END())
+        if self.task is None or (drops_waiting and not self.task.is_kept):
+            self.interrupt(asked)
+        elif self.state is CellState.EXECUTE:
+            self._hold(Cause.HOLD)
+        for task in [each for each in self.queue if drops_waiting and not each.is_kept]:
+            self.drop(task, asked)
         self.context.cancel_all()
 
     def interrupt(self, failure: Failure) -> None:
@@ -271,10 +354,25 @@ class CellRun:
         if self.task is None and self._grip_settled():
             self._leave_as_it_is()
             return True
+        if self.keeping.walk is not None:
+            return self._judged()
         if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
         self._miss_part()
         return False
+
+    def _judged(self) -> bool:
+        """Look what devices say of the steps at which an earlier start ended; whether that is news.
+
+        What keeps a task from going on stays so, whatever they say later.
+        """
+        if self.run.tree is None:
+            return False
+        before, found = (self.awaits, self.trouble, self.stranded), self.keeping.judge()
+        self.awaits = found.waits
+        self.trouble = self.trouble or found.failure
+        self.stranded = self.stranded or found.stranded
+        return before != (self.awaits, self.trouble, self.stranded)
 
     def _miss_part(self) -> None:
         """A held task whose effector was opened meanwhile has nothing to go on with."""
@@ -323,8 +421,15 @@ class CellRun:
         robot = next(iter(self.context.holding), None)
         if robot is None:
             return None
-        sentence = MAY_HOLD(arm=robot, grip=GRIPS[self.context.grip(robot)]())
-        return Failure(reason=Reason.INTERRUPTED, sentence=sentence)
+        return Failure(reason=Reason.INTERRUPTED, sentence=self._may_hold(robot))
+
+    def _may_hold(self, robot: str) -> Sentence:
+        """That a robot may hold a part, and by what."""
+        device = next(each for each in self.cell.robots if each.name == robot)
+        grip, fact = self.context.grip(robot), device.held_fact
+        if device.has_effector or fact is None:
+            return MAY_HOLD(arm=robot, grip=GRIPS[grip]())
+        return MAY_HOLD_BY_FACT(device=robot, fact=fact, grip=HELD_AS[grip]())
 
     def _fault(self) -> Failure | None:
         """What went wrong while the cell was held: an interrupted step that failed, a robot that cannot."""
@@ -339,16 +444,20 @@ class CellRun:
         self.become(cause)
         self.trouble = None
         self.context.go_on()
+        if self.keeping.walk is not None:
+            self.keeping.go_on()
+            return
         for act in self.run.interrupted():
             act.send()
 
     def _start(self, task: Task) -> None:
         self.task, self._cancelling = task, False
+        self.context.answers = task.answers
         self.become(Cause.TASK)
         task.become(TaskState.RUNNING, self.context.plant_now)
         self._changed(task)
         self.context.start_afresh()
-        self._look(self.run.begin(lambda: self._build(task.order, self.context)))
+        self._look(self.run.begin(lambda: self.keeping.make(task.order)))
 
     def uproot(self, robot: str) -> None:
         """A robot that goes from pose to pose is homed: a task that is held can only be abandoned."""
@@ -363,7 +472,8 @@ class CellRun:
 
     def _recover(self) -> None:
         """Drop what runs, halting it, and run the recovery alone."""
-        self.stranded = None
+        self.stranded = self.awaits = None
+        self.keeping.end()
         self.run.drop()
         self.context.go_on()
         self.trouble = None
@@ -398,7 +508,9 @@ class CellRun:
         self.become(Cause.STUCK)
 
     def _finish(self, task: Task, state: TaskState) -> None:
-        self.task = self.stranded = None
+        self.task = self.stranded = self.awaits = None
+        self.context.answers = []
+        self.keeping.end()
         task.become(state, self.context.plant_now)
         self._changed(task)
 
@@ -414,15 +526,34 @@ HELD_STRANDED = Phrase("cell.held_stranded", "{cell} is held ({why}); {stranded}
 BY_OPERATOR = Phrase("cell.by_operator", "by the operator")
 STOPPED = Phrase("cell.stopped", "{cell} was stopped by the operator")
 QUEUE_PAUSED = Phrase("cell.queue_paused", "the queue of {cell} is paused; resume {cell} starts it")
+LEFT_OVER = Phrase(
+    "cell.left_over", "{number:,} tasks of an earlier start wait in {cell}; resume {cell} starts them"
+)
+LEFT_OVER_ONE = Phrase(
+    "cell.left_over_one", "{number} task of an earlier start waits in {cell}; resume {cell} starts it"
+)
 ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
 ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")
 NO_CAUSE = Phrase("cell.no_cause", "{cell} failed without a cause")
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
 STILL_DOING = Phrase("robot.still_doing", "{robot} is still {doing}")
 MAY_HOLD = Phrase("part.may_hold", "{arm} may hold a part, its effector is {grip}")
+MAY_HOLD_BY_FACT = Phrase("part.may_hold_by_fact", "{device} may hold a part: {fact} is {grip}")
+WAS_AT_WORK = Phrase("walk.at_work", "task {task} was at work when the plant stopped")
+STANDS_AT = Phrase("walk.stands_at", 'task {task} was at work when the plant stopped; it stands at "{step}"')
+FOUND = Phrase(
+    "walk.found",
+    "{cell}: {found}; resume {cell} goes on if its devices prove what they did, abandon {cell} gives it up",
+)
+FOUND_STRANDED = Phrase("walk.found_stranded", "{cell}: {found}; {why}; abandon {cell} gives it up")
+NOT_YET = Phrase("walk.not_yet", "{why}; until then nobody can tell what became of the step of {cell}")
 LET_GO = Phrase("part.let_go", "{arm} let go of its part on the operator's word")
-NO_PART = Phrase("part.gone", "{arm} has no part to go on with")
 HOMED_MEANWHILE = Phrase("cell.homed_meanwhile", "{arm} was homed meanwhile")
+HELD_AS = {
+    Grip.OFF: Phrase("held_as.off", "false"),
+    Grip.ON: Phrase("held_as.on", "true"),
+    Grip.SWITCHING: Phrase("held_as.switching", "not known yet"),
+}
 GRIPS = {grip: Phrase(f"grip.{grip.value}", grip.value) for grip in Grip}
 WAIT = Phrase("next.wait", "wait")
 UNTIL_STILL = Phrase("next.until_still", "wait until it stands still")

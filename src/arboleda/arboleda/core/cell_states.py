@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from enum import Enum
 
-from .errors import IllegalTransition
-from .sentence import Phrase, Sentence
+from arboleda.model.errors import IllegalTransition
+from arboleda.model.sentence import Phrase, Sentence
 
 
 class CellState(str, Enum):

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from arboleda.model.errors import QueueFull, TextError
+from arboleda.model.messages import Failure, KeptTask, Reason, TaskState
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase
+from arboleda.model.task import Task
+
 from . import text
-from .errors import QueueFull, TextError
-from .model import PlantModel
-from .sentence import Phrase
-from .task import Task
 
 ENDING = Phrase("task.plant_ending", "the plant is ending; no new task is taken")
 ID_TAKEN = Phrase("task.id_taken", "#{id} is already the id of '{text}'; use another id")
-HISTORY = 1000  # tasks remembered by id; ended ones are forgotten first
+GONE = Phrase("task.gone", "the plant as it is now does not take it: {why}")
+CUT_OFF = Phrase(
+    "task.cut_off",
+    "the plant ended while this was at work; nobody knows how far it came, so it is not done again",
+)
+HISTORY = 1000  # tasks remembered by id, unless more of them wait: only ended ones are forgotten
 
 
 class Intake:
@@ -36,12 +43,32 @@ class Intake:
             raise TextError(ID_TAKEN(id=known.id, text=known.order.text))
         return known
 
+    def take_back(self, kept: KeptTask, now: float) -> Task:
+        """A task of an earlier start under its old id; one that waited for what this plant does not offer any
+        more is cancelled.
+        """
+        task = Task.of(kept)
+        if kept.ended_at is None:
+            try:
+                task = Task.of(kept, text.parse(kept.text, self.model))
+            except TextError as error:
+                if kept.state is TaskState.QUEUED:
+                    task.fail(Failure(reason=Reason.PRECONDITION, sentence=GONE(why=error.sentence)))
+                    task.become(TaskState.CANCELLED, now)
+        self.remember(task)
+        return task
+
+    def recall(self, kept: KeptTask) -> None:
+        """A task that has ended so long ago that only its keeper knew it."""
+        if kept.id not in self.tasks and kept.ended_at is not None:
+            self.remember(Task.of(kept))
+
     def knows(self, task: Task) -> bool:
         return task.id in self.tasks
 
     def remember(self, task: Task) -> None:
-        """Keep a task by its id; past HISTORY the oldest ended one goes."""
+        """Keep a task by its id; past HISTORY the oldest ended one goes, where there is one."""
         self.tasks[task.id] = task
         if len(self.tasks) > HISTORY:
             ended = (known.id for known in self.tasks.values() if known.ended_at is not None)
-            self.tasks.pop(next(ended, task.id))
+            self.tasks.pop(next(ended, ""), None)

@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial, reduce
 
+from arboleda.dispatch.belief import ONLY_DRAWN
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.zones import NONE, Zones
+from arboleda.model.commands import Question
+from arboleda.model.errors import ArboledaError, IllegalTransition
+from arboleda.model.messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.recipe import known
+from arboleda.model.sentence import Phrase, Sentence, Value
+
 from .advice import DO, OR
-from .belief import ONLY_DRAWN
-from .cell import STILL_DOING, CellRun
+from .cell import NOT_YET, STILL_DOING, CellRun
 from .cell_states import Cause, CellState
-from .commands import Question
-from .dispatcher import Dispatcher
-from .errors import ArboledaError, IllegalTransition
 from .intake import Intake
-from .messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
-from .model import Evidence, Link
-from .outside import quoted
-from .recipe import known
-from .sentence import Phrase, Sentence, Value
-from .zones import NONE, Zones
 
 
 class Refused(ArboledaError):
@@ -43,6 +45,17 @@ NO_SCOPE = Phrase(
 STILL_WORKS = Phrase(
     "refusal.still_works",
     "{robot} has not given up its work in {zone}; stop {cell}, then override {zone}",
+)
+STILL_USES = Phrase(
+    "refusal.still_uses",
+    "{cell} has not given up its work with {device}; stop {cell}, then override {device}",
+)
+NOT_HELD = Phrase("refusal.device_not_held", "no cell holds {device} now; say which one, {cells}")
+STAYS_STOPPED = Phrase(
+    "refusal.stays_stopped", "{device} stays stopped while {cells} is; clear {cells} first"
+)
+STOPS_SHARED = Phrase(
+    "did.stops_shared", "{did}; {devices}, shared with {cells}, stops too and stays so until reset {scope}"
 )
 NO_STATION = Phrase("refusal.no_station", "{station} is not a station of {cell}")
 STATION_EMPTY = Phrase("refusal.station_empty", "no part is known to be in station {station} of {cell}")
@@ -84,10 +97,17 @@ RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release 
 NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
 NOT_ASKED = Phrase("refusal.not_asked", "nobody asks {person} anything now")
 NO_ANSWER = Phrase("refusal.no_answer", "{word} is no answer to what {person} is asked; answers: {known}")
+OTHER_QUESTION = Phrase(
+    "refusal.other_question", "question {question} to {person} is over; now it is asked: {text}"
+)
+QUESTION_OVER = Phrase(
+    "refusal.question_over", "question {question} to {person} is over; nobody asks {person} anything now"
+)
 NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
 ACTS_KEPT = 20  # what a screen shows of them; the journal has all
 SHOWN = 10  # tasks that a sentence names
+QUESTION_ID = re.compile(r"#[0-9]+-[0-9]+")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +149,7 @@ class Operator:
         scope = _scope(request)
         self._planned(request, scope)()
         cell = self._cell_of(request, scope)
-        sentence = _did(request, scope)
+        sentence = self._with_shared(request.verb, scope, _did(request, scope))
         self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, cell=cell, sentence=sentence))
         number = self.acts[-1].number + 1 if self.acts else 1
         act = OperatorAct(number=number, at=self._clock(), scope=scope, cell=cell, sentence=sentence)
@@ -158,11 +178,32 @@ class Operator:
         robots = self._robots(scope)
         if request.verb is Verb.HOME:
             return self._planned_homing(robots, by_hand=request.by_hand)
-        return self._planned_in_cells(request.verb, robots)
+        return self._planned_in_cells(request.verb, robots, self._cells_in(request.verb, scope))
 
-    def _planned_in_cells(self, verb: Verb, robots: set[str]) -> Callable[[], None]:
+    def _cells_in(self, verb: Verb, scope: str) -> list[CellRun]:
+        """The cells of a scope; what is no matter of all that share a device is one of who holds it."""
+        if scope in self._cells:
+            return [self._cells[scope]]
+        cells = self._of_robots(self._robots(scope))
+        if scope not in self._dispatcher.model.shared or verb in OF_ALL_WHO_SHARE:
+            return cells
+        holder = self._zones.holder(scope)
+        if holder is None:
+            raise Refused(NOT_HELD(device=scope, cells=tuple(cell.cell.name for cell in cells)))
+        return [cell for cell in cells if cell.cell.name == holder]
+
+    def _with_shared(self, verb: Verb, scope: str, did: Sentence) -> Sentence:
+        """What was done, and that the stop of one cell stopped what it shares with others."""
+        cell = self._cells.get(scope) if verb is Verb.STOP else None
+        if cell is None or not cell.cell.shared:
+            return did
+        cells_of = self._dispatcher.model.cells_of
+        others = {other.name: None for name in cell.cell.shared for other in cells_of[name]}
+        others.pop(scope)
+        return STOPS_SHARED(did=did, devices=cell.cell.shared, cells=tuple(others), scope=scope)
+
+    def _planned_in_cells(self, verb: Verb, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
         check, act = ACTS[verb]
-        cells = self._of_robots(robots)
         refusals = {cell.cell.name: why for cell in cells if (why := check(self, cell, robots))}
         must = MUST_ALL.get(verb, ())
         firm = [cell.cell.name for cell in cells if cell.state in must and cell.cell.name in refusals]
@@ -173,7 +214,8 @@ class Operator:
 
     def _of_robots(self, robots: set[str]) -> list[CellRun]:
         """Their cells in the order of the file; one cell, as screens ask about it, comes without a search."""
-        names = {self._dispatcher.model.cell_of[robot].name for robot in robots}
+        cells_of = self._dispatcher.model.cells_of
+        names = {cell.name for robot in robots for cell in cells_of[robot]}
         if len(names) == 1:
             return [self._cells[names.pop()]]
         return [cell for name, cell in self._cells.items() if name in names]
@@ -197,8 +239,8 @@ class Operator:
         if task is not None:
             return task.order.cell
         name, _, _ = scope.lower().partition(" ")  # a station is named by its cell and number
-        its_cell = self._dispatcher.model.cell_of
-        return name if name in self._cells else its_cell[name].name if name in its_cell else None
+        cells = self._dispatcher.model.cells_of.get(name, ())
+        return name if name in self._cells else cells[0].name if len(cells) == 1 else None
 
     def _known_scope(self, scope: str) -> str:
         """The plant, a cell or a robot, where it could be a task too; Refused names the tasks there are."""
@@ -228,7 +270,11 @@ class Operator:
 
     def _planned_override(self, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
-        if holder is not None and self._zones.is_quarantined(zone) and self._works(holder):
+        cell = self._cells.get(holder or "")
+        if cell is not None and cell.tree is not None and self._zones.is_quarantined(zone):
+            raise Refused(STILL_USES(cell=cell.cell.name, device=zone))
+        known = self._dispatcher.model.cell_of  # without who is no longer in the plant file
+        if holder in known and self._zones.is_quarantined(zone) and self._works(holder):
             name = self._dispatcher.model.cell_of[holder].name  # what it does there counts on the zone
             raise Refused(STILL_WORKS(robot=holder, zone=zone, cell=name))
         try:
@@ -269,16 +315,22 @@ class Operator:
             cell.context.unload(number)
 
     def _planned_answer(self, scope: str) -> Callable[[], None]:
-        """`operator good`: a person, and one of the answers to what is being asked."""
-        person, _, word = scope.partition(" ")
+        """`operator good`: a person, and one of the answers to what is being asked; `operator #1-7 good` is
+        for the question of that id, and no other one.
+        """
+        person, id, word = _answered(scope)
         people = [name for name, robot in self._dispatcher.model.robots.items() if robot.link is Link.SCREEN]
         if person not in people:
             raise Refused(NO_PERSON(person=quoted(person), known=tuple(people) or NONE()))
         entry = self._dispatcher.question(person)
+        if entry is None and id is not None:
+            raise Refused(QUESTION_OVER(question=id, person=person))
         if entry is None:
             raise Refused(NOT_ASKED(person=person))
         assert isinstance(entry.command, Question)
-        answer = known(word.strip(), entry.command.answers)
+        if id not in (None, entry.command.id):
+            raise Refused(OTHER_QUESTION(question=id or "", person=person, text=entry.command.text))
+        answer = known(word, entry.command.answers)
         if answer is None:
             raise Refused(NO_ANSWER(word=quoted(word), person=person, known=entry.command.answers))
         return partial(self._answer, person, answer)
@@ -319,9 +371,10 @@ class Operator:
     def home(self, name: str) -> None:
         """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
+        cell.uproot(name)
         if name in cell.cell.zone_users:
+            cell.context.forsake()
             cell.context.claim_zones(name)
-        self._uproot(name)
         self._dispatcher.home(name, self._clock())
 
     def _uproot(self, name: str) -> None:
@@ -330,13 +383,13 @@ class Operator:
     def not_free_for_homing(self, robots: set[str]) -> Sentence | None:
         """Why robots may not set out for their reference: from where they stand they may cross any zone."""
         taken: dict[str, str] = {}
-        spaces = (space for cell in self._of_robots(robots) for space in cell.cell.workspaces.values())
-        for space in spaces:
-            name = space.robot.name
-            for zone in sorted(space.zones) if name in robots else ():
-                holder = self._zones.holder(zone) or taken.setdefault(zone, name)
-                if holder != name:
-                    return MAY_CROSS(arm=name, zone=zone, holder=holder)
+        for cell in self._of_robots(robots):
+            for name, space in cell.cell.workspaces.items():
+                for zone in sorted(space.zones) if name in robots else ():
+                    kept = None if cell.context.keeps_for_task(zone) else self._zones.holder(zone)
+                    holder = kept or taken.setdefault(zone, name)
+                    if holder != name:
+                        return MAY_CROSS(arm=name, zone=zone, holder=holder)
         return None
 
     def _not_homeable(self, name: str, *, by_hand: bool) -> Sentence | None:
@@ -359,8 +412,8 @@ class Operator:
             return None
         if not has_routine:
             return CANNOT_REPORT(robot=name)
-        obstacle = self._dispatcher.obstacle(name)
-        return obstacle.sentence if obstacle and obstacle.reason is not Reason.NOT_HOMED else None
+        obstacle = self._dispatcher.obstacle_to_homing(name)
+        return obstacle.sentence if obstacle else None
 
     def _stop(self, cell: CellRun, robots: set[str]) -> None:
         for robot in cell.cell.robots:
@@ -371,6 +424,10 @@ class Operator:
     def _not_clearable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
             return ONLY_ABORTED(cell=cell.cell.name, state=cell.state.said)
+        others = self._kept_stopped(cell, robots)
+        if others and others.keys() >= {each.name for each in cell.cell.robots if each.name in robots}:
+            device, cells = next(iter(others.items()))
+            return STAYS_STOPPED(device=device, cells=cells)
         finishes = self._dispatcher.finishes
         mine = [each.name for each in cell.cell.robots if each.name in robots and not finishes(each.name)]
         beliefs = [self._dispatcher.beliefs[name] for name in mine]
@@ -378,15 +435,32 @@ class Operator:
         return NOT_STILL(robots=moving) if moving else None
 
     def _clear(self, cell: CellRun, robots: set[str]) -> None:
+        kept = self._kept_stopped(cell, robots)
+        unstopped = set(cell.cell.shared) - self._dispatcher.latched  # only another robot was stopped
         for robot in cell.cell.robots:
-            if robot.name in robots:
+            if robot.name in robots - unstopped and robot.name not in kept:
                 self._dispatcher.unlatch(robot.name)
-        if not any(robot.name in self._dispatcher.latched for robot in cell.cell.robots):
+        stopped = self._dispatcher.latched - kept.keys()
+        if not any(robot.name in stopped for robot in cell.cell.robots):
             cell.become(Cause.CLEAR)
+
+    def _kept_stopped(self, cell: CellRun, robots: set[str]) -> dict[str, tuple[str, ...]]:
+        """Those of the robots that stay stopped when they are cleared in a cell, and for which cells: whoever
+        shares them was stopped, too, and is not cleared with them.
+        """
+        kept, stopped = {}, self._dispatcher.latched - robots
+        for name in cell.cell.shared:
+            cells = [each for each in self._dispatcher.model.cells_of[name] if stopped & {*each.own}]
+            others = tuple(each.name for each in cells if self._cells[each.name].state in STOPPING)
+            if name in robots and name in self._dispatcher.latched and others:
+                kept[name] = others
+        return kept
 
     def _reset(self, cell: CellRun, robots: set[str]) -> None:
         for robot in cell.cell.robots:
-            self._dispatcher.forget_stop(robot.name)
+            others = [each for each in self._dispatcher.model.cells_of[robot.name] if each is not cell.cell]
+            if not any(self._cells[other.name].state in UNTIL_RESET for other in others):
+                self._dispatcher.forget_stop(robot.name)
         cell.become(Cause.RESET)
         cell.become(Cause.READY)
 
@@ -397,7 +471,7 @@ class Operator:
             return ONLY_HELD(cell=cell.cell.name, state=cell.state.said)
         if cell.task is None or cell.trouble is not None or cell.stranded:
             return cell.held_by
-        return None
+        return _not_yet(cell)
 
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
@@ -423,8 +497,20 @@ def _scope(request: OperatorRequest) -> str:
     return scope if request.verb is Verb.CANCEL else scope.lower()
 
 
+def _answered(scope: str) -> tuple[str, str | None, str]:
+    """Who answers, the id of the question where it is named, and the answer."""
+    person, _, rest = scope.partition(" ")
+    first, _, word = rest.strip().partition(" ")
+    if QUESTION_ID.fullmatch(first):
+        return person, first.removeprefix("#"), word.strip()
+    return person, None, rest.strip()
+
+
 def _did(request: OperatorRequest, scope: str) -> Sentence:
     """What an operator, or a task's own client, has done."""
+    if request.verb is Verb.ANSWER:
+        person, _, word = _answered(scope)
+        scope = f"{person} {word}"
     if request.by_hand and request.verb is Verb.HOME:
         return DECLARED_HOMED(scope=_whole(scope))
     did = DID_BY_HAND if request.by_hand else DID_BY_CLIENT if request.client else DID
@@ -456,7 +542,12 @@ def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sente
         return cell.held_by
     if refusal is None and cell.task is not None and cell.trouble is None:
         return NO_FAULT(cell=cell.cell.name)
-    return refusal
+    return refusal or _not_yet(cell)
+
+
+def _not_yet(cell: CellRun) -> Sentence | None:
+    """That a task of an earlier start cannot be judged yet."""
+    return None if cell.awaits is None else NOT_YET(cell=cell.cell.name, why=cell.awaits)
 
 
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
@@ -499,6 +590,9 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
     Verb.RELEASE: (Operator._not_releasable, Operator._release),
 }
+OF_ALL_WHO_SHARE = (Verb.STOP, Verb.CLEAR, Verb.RESET)
+STOPPING = (CellState.ABORTING, CellState.ABORTED)
+UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
 # A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.
 MUST_ALL: dict[Verb, tuple[CellState, ...]] = {
     Verb.CLEAR: (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING),

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from itertools import filterfalse
 from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from .advice import Advice
-from .advisor import Advisor
-from .cell import CellRun
-from .cell_states import CellState
-from .commands import Command
-from .context import Context
-from .dispatcher import Dispatcher, Memory
-from .errors import ArboledaError, IllegalTransition, QueueFull, TextError
-from .intake import Intake
-from .messages import (
+from arboleda.dispatch.dispatcher import Dispatcher, Memory
+from arboleda.dispatch.zones import Zones
+from arboleda.model.commands import Command, Stop
+from arboleda.model.errors import ArboledaError, IllegalTransition, QueueFull, TextError
+from arboleda.model.messages import (
     Absence,
     Event,
     Fact,
@@ -26,10 +22,12 @@ from .messages import (
     Heartbeat,
     Interference,
     InternalError,
+    KeptTask,
     Notice,
     OperatorAnswer,
     OperatorRequest,
     Reason,
+    Remember,
     Report,
     Shutdown,
     TaskChanged,
@@ -37,13 +35,19 @@ from .messages import (
     TaskState,
     Undelivered,
 )
-from .model import Cell, PlantModel
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.recipe import Builders
+from arboleda.model.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.task import Order, Task
+from arboleda.trees.context import Context
+
+from .advice import Advice
+from .advisor import Advisor
+from .cell import CellRun
+from .cell_states import CellState
+from .intake import CUT_OFF, Intake
 from .operator import Operator, OperatorAct, Refused
-from .outside import plain
-from .recipe import Builders
-from .sentence import NOTHING, Phrase, Sentence
-from .task import Order, Task
-from .zones import Zones
 
 HEARTBEAT_S = 0.25
 DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
@@ -59,9 +63,10 @@ ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that ne
 class Plant:
     """All cells of a plant; `epoch` names this start and must be higher than any before.
 
-    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `recipes`
-    stand in for those of the cells. `next_deadline` is when `step` is due again without any event, s;
-    a plant that is stepped more than `away_after_s` after its last step was away.
+    `memory` is what earlier starts had to keep: latches, effectors, zones that may be occupied; `kept` are
+    their tasks in the order of acceptance: those that have not ended, and the last that have. `recipes` stand
+    in for those of the cells. `next_deadline` is when `step` is due again without any event, s; a plant that
+    is stepped more than `away_after_s` after its last step was away.
     """
 
     def __init__(
@@ -71,6 +76,7 @@ class Plant:
         epoch: int,
         now: float,
         memory: Memory | None = None,
+        kept: Iterable[KeptTask] = (),
         recipes: Builders | None = None,
     ) -> None:
         memory = memory or {}
@@ -80,15 +86,24 @@ class Plant:
         self.now = now
         self.intake = Intake(model, epoch)
         self.dispatcher = Dispatcher(model, epoch, memory)
-        self.zones = Zones(model.zones, memory.get(Fact.QUARANTINE, {}))
+        if memory.get(Fact.QUARANTINE):
+            self.dispatcher.sure_from = now + SHORTEST_ABSENCE_S
+        self.zones = Zones((*model.zones, *model.shared), memory.get(Fact.QUARANTINE, {}))
         self.cells = {cell.name: self._run(cell) for cell in model.cells}
         self._operator = Operator(
             self.cells, self.dispatcher, self.zones, self.intake, lambda: self.now, self._break_down
         )
         self._advisor = Advisor(self.cells, self._operator.refusal)
-        self._interlocked = [(name, run) for name, run in self.cells.items() if run.cell.interlocks]
+        self._interlocked = [
+            (run, device)
+            for name, run in self.cells.items()
+            for device in run.cell.interlocked
+            if model.cell_of[device].name == name  # the first of the cells that share it
+        ]
         self._to_home = {name for name, robot in model.robots.items() if robot.home_at_start}
-        self._runs = {robot.name: run for run in self.cells.values() for robot in run.cell.robots}
+        self._runs = {
+            name: [self.cells[cell.name] for cell in cells] for name, cells in model.cells_of.items()
+        }
         self._order = {name: number for number, name in enumerate(self.cells)}
         self._touched = set(self.cells)  # those to which something happened that they may wait for
         self._wakes: dict[str, float] = {}  # when trees are to be woken, by cell
@@ -97,6 +112,7 @@ class Plant:
         self._told_errors: dict[str, Sentence] = {}  # by cell, since somebody asked for something
         self._next_beat = now
         self._steps = False
+        self._take_back(kept)
         self.away_after_s = min(max(model.timing.stale_after_s, SHORTEST_ABSENCE_S), LONGEST_STALL_S)
         self.next_deadline = now
 
@@ -112,12 +128,16 @@ class Plant:
             if isinstance(event, Report):
                 self._on_report(event)
             else:
+                for name in self._touched:  # whoever asks finds judged what was heard before
+                    self._guard(name, self.cells[name].look_back)
                 self._touched.update(self.cells)
                 self._told_errors.clear()
                 HANDLERS[type(event)](self, event)
         self._expire(now)
-        self._watch_interlocks()
-        self._watch_zones()
+        if self._interlocked:
+            self._watch_interlocks()
+        if self.zones.is_used:
+            self._watch_zones()
         self._advance()
         self._beat()
         self.next_deadline = self._earliest()
@@ -144,8 +164,9 @@ class Plant:
 
     @property
     def at_rest(self) -> bool:
-        """Whether no task runs and no command is open."""
-        return not self.dispatcher.ledger.entries and all(cell.tree is None for cell in self.cells.values())
+        """Whether no command is open and no task runs, but for those that are left for the next start."""
+        ended = all(cell.tree is None or (cell.closed and cell.is_held) for cell in self.cells.values())
+        return not self.dispatcher.ledger.entries and ended
 
     def sleepers(self) -> list[str]:
         """Cells whose tree runs with nothing left to wake it; anything here is a defect."""
@@ -157,16 +178,51 @@ class Plant:
     def _run(self, cell: Cell) -> CellRun:
         context = Context(cell, self.dispatcher, self.zones, lambda: self.now, self._at_work)
         run = CellRun(cell, context, self._task_changed, self._build, self._ways_out)
-        if any(robot.name in self.dispatcher.latched for robot in cell.robots):
+        if self._was_stopped(cell, self.dispatcher.latched):
             run.start_in(CellState.ABORTED)
-        elif any(robot.name in self.dispatcher.cleared for robot in cell.robots):
+        elif self._was_stopped(cell, self.dispatcher.cleared):
             run.start_in(CellState.STOPPED)
         return run
 
-    def _at_work(self, robot: str) -> bool:
-        """Whether what a robot does comes to an end by itself."""
-        run = self._runs[robot]
-        return run.state is CellState.EXECUTE or bool(self.dispatcher.ledger.of_robot(robot))
+    def _take_back(self, kept: Iterable[KeptTask]) -> None:
+        """Queue again what waited when an earlier start ended, and hold what was at work then at its step."""
+        tasks = [(each.state, self.intake.take_back(each, self.now)) for each in kept]
+        for name, run in self.cells.items():
+            own = [task for _, task in tasks if task.order.cell == name]
+            waiting = [task for task in own if task.state is TaskState.QUEUED]
+            at_work = [task for task in own if task.state is TaskState.RUNNING]
+            run.take_back(waiting, cut_off=bool(at_work))
+            for task in at_work:
+                trail = self.dispatcher.kept(Fact.STEP, task.id)
+                if trail is not None and run.task is None and run.state is CellState.IDLE:
+                    run.walk_back(task, trail)
+        known = {run.task for run in self.cells.values()}
+        for was, task in tasks:
+            if task.state is TaskState.RUNNING and task not in known:
+                task.fail(Failure(reason=Reason.INTERRUPTED, sentence=CUT_OFF()))
+                task.become(TaskState.FAILED, self.now)
+            if task.state is not was:
+                self._task_changed(task)
+        for id in self.dispatcher.names_kept(Fact.STEP) - {task.id for task in known if task}:
+            self.dispatcher.remember(Fact.STEP, id, None)
+        held = (run for run in self.cells.values() if run.task is not None)
+        self._to_home -= {robot.name for run in held for robot in run.cell.robots}
+
+    def _was_stopped(self, cell: Cell, stopped: set[str]) -> bool:
+        """Whether a cell had been stopped: one of its own robots was, or what it shares, by itself."""
+        if not stopped.isdisjoint(cell.own):
+            return True
+        for name in stopped.intersection(cell.shared):
+            if all(stopped.isdisjoint(other.own) for other in self.model.cells_of[name]):
+                return True
+        return False
+
+    def _at_work(self, holder: str) -> bool:
+        """Whether what a robot, or a cell, does comes to an end by itself."""
+        if holder in self.cells:
+            return self.cells[holder].state is CellState.EXECUTE
+        executes = any(run.state is CellState.EXECUTE for run in self._runs.get(holder, ()))
+        return executes or bool(self.dispatcher.ledger.of_robot(holder))
 
     def _ways_out(self, cell: str) -> tuple[Advice, ...]:
         return self._advisor.ways_out(cell)
@@ -188,6 +244,8 @@ class Plant:
             request=request,
         )
         self.dispatcher.outbox.append(change)
+        if task.ended_at is not None:
+            self.dispatcher.remember(Fact.STEP, task.id, None)
 
     def _expire(self, limit: float) -> None:
         if limit >= self.next_deadline:
@@ -222,11 +280,33 @@ class Plant:
 
     def _advanced(self, name: str, *, woken: bool) -> bool:
         """Let a cell do what it can; whether it did."""
+        before = len(self.dispatcher.outbox)
         try:
-            return self.cells[name].advance(woken=woken)
+            did = self.cells[name].advance(woken=woken)
+            self._keep_trail(self.cells[name], before)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
             self._break_down(name, error)
             return False
+        return did
+
+    def _keep_trail(self, run: CellRun, before: int) -> None:
+        """Have it kept where a cell's task stands, before any command of what is newer in the outbox leaves,
+        and before anybody hears that the task runs.
+
+        It says of steps that they are done, so what those have left behind is kept before it.
+        """
+        text = run.trail()
+        if text is None or run.task is None:
+            return
+        outbox = self.dispatcher.outbox
+        waits = (
+            n for n in range(before, len(outbox)) if _commands(outbox[n]) or _begins(outbox[n], run.task)
+        )
+        first = next(waits, len(outbox))
+        later = outbox[first:]
+        outbox[first:] = filter(_is_fact, later)
+        self.dispatcher.remember(Fact.STEP, run.task.id, text)
+        outbox += filterfalse(_is_fact, later)
 
     def _guard(self, cell: str, act: Callable[[], None]) -> None:
         """Do something that belongs to one cell; what it raises holds that cell, and nothing else."""
@@ -250,7 +330,7 @@ class Plant:
     def _plan(self, names: Iterable[str]) -> None:
         """Take over when the trees of these cells are to be woken."""
         for name in names:
-            at = self.cells[name].context.next_deadline
+            at = self.cells[name].due
             self._wakes[name] = math.inf if at is None else at
         self._next_wake = min(self._wakes.values())
 
@@ -272,9 +352,8 @@ class Plant:
             self._guard(name, partial(cell.hold_after_absence, failure))
 
     def _watch_interlocks(self) -> None:
-        for name, cell in self._interlocked:
-            for device in cell.cell.interlocked:
-                self._guard(name, partial(cell.context.keep_interlocks, device))
+        for run, device in self._interlocked:
+            self._guard(run.cell.name, partial(run.context.keep_interlocks, device))
 
     def _watch_zones(self) -> None:
         inside = self.zones.robots
@@ -282,13 +361,18 @@ class Plant:
             for robot in (*cell.cell.zone_users, *cell.cell.interlocked):
                 if robot in inside:
                     self._guard(name, partial(self._watch_zones_of, cell, robot))
+        for device in self.model.shared:
+            holder = self.cells.get(self.zones.holder(device) or "")
+            if holder is not None:
+                ended = holder.state is CellState.IDLE  # a cell that is held or stopped keeps what it has
+                self._guard(holder.cell.name, partial(holder.context.keep_device, device, ended=ended))
 
     def _watch_zones_of(self, cell: CellRun, robot: str) -> None:
         """A robot that is not heard may still be where it was; one that is seen outside is not."""
         belief = self.dispatcher.beliefs[robot]
         if not belief.online or belief.unhomed:
             self.zones.quarantine(robot)
-        elif cell.tree is None:
+        elif cell.tree is None or cell.stranded:  # no step of it needs them any more
             cell.context.leave_zones(robot)
 
     def _beat(self) -> None:
@@ -297,23 +381,21 @@ class Plant:
             self.dispatcher.outbox.append(Heartbeat(epoch=self.epoch))
 
     def _on_report(self, report: Report) -> None:
-        run = self._runs.get(report.robot)
-        if run is None:
+        runs = self._runs.get(report.robot)
+        if runs is None:
             return
         try:
-            self._hear(run, report)
+            self.dispatcher.report(report, self.now)
+            for run in runs:
+                if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
+                    self._touched.add(run.cell.name)
+                if report.piece is not None and run.context.awaits_piece:
+                    run.context.awaits_piece = False  # who goes on waiting asks again
+                    self.dispatcher.ledger.changed.add(run.cell.name)
+            if report.robot in self._to_home:
+                self._home_at_start(report.robot)
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
-            self._break_down(run.cell.name, error)
-
-    def _hear(self, run: CellRun, report: Report) -> None:
-        self.dispatcher.report(report, self.now)
-        if run.state is not CellState.EXECUTE:  # what such a cell waits for shows in reports
-            self._touched.add(run.cell.name)
-        if report.piece is not None and run.context.awaits_piece:
-            run.context.awaits_piece = False  # who goes on waiting asks again
-            self.dispatcher.ledger.changed.add(run.cell.name)
-        if report.robot in self._to_home:
-            self._home_at_start(report.robot)
+            self._break_down(runs[0].cell.name, error)
 
     def _home_at_start(self, robot: str) -> None:
         belief = self.dispatcher.beliefs[robot]
@@ -339,6 +421,8 @@ class Plant:
 
     def _on_task_request(self, request: TaskRequest) -> None:
         try:
+            if request.kept is not None:
+                self.intake.recall(request.kept)
             task = self.intake.task(request.text)
             if not self.intake.knows(task):
                 self._refuse_trigger(request, task)
@@ -363,9 +447,11 @@ class Plant:
 
     def _on_operator_request(self, request: OperatorRequest) -> None:
         self._changes += 1
-        refusal = None
+        refusal, before = None, len(self.dispatcher.outbox)
         try:
             self._operator.act(request)
+            for run in self.cells.values():
+                self._keep_trail(run, before)
         except (Refused, IllegalTransition) as error:
             refusal = error.sentence
         except Exception as error:  # noqa: BLE001 - whoever asks gets an answer, and the plant goes on
@@ -379,7 +465,22 @@ class Plant:
     def _on_shutdown(self, event: Shutdown) -> None:
         self.intake.closed = True
         for name, cell in self.cells.items():
-            self._guard(name, cell.close)
+            self._guard(name, partial(cell.close, drops_waiting=event.drops_waiting))
+
+
+def _commands(message: Command | Notice) -> bool:
+    return isinstance(message, Command) and not isinstance(message, Stop)
+
+
+def _begins(message: Command | Notice, task: Task) -> bool:
+    if not isinstance(message, TaskChanged):
+        return False
+    return message.task == task.id and message.state is TaskState.RUNNING
+
+
+def _is_fact(message: Command | Notice) -> bool:
+    """Whether it is a fact, but for that a task stands nowhere any more: that is told after its end."""
+    return isinstance(message, Remember) and not (message.fact is Fact.STEP and message.value is None)
 
 
 def _refused(request: TaskRequest, sentence: Sentence, *, for_now: bool = False) -> TaskChanged:

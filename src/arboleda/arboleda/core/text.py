@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
-from .errors import TextError
-from .facts import Value, shown
-from .model import Cell, Link, PlantModel
-from .outside import LINE, quoted
-from .recipe import Parameter, Recipe, known
-from .sentence import Phrase, Sentence
-from .task import Order
+from arboleda.model.errors import TextError
+from arboleda.model.facts import Value, shown
+from arboleda.model.outside import LINE, quoted
+from arboleda.model.plant_model import Cell, Link, PlantModel
+from arboleda.model.recipe import Parameter, Recipe, known
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.task import Order
 
 LONGEST = LINE
 FORM = Phrase("text.form", "write {form}, e.g. {example}")
@@ -49,7 +49,6 @@ PARAMETER = Phrase("text.parameter", "parameter")
 CELL = Phrase("text.cell", "cell")
 CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
 RECIPE = Phrase("text.recipe", "recipe")
-ROLES = {"arm": Phrase("text.arm", "arm"), "mobile": Phrase("text.mobile", "mobile")}
 THIS_PLANT = Phrase("text.this_plant", "this plant")
 ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 
@@ -63,7 +62,7 @@ def parse(text: str, plant: PlantModel) -> Order:
         raise TextError(EMPTY(form=_form(plant)))
     cell, recipe = _cell_and_recipe(words, plant)
     is_named = not recipe.is_default or _is_named(words, cell, recipe)
-    read = _by_parameter(words, 2 if is_named else 1, cell, recipe, _form(plant))
+    read = _by_parameter(words, 2 if is_named else 1, cell, recipe, plant)
     _check_reached(cell, recipe)
     return _order(cell, recipe, read, task_id)
 
@@ -118,7 +117,7 @@ def _order(cell: Cell, recipe: Recipe, words: Mapping[str, str], id: str | None)
 def _cell_and_recipe(words: list[str], plant: PlantModel) -> tuple[Cell, Recipe]:
     """What the first two words name: the second a recipe, or it is a parameter of the cell's default."""
     second = words[1] if len(words) > 1 else ""
-    asked = [each for each in _offered(plant) if not each.is_default]
+    asked = [each for each in plant.recipes if not each.is_default]
     name = known(second, [each.name for each in asked])
     meant = [each for each in asked if each.name == name]
     short = len(words) == 2 and any(each.alone and not each.parameters for each in asked)
@@ -150,7 +149,9 @@ def _is_named(words: list[str], cell: Cell, recipe: Recipe) -> bool:
     return all(first.reads(cell, words[1]) is None for first in recipe.parameters[:1])
 
 
-def _by_parameter(words: list[str], start: int, cell: Cell, recipe: Recipe, form: Sentence) -> dict[str, str]:
+def _by_parameter(
+    words: list[str], start: int, cell: Cell, recipe: Recipe, plant: PlantModel
+) -> dict[str, str]:
     """Each parameter's word, from `start` on: those named `dose=5` wherever they stand, others in order."""
     named: dict[str, str] = {}
     in_order: list[str] = []
@@ -159,13 +160,13 @@ def _by_parameter(words: list[str], start: int, cell: Cell, recipe: Recipe, form
         name, equals, value = word.partition("=")
         if equals and name in names:
             if name in named:
-                raise TextError(TWICE(name=name, form=form))
+                raise TextError(TWICE(name=name, form=_form(plant)))
             named[name] = value
         else:
             in_order.append(word)
     unnamed = [name for name in names if name not in named]
     if len(in_order) != len(unnamed):
-        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=form))
+        raise TextError((ONE_WORD if len(words) == 1 else WORDS)(number=len(words), form=_form(plant)))
     named |= zip(unnamed, in_order, strict=True)
     return {each.name: _read(cell, each, named[each.name]) for each in recipe.parameters}
 
@@ -229,34 +230,29 @@ def _split_id(words: list[str]) -> tuple[list[str], str | None]:
 
 def _cell(word: str, plant: PlantModel, *, robots: bool) -> Cell:
     by_name = {cell.name: cell for cell in plant.cells}
-    roles = dict.fromkeys(each.alone for each in _offered(plant) if each.alone) if robots else {}
+    roles = dict.fromkeys(each.alone for each in plant.recipes if each.alone) if robots else {}
     for role in roles:
         by_name |= {cell.roles[role].name: cell for cell in plant.cells if role in cell.roles}
     name = known(word, by_name)
     if name is None:
-        raise TextError(_unknown(_cell_or_robot(roles), word, by_name, THIS_PLANT()))
+        raise TextError(_unknown(_cell_or_robot(roles, plant), word, by_name, THIS_PLANT()))
     return by_name[name]
-
-
-def _offered(plant: PlantModel) -> list[Recipe]:
-    """Every recipe of the plant, the default ones first."""
-    found = dict.fromkeys(each for cell in plant.cells for each in cell.recipes)
-    return sorted(found, key=lambda each: not each.is_default)
 
 
 def _form(plant: PlantModel) -> Sentence:
     """How tasks are written here, with an example of the first cell that offers something."""
-    forms = list(dict.fromkeys(each.form() for each in _offered(plant)))
+    forms = list(dict.fromkeys(each.form() for each in plant.recipes))
     cell = next(cell for cell in plant.cells if cell.recipes)
-    recipe = next(each for each in _offered(plant) if each in cell.recipes)
+    recipe = next(each for each in plant.recipes if each in cell.recipes)
     shown = example(cell, recipe).text
     if len(forms) == 1:
         return FORM(form=forms[0], example=shown)
     return FORMS(form=forms[0], example=shown, others=tuple(forms[1:]))
 
 
-def _cell_or_robot(roles: Iterable[str]) -> Sentence:
-    robots = tuple(ROLES[each]() if each in ROLES else each for each in roles)
+def _cell_or_robot(roles: Iterable[str], plant: PlantModel) -> Sentence:
+    owners = {role: cell for cell in reversed(plant.cells) for role in cell.roles}
+    robots = tuple(owners[role].role_said(role) for role in roles)
     return CELL_OR_ROBOT(robot=robots) if robots else CELL()
 
 

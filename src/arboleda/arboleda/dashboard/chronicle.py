@@ -6,7 +6,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from arboleda.core.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
+from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
+from arboleda.views.view import devices_once
 
 TASK_FAILED = Phrase("event.task", "{task}: {why}")
 EVENTS = 1000  # kept; older ones are forgotten
@@ -87,9 +88,9 @@ def _states(snapshot: Row) -> Iterator[Told]:
     online = {robot["name"]: robot["online"] for robot in snapshot["robots"]}
     for cell in snapshot["cells"]:
         yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or NOTHING
-        for device in cell["devices"]:
-            name = device["name"]
-            yield cell["name"], "robot", name, "online" if online[name] else "offline", NOTHING
+    for of, device in devices_once(snapshot["cells"]):
+        name = device["name"]
+        yield of, "robot", name, "online" if online[name] else "offline", NOTHING
     for task in snapshot["tasks"]:
         text = f"{task['text']} #{task['id']}"
         why = task["sentence"]

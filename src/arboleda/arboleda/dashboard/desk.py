@@ -11,10 +11,11 @@ from typing import TypeVar
 from nicegui import Client
 from nicegui.events import GenericEventArguments
 
+from arboleda.adapters.task_rows import PAGE
 from arboleda.adapters.web.auth import SUBMIT, Role, allowed
-from arboleda.core.errors import ArboledaError
-from arboleda.core.messages import Verb
-from arboleda.core.sentence import in_json
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Verb
+from arboleda.model.sentence import in_json
 
 from .feed import Feed
 from .plant_side import PlantSide
@@ -72,7 +73,7 @@ class Desk:
             await self._operate(Verb(act), of, by_hand=by_hand)
 
     async def _submit(self, text: str) -> None:
-        task = await self._answered(self._plant.submit(text))
+        task = await self._answered(self._plant.submit(text, PAGE))
         if task is not None and task["state"] == "refused":
             self._say(self._words.say(task["sentence"]), good=False)
         elif task is not None:
@@ -83,7 +84,7 @@ class Desk:
         if answer is None:
             return
         what = self._words.of("verb", verb.value)
-        where = scope or self._words("panel.plant")
+        where = _without_number(scope) if verb is Verb.ANSWER else scope or self._words("panel.plant")
         done = self._words("panel.done", what=what, where=where)
         self._say(
             done if answer.refusal is None else self._words.say(answer.refusal), good=not answer.refusal
@@ -118,6 +119,11 @@ class Desk:
 
     def _say(self, sentence: str, *, good: bool) -> None:
         self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")
+
+
+def _without_number(scope: str) -> str:
+    """A person and an answer as people say them: without the number of the question."""
+    return " ".join(word for word in scope.split() if not word.startswith("#"))
 
 
 VERBS = frozenset(verb.value for verb in Verb)

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Protocol
 
+from arboleda.adapters.task_rows import TaskRow
+
 from .faces import Face, changed
 from .plant_side import PlantSide
 from .story import Story
@@ -62,10 +64,10 @@ class Feed:
         """The time line, the newest event last."""
         return list(self._story.chronicle.events) if self._story else []
 
-    def task_face(self, id: str, language: str) -> Face:
-        """What a page shows of one task, besides its row."""
+    def task_face(self, id: str, language: str, kept: TaskRow | None) -> Face:
+        """What a page shows of one task, besides its row; `kept` is what the history has of it."""
         self._take_in()
-        return self._story.task_face(id, language) if self._story else {}
+        return self._story.task_face(id, language, kept) if self._story else {}
 
     def add(self, viewer: Viewer) -> None:
         """A page was opened, or is back: it will be told everything."""

@@ -54,6 +54,15 @@ def _tools(words: Words, role: str | None) -> None:
             title=words("page.look"),
             aria_label=words("page.look"),
         )
+        tag(
+            "button",
+            "♪",
+            type="button",
+            classes="tool sound",
+            title=words("js.sound_off"),
+            aria_label=words("page.sound"),
+            aria_pressed="false",
+        )
         if role is not None:
             with tag("form", action="/logout", method="post"):
                 tag(

@@ -5,20 +5,26 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from importlib import resources
+from typing import Annotated
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Query, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
 
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.task_rows import TaskQuery
 from arboleda.adapters.web.api import refuse
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from . import header, links, panel, tasks, timeline, trees
 from .desk import Desk
+from .faces import history, oee
 from .feed import Feed
 from .plant_side import Layout, PlantSide
 from .tags import tag
@@ -37,6 +43,9 @@ PARTS: dict[str, Callable[[Layout, Words], None]] = {
     "links": links.build,
     "events": timeline.build,
 }
+Asked = Annotated[str, Query(alias="words", max_length=100)]
+Hours = Annotated[float, Query(gt=0, le=1000)]
+Most = Annotated[int, Query(ge=1, le=200)]
 _here: list[FastAPI] = []
 
 
@@ -51,7 +60,7 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
     _keep_running(feed, show)
     window.serve(server, plant, show)
     layout = plant.layout()
-    _serve_tasks(server, feed)
+    _serve_tasks(server, plant, feed)
     app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
 
     @ui.page("/", title=f"{layout['plant']} · Arboleda")
@@ -76,13 +85,28 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
     )
 
 
-def _serve_tasks(server: FastAPI, feed: Feed) -> None:
-    """One task for whom its row does not suffice: the tree of one that has ended is sent on demand only."""
+def _serve_tasks(server: FastAPI, plant: PlantSide, feed: Feed) -> None:
+    """What is sent on demand only: the tree of a task that has ended, and the tasks of earlier starts."""
 
     async def one_task(request: Request, id: str) -> JSONResponse:
-        return JSONResponse(feed.task_face(id, language_of(request)))
+        found = await run_in_threadpool(plant.history, TaskQuery(id=id, limit=1)) if id else []
+        return JSONResponse(feed.task_face(id, language_of(request), found[0] if found else None))
 
+    async def kept(
+        request: Request, words_: Asked = "", before: int | None = None, limit: Most = 20
+    ) -> JSONResponse:
+        query = TaskQuery(words=words_, before=before, limit=limit)
+        rows = await run_in_threadpool(plant.history, query)
+        return JSONResponse(history.face(rows, words(language_of(request)), time.time()))
+
+    async def figures(request: Request, hours: Hours = 24.0) -> JSONResponse:
+        query = OeeQuery(since_s=time.time() - hours * 3600)
+        rows = await run_in_threadpool(plant.oee, query)
+        return JSONResponse(oee.face(rows, words(language_of(request))))
+
+    server.add_api_route("/oee.json", figures, include_in_schema=False)
     server.add_api_route("/task.json", one_task, include_in_schema=False)
+    server.add_api_route("/history.json", kept, include_in_schema=False)
 
 
 def language_of(request: Request) -> str:

@@ -6,7 +6,8 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
+from arboleda.views.view import devices_once
 
 from .plant_side import Layout
 from .tags import act_button, live, rows, tag
@@ -66,10 +67,11 @@ def _scopes(layout: Layout, words: Words) -> None:
             with _scope(cell["name"], None, *_kinds(CELL, cell["devices"])):
                 tag("span", cell["name"])
                 live("span", f"scope.{cell['name']}", classes="pill")
+    once = [*devices_once(layout["cells"])]
     for cell in layout["cells"]:
         with tag("div", classes="scopes robots", role="group", data_robots=cell["name"]):
             tag("span", words("panel.only"), classes="hint")
-            for device in cell["devices"]:
+            for device in (device for of, device in once if of == cell["name"]):
                 alone = [MOVER_ALONE] if device["position"] else []
                 _scope(device["name"], device["name"], *_kinds(DEVICE, [device]), *alone)
 
@@ -103,6 +105,6 @@ def _suggestions(layout: Layout) -> None:
     """What the plant would do next, read by the script to mark buttons."""
     for name in ["plant", *(cell["name"] for cell in layout["cells"])]:
         live("span", f"suggested.{name}", hidden="true", data_suggested=name)
-    robots = [device["name"] for cell in layout["cells"] for device in cell["devices"]]
+    robots = [device["name"] for _, device in devices_once(layout["cells"])]
     for name in ["plant", *(cell["name"] for cell in layout["cells"]), *robots]:
         live("span", f"refused.{name}", hidden="true", data_refused=name)

@@ -6,7 +6,10 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any, Protocol
 
-from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.task_rows import TaskQuery, TaskRow
+from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.views.oee import Oee
 
 Snapshot = dict[str, Any]
 Layout = dict[str, Any]
@@ -34,7 +37,13 @@ class PlantSide(Protocol):
     def past_acts(self) -> list[dict[str, Any]]:
         """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""
 
-    def submit(self, text: str) -> Future[dict[str, Any]]:
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        """Tasks as they are kept, of earlier starts too; it waits for the disk, so not in the event loop."""
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        """The figures of its cells, in the order of the plant file; it waits for the disk."""
+
+    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
         """A task, refused ones too; an ArboledaError says why there is none."""
 
     def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:

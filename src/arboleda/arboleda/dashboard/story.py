@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.adapters.task_rows import TaskRow
+
 from .chronicle import Chronicle
 from .faces import Face, task, whole
 from .faces.moment import Moment
@@ -43,10 +45,13 @@ class Story:
         moment = self._moment(language, links)
         return {} if moment is None else whole.face(moment)
 
-    def task_face(self, id: str, language: str) -> Face:
-        """What a page in this language shows of one task, known or not; empty before the first snapshot."""
+    def task_face(self, id: str, language: str, kept: TaskRow | None = None) -> Face:
+        """What a page in this language shows of one task, known or not; empty before the first snapshot.
+
+        `kept` is what the history has of it.
+        """
         moment = self._moment(language, {})
-        return {} if moment is None else task.face(moment, id, self.ended.get(id))
+        return {} if moment is None else task.face(moment, id, self.ended.get(id), kept)
 
     def _moment(self, language: str, links: Row) -> Moment | None:
         if self._snapshot is None or self._offset_s is None:

@@ -6,9 +6,12 @@ from . import task_form
 from .cell_filter import cell_filter
 from .plant_side import Layout
 from .tags import link, live, rows, tag
-from .trees import zooms
+from .trees import heard, zooms
 from .wording import Words
 
+KEPT = ("state", "text", "accepted", "asked_by", "ended", "took", "attempts", "why", "id")
+OEE = ("cell", "oee", "availability", "performance", "quality", "planned", "counted", "missing")
+HOURS = (1, 8, 24, 168)
 COLUMNS = ("state", "text", "started", "ended", "took", "why", "id", "acts")
 
 
@@ -22,6 +25,41 @@ def build(layout: Layout, words: Words) -> None:
                 cell_filter("tasks", layout, words)
             columns = [words(f"column.{name}") for name in COLUMNS]
             rows("tasks", columns, empty=words("tasks.none"), classes="tasks")
+        _oee(words)
+        _history(words)
+
+
+def _oee(words: Words) -> None:
+    """How well the cells work; the script fills it when it is looked at."""
+    with tag("div", classes="box"):
+        with tag("div", classes="box-head"):
+            tag("h2", words("oee.title"))
+            with tag("label", classes="search"):
+                tag("span", words("oee.hours"))
+                with tag("select", id="oee-hours"):
+                    for hours in HOURS:
+                        chosen = {"selected": "true"} if hours == 24 else {}
+                        tag("option", words(f"oee.last_{hours}"), value=str(hours), **chosen)
+        columns = [words(f"column.{name}") for name in OEE]
+        rows("oee", columns, empty=words("oee.none"), classes="oee")
+        tag("p", words("oee.about"), classes="hint")
+
+
+def _history(words: Words) -> None:
+    """The tasks of all starts; the script fills it when it is looked at."""
+    with tag("div", classes="box"):
+        with tag("div", classes="box-head"):
+            tag("h2", words("history.title"))
+            with tag("label", classes="search"):
+                tag("span", words("history.search"))
+                tag("input", id="history-words", type="search", autocomplete="off", maxlength="100")
+        rows(
+            "history",
+            [words(f"column.{name}") for name in KEPT],
+            empty=words("history.none"),
+            classes="tasks kept",
+        )
+        tag("button", words("history.more"), id="history-more", type="button", classes="act", hidden="true")
 
 
 def _one(words: Words) -> None:
@@ -33,6 +71,7 @@ def _one(words: Words) -> None:
             link(words("task.close"), tab="tasks", classes="act")
         live("p", "task.when", classes="hint")
         live("p", "task.cause", classes="trouble")
+        heard("task.heard", words)
         live("p", "task.note", classes="note")
         with tag("div", classes="tree-box"):
             with tag("div", classes="tree-tools"):

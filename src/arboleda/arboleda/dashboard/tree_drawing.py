@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Any
 
-from arboleda.core.sentence import Sentence
 from arboleda.drawing.layout import Layout, Line, Node, columns, outline, wide
+from arboleda.model.sentence import Sentence
 
 from .wording import LANGUAGES, Words, words
 

@@ -6,9 +6,9 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.sentence import Sentence
-from arboleda.core.steps import RECOVERY
 from arboleda.drawing.layout import parent
+from arboleda.model.sentence import Sentence
+from arboleda.trees.steps import RECOVERY
 
 IDLE, RUNNING, SUCCESS, FAILURE, HALTED = "idle", "running", "success", "failure", "halted"
 SEEN = {"RUNNING": RUNNING, "SUCCESS": SUCCESS, "FAILURE": FAILURE}

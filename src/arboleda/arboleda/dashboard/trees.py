@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from .faces.asked import PERSON
+from arboleda.views.view import devices_once
+
 from .plant_side import Layout
 from .tags import link, live, rows, tag
 from .wording import Words
@@ -13,11 +14,12 @@ MANY = 4  # cells; more than these are shown one tree at a time on a wall screen
 
 
 def build(layout: Layout, words: Words) -> None:
+    once = [*devices_once(layout["cells"])]
     many = "many" if len(layout["cells"]) > MANY else "few"
     with tag("div", classes=f"cells {many}"):
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
-                _card(cell, words)
+                _card(cell, [device for of, device in once if of == cell["name"]], words)
                 tree_box(cell, words)
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))
@@ -36,7 +38,8 @@ def beside(layout: Layout, words: Words) -> None:
             tree_box(cell, words)
 
 
-def _card(layout: dict[str, Any], words: Words) -> None:
+def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -> None:
+    """`devices` are those shown here: what cells share is shown with the first of them."""
     cell = layout["name"]
     with tag(
         "button", type="button", classes="card", data_choose=cell, title=words("cells.choose", cell=cell)
@@ -54,12 +57,13 @@ def _card(layout: dict[str, Any], words: Words) -> None:
             live("span", f"{cell}.queue")
         live("span", f"{cell}.cause", classes="trouble")
         live("span", f"{cell}.trouble", classes="trouble")
-    for device in layout["devices"]:
-        if device["kind"] == PERSON:
+    for device in devices:
+        if device["asked"]:
             _asked(device["name"])
     rows(f"ways.{cell}", ["", ""], classes="ways")
-    if any(device["position"] is None for device in layout["devices"]):
+    if any(device["position"] is None for device in devices):
         rows(f"devices.{cell}", ["", "", ""], classes="devices")
+        heard(f"heard.{cell}", words)
 
 
 def _asked(person: str) -> None:
@@ -70,6 +74,11 @@ def _asked(person: str) -> None:
             live("p", f"asked.{person}", classes="asked-question")
         rows(f"answers.{person}", [""], classes="answers small")
         live("p", f"asked_left.{person}", classes="asked-left")
+
+
+def heard(name: str, words: Words) -> None:
+    """What was answered to a task: by whom, what they were asked, and the answer."""
+    rows(name, [words(f"column.{each}") for each in ("by", "question", "answer")], classes="heard")
 
 
 def tree_box(layout: dict[str, Any], words: Words) -> None:

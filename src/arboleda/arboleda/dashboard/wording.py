@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from arboleda.core.sentence import Phrase, Sentence
+from arboleda.model.sentence import Phrase, Sentence
 
 LANGUAGES = ("en", "es")
 SENTENCES = "sentences"  # of the plant, by key, in every language but English: its phrases have that

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from typing import Any
-from xml.sax.saxutils import escape
 
 from .picture import FONT, PAPER, Box, Line, Picture, Word
 
@@ -35,7 +35,7 @@ def _line(line: Line) -> str:
 def _word(word: Word) -> str:
     # dominant-baseline is not known to every viewer; 0.35 em below the middle is the baseline in all of them
     at = f'x="{word.x:g}" y="{word.y + 0.35 * FONT:g}"'
-    return f'<text {at} fill="{word.colour}">{escape(word.text)}</text>'
+    return f'<text {at} fill="{word.colour}">{escape(word.text, quote=False)}</text>'
 
 
 WRITERS: dict[type, Callable[[Any], str]] = {Box: _box, Line: _line, Word: _word}

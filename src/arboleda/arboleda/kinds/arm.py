@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
-from arboleda.core.commands import Motion, Position, Switch
-from arboleda.core.counting import counted
-from arboleda.core.facts import Facts
-from arboleda.core.messages import Report
-from arboleda.core.model import Robot
+from arboleda.model.commands import Motion, Position, Switch
+from arboleda.model.counting import counted
+from arboleda.model.facts import Facts
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
 
 from .floor import Placement
 

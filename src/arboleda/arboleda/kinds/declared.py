@@ -1,23 +1,27 @@
 """A kind of device that is declared as data: its facts, and verbs with what they set and need.
 
 What a verb sets is at once what proves it and what a virtual device makes true; what it needs the plant
-refuses to break.
+refuses to break. A kind that is written in Python may compute what a verb sets and how long it takes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import ClassVar
 
-from arboleda.core.commands import Command, Motion, OnStop, Process, Query, Switch, Work
-from arboleda.core.errors import ArboledaError
-from arboleda.core.facts import Facts, Value, shown
-from arboleda.core.messages import Report
-from arboleda.core.model import Robot
-from arboleda.core.outside import among, quoted
+from arboleda.model.commands import Command, Motion, OnStop, Process, Query, Switch, Work
+from arboleda.model.errors import ArboledaError
+from arboleda.model.facts import Facts, Value, shown
+from arboleda.model.messages import Report
+from arboleda.model.outside import among, quoted
+from arboleda.model.plant_model import Robot
+
+Computed = Callable[..., object]
+"""A function of the values of a verb by name; what a virtual device does has its facts before them."""
 
 
 class UseError(ArboledaError):
@@ -42,15 +46,41 @@ class Slot:
 
 @dataclass(frozen=True, kw_only=True)
 class FactType:
-    """What a fact can be: one of some words, or any value of a type."""
+    """What a fact can be: one of some words, or any value of a type within its limits."""
 
     type: type[Value]
     words: tuple[Value, ...] = ()
     first: Value  # what a virtual device begins with
+    lower: float = -math.inf
+    upper: float = math.inf
 
     def takes(self, value: object) -> bool:
         fits = type(value) is self.type or (self.type is float and type(value) is int)
-        return fits and (not self.words or value in self.words)
+        if not fits or (self.words and value not in self.words):
+            return False
+        return not isinstance(value, int | float) or self.lower <= value <= self.upper
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether it is a number that has limits."""
+        return self.upper < math.inf
+
+    def covers(self, other: FactType) -> bool:
+        """Whether every value of the other type is one of this."""
+        if self.words and not other.words:
+            return False
+        if self.is_limited and not other.words:
+            ends = (other.type(other.lower), other.type(other.upper)) if other.is_limited else ()
+            return bool(ends) and all(map(self.takes, ends))
+        return all(self.takes(value) for value in other.words or (other.first,))
+
+    @property
+    def samples(self) -> tuple[Value, ...]:
+        """All its words, or else some values of it, the extreme ones among them."""
+        if self.type is bool:
+            return (False, True)
+        ends: tuple[Value, ...] = (self.type(self.lower), self.type(self.upper)) if self.is_limited else ()
+        return self.words or tuple(dict.fromkeys((self.first, *ends)))
 
     def read(self, value: object) -> Value | None:
         """The value as this type has it, where whole numbers are numbers, too; None for any other value."""
@@ -60,7 +90,10 @@ class FactType:
 
     def allowed(self) -> str:
         """In words, for who gave another value."""
-        return ", ".join(map(shown, self.words)) if self.words else TYPES[self.type]
+        if self.words:
+            return ", ".join(map(shown, self.words))
+        limits = f" from {self.lower:g} to {self.upper:g}" if self.is_limited else ""
+        return TYPES[self.type] + limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,10 +110,60 @@ class DeviceVerb:
     on_stop: OnStop = OnStop.HALT
     holds: bool = False  # what it sets says whether the device holds a part
     answers: tuple[Value, ...] = ()  # to a query; the first is what a virtual device answers
+    sets_by: Computed | None = None  # what it sets, by its values, in the place of `sets`
+    takes_s_by: Computed | None = None  # how long, by its values; `takes_s` is the longest that was tried
+    virtual: Computed | None = None  # what a virtual device shows besides, or its answer, by facts and values
+    rate: float = 1.0
 
     def at_rate(self, rate: float) -> DeviceVerb:
         """The same verb of a faster device, or of a slower one, which is waited for longer."""
-        return replace(self, takes_s=self.takes_s / rate, at_most_s=self.at_most_s / min(rate, 1.0))
+        return replace(
+            self,
+            takes_s=self.takes_s / rate,
+            at_most_s=self.at_most_s / min(rate, 1.0),
+            rate=self.rate * rate,
+        )
+
+    @property
+    def sets_facts(self) -> bool:
+        """Whether facts prove it."""
+        return bool(self.sets) or self.sets_by is not None
+
+    @property
+    def held(self) -> tuple[str, Value | Slot]:
+        """The fact that says whether the device holds a part, as this verb sets it; for one that holds."""
+        return next(row for row in self.sets if isinstance(self._typical(row[1]), bool))
+
+    def lets_go(self) -> bool:
+        """Whether it can end that its device holds a part."""
+        return self.holds and self.held[1] is not True
+
+    def letting_go(self) -> dict[str, Value]:
+        """The values with which it ends that; what says nothing of it has its first value."""
+        value = self.held[1]
+        held = value.name if isinstance(value, Slot) else None
+        return {name: False if name == held else type.first for name, type in self.parameters}
+
+    def sets_with(self, values: Mapping[str, Value]) -> Facts:
+        """What it sets with these values."""
+        if self.sets_by is not None:
+            return _facts(f"sets of {self.name}", _computed(f"sets of {self.name}", self.sets_by, **values))
+        return tuple(
+            (name, values[value.name] if isinstance(value, Slot) else value) for name, value in self.sets
+        )
+
+    def takes_s_with(self, values: Mapping[str, Value]) -> float:
+        """How long it takes with these values."""
+        if self.takes_s_by is None:
+            return self.takes_s
+        what = f"takes_s of {self.name}"
+        seconds = _computed(what, self.takes_s_by, **values)
+        if not isinstance(seconds, int | float) or not 0 <= seconds < math.inf:
+            raise UseError(f"{what} must be a time in s, is {quoted(seconds)}")
+        return float(seconds) / self.rate
+
+    def _typical(self, value: Value | Slot) -> Value:
+        return dict(self.parameters)[value.name].first if isinstance(value, Slot) else value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +177,7 @@ class DeviceKind:
     @cached_property
     def held_fact(self) -> str | None:
         """The fact that says whether a device holds a part."""
-        holding = (verb.sets[0][0] for verb in self.verbs.values() if verb.holds)
+        holding = (verb.held[0] for verb in self.verbs.values() if verb.holds)
         return next(holding, None)
 
     def command(self, *, id: str, robot: str, verb: str, values: Mapping[str, Value]) -> Command:
@@ -104,7 +187,38 @@ class DeviceKind:
             raise UseError(f"a {self.name} has no verb {quoted(verb)}; {among(verb, self.verbs)}")
         self._check(known, values)
         in_order = tuple((name, values[name]) for name, _ in known.parameters)
-        return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known)
+        sets = known.sets_with(dict(in_order))
+        if known.sets_by is not None:
+            self._check_facts(f"{verb} sets", sets)
+        return COMMANDS[known.effect](id=id, robot=robot, verb=verb, values=in_order, told=known, made=sets)
+
+    def shown_by(self, told: Told, facts: Facts) -> Facts:
+        """What a virtual device shows besides once it has done this; UseError for what it cannot show."""
+        if told.told.virtual is None:
+            return ()
+        what = f"virtual of {told.verb}"
+        found = _facts(what, _computed(what, told.told.virtual, dict(facts), **dict(told.values)))
+        self._check_facts(what, found)
+        return found
+
+    def answer_of(self, told: Told, facts: Facts) -> Value:
+        """What a virtual device answers to a query; UseError where that is none of its answers."""
+        answers = told.told.answers
+        if told.told.virtual is None:
+            return answers[0]
+        what = f"virtual of {told.verb}"
+        found = _computed(what, told.told.virtual, dict(facts), **dict(told.values))
+        if found not in answers:
+            allowed = ", ".join(map(shown, answers))
+            raise UseError(f"{what} answers {quoted(found)}; its answers are {allowed}")
+        return answers[answers.index(found)]
+
+    def _check_facts(self, what: str, facts: Facts) -> None:
+        for name, value in facts:
+            try:
+                self.check_fact(name, value)
+            except UseError as error:
+                raise UseError(f"{what}: {error}") from error
 
     def check_fact(self, name: str, value: object) -> None:
         """UseError where no device of this kind can say that."""
@@ -134,6 +248,7 @@ class Told(Command):
     verb: str
     values: Facts
     told: DeviceVerb = field(repr=False, compare=False)
+    made: Facts = field(repr=False, compare=False)  # what it sets with these values
 
     @property
     def given(self) -> dict[str, object]:
@@ -141,10 +256,12 @@ class Told(Command):
 
     @property
     def sets(self) -> Facts:
-        values = dict(self.values)
-        return tuple(
-            (name, values[value.name] if isinstance(value, Slot) else value) for name, value in self.told.sets
-        )
+        return self.made
+
+    @property
+    def takes_s(self) -> float:
+        """How long a virtual device takes for it."""
+        return self.told.takes_s_with(dict(self.values))
 
     @property
     def needs(self) -> Facts:
@@ -174,7 +291,7 @@ class ToldSwitch(Told, Switch):
 
     @property
     def grips(self) -> bool | None:
-        return bool(self.sets[0][1]) if self.told.holds else None
+        return bool(dict(self.sets)[self.told.held[0]]) if self.told.holds else None
 
 
 class ToldQuery(Told, Query):
@@ -197,6 +314,14 @@ class Device(Robot):
         return self.kind.name
 
     @cached_property
+    def verb_names(self) -> tuple[str, ...]:
+        return tuple(self.kind.verbs)
+
+    @cached_property
+    def query_names(self) -> tuple[str, ...]:
+        return tuple(verb.name for verb in self.kind.verbs.values() if verb.effect is Effect.QUERY)
+
+    @cached_property
     def fact_names(self) -> tuple[str, ...]:
         return tuple(self.kind.facts)
 
@@ -215,10 +340,23 @@ class Device(Robot):
     def let_go(self, *, id: str) -> Command:
         """The verb that ends its holding a part."""
         for verb in self.kind.verbs.values():
-            if verb.holds and verb.sets[0][1] is not True:
-                off = {name: False for name, _ in verb.parameters}
-                return self.kind.command(id=id, robot=self.name, verb=verb.name, values=off)
+            if verb.lets_go():
+                return self.kind.command(id=id, robot=self.name, verb=verb.name, values=verb.letting_go())
         raise UseError(f"a {self.kind.name} has no verb that lets go of a part")
+
+    def grip(self, *, id: str) -> Command:
+        """The verb that takes hold of a part, where that is told nothing else."""
+        for verb in self.kind.verbs.values():
+            if not verb.holds or verb.held[1] is False:
+                continue
+            held = verb.held[1]
+            others = [name for name, _ in verb.parameters if not isinstance(held, Slot) or name != held.name]
+            if others:
+                told = f"{verb.name}({', '.join(f'{name}=...' for name in others)})"
+                raise UseError(f"{self.name} is told more to take hold of a part: {told}")
+            values = dict.fromkeys(dict(verb.parameters), True)
+            return self.kind.command(id=id, robot=self.name, verb=verb.name, values=values)
+        raise UseError(f"a {self.kind.name} has no verb that takes hold of a part")
 
     def objection(self, report: Report) -> str | None:
         for key in ("q", "node", "effector", "piece"):
@@ -232,6 +370,20 @@ class Device(Robot):
             if not type.takes(value):
                 return f"{name} is {quoted(value)}; {self.name} knows {type.allowed()}"
         return None
+
+
+def _computed(what: str, function: Computed, *facts: object, **values: Value) -> object:
+    """What a kind's own function says; UseError, with its error, where it raises."""
+    try:
+        return function(*facts, **values)
+    except Exception as error:  # it is somebody's code: whatever it raises is told
+        raise UseError(f"{what}: {type(error).__name__}: {error}") from error
+
+
+def _facts(what: str, found: object) -> Facts:
+    if not isinstance(found, Mapping):
+        raise UseError(f"{what} must be facts by name, is {quoted(found)}")
+    return tuple(found.items())
 
 
 COMMANDS: dict[Effect, type[Told]] = {

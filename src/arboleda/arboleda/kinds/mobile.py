@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from arboleda.core.commands import Motion, Position
-from arboleda.core.messages import Report
-from arboleda.core.model import Robot
+from arboleda.model.commands import Motion, Position
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
 
 from .floor import Placement
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from arboleda.core.commands import Question
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, Link, Robot
+from arboleda.model.commands import Question
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, Link, Robot
 
 PATIENCE_S = 600.0  # a question without a deadline of its own waits so long
 

@@ -18,20 +18,22 @@ from typing import Any
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
-from arboleda.core import steps
-from arboleda.core.context import Context
-from arboleda.core.facts import Value, shown
-from arboleda.core.leaves import Dwell, Require, Unless
-from arboleda.core.messages import Failure, Reason
-from arboleda.core.outside import among, quoted
-from arboleda.core.recipe import Recipe
-from arboleda.core.sentence import Phrase, as_sentence
-from arboleda.core.task import Order
+from arboleda.model.facts import Value, shown
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.outside import among, quoted
+from arboleda.model.plant_model import Robot
+from arboleda.model.recipe import Recipe
+from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.task import Order
+from arboleda.trees import steps
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Dwell, Require, Unless
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Times
 from .errors import RecipeError, RoleError
 from .handles import Ask, Step, flat, handle, named, said
 from .parameters import parameter
+from .sharing import check_at_once, held, using
 
 FINAL = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.PART_LOST, Reason.INTERRUPTED, Reason.INTERNAL})
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
@@ -84,7 +86,7 @@ def _build(name: str, function: Callable[..., Step], order: Order, context: Cont
     step = function(Kit(context), **order.values)
     if not isinstance(step, Behaviour):
         raise RecipeError(f"{name} returns {quoted(step)}; a recipe returns a step, e.g. work(...)")
-    return steps.task(name, [step], context)
+    return steps.task(name, [held(context, step)], context, notes_origins=True)
 
 
 def _reason(word: Reason | str) -> Reason:
@@ -102,6 +104,7 @@ def work(*parts: Step | Sequence[Step]) -> Step:
 
 def parallel(*parts: Step) -> Step:
     """All at the same time, done once all are; where one fails, the others are halted."""
+    check_at_once(parts)
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)  # else what is done would be done again
     return steps.framed(composites.Parallel("parallel", policy=policy, children=list(parts)))
 
@@ -117,11 +120,23 @@ class Kit:
         return [self.device(role) for role in roles]
 
     def device(self, role: str) -> Any:
+        """The device in this role, to be told what to do."""
+        return handle(self._named(role), self._context)
+
+    def _named(self, role: str) -> Robot:
         known = self._context.cell.roles
         if role not in known:
             name = self._context.cell.name
             raise RoleError(f"{name} has no device in the role {role!r}; {among(role, known)}")
-        return handle(known[role], self._context)
+        return known[role]
+
+    def using(self, roles: str | Sequence[str], *parts: Step | Sequence[Step]) -> Step:
+        """The steps, with devices that other cells share held meanwhile; a recipe without it holds each from
+        its first use to its last. What this cell does not share is its own anyway.
+        """
+        names = [roles] if isinstance(roles, str) else roles
+        shared = frozenset(self._named(role).name for role in names).intersection(self._context.cell.shared)
+        return using(self._context, shared, flat(parts)) if shared else work(*parts)
 
     def run(self, other: WrittenRecipe, **values: object) -> Step:
         """Another recipe as a step of this one."""
@@ -134,11 +149,11 @@ class Kit:
         asked.check(ways)
 
         def answers(value: Value) -> bool:
-            return asked.entry is not None and asked.entry.answer == value
+            return asked.answer == value
 
         def other() -> Failure | None:
             """A way that was taken and failed has named its cause."""
-            told = asked.entry.answer if asked.entry else None
+            told = asked.answer
             if told in ways:
                 return self._context.failure
             known = tuple(map(shown, ways))

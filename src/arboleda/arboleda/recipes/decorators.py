@@ -5,21 +5,23 @@ They are woken by the plant's events and times; the decorators of py_trees ask a
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.decorators import Decorator
 
-from arboleda.core.context import Context
-from arboleda.core.messages import Failure, Reason
-from arboleda.core.sentence import Phrase
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import Phrase
+from arboleda.trees.context import Context
+from arboleda.trees.trail import Keeps
 
 TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
 
 
-class Around(Decorator):
+class Around(Keeps, Decorator):
     """A step around another one, which is the step that screens name."""
 
     frame = True
@@ -41,6 +43,12 @@ class Again(Around):
 
     def initialise(self) -> None:
         self.tries, self.again_at = 0, None
+
+    def kept(self) -> Mapping[str, Any] | None:
+        return {"tries": self.tries} if self.status is Status.RUNNING else None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.tries = state["tries"]
 
     def tick(self) -> Iterator[Behaviour]:
         if self.status is Status.RUNNING and self.again_at is not None:
@@ -74,6 +82,12 @@ class Times(Around):
     def initialise(self) -> None:
         self.done = 0
 
+    def kept(self) -> Mapping[str, Any] | None:
+        return {"done": self.done} if self.status is Status.RUNNING else None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.done = state["done"]
+
     def update(self) -> Status:
         if self.decorated.status is not Status.SUCCESS:
             return self.decorated.status
@@ -96,6 +110,9 @@ class AtMost(Around):
     def initialise(self) -> None:
         self.until = self.context.now + self.seconds
         self.context.wake_at(self.until)
+
+    def begin_anew(self) -> None:
+        self.initialise()
 
     def update(self) -> Status:
         if self.decorated.status is not Status.RUNNING or self.context.now < self.until:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 
 
 class RecipeError(ArboledaError):

@@ -7,19 +7,22 @@ from functools import partial
 from typing import Any
 
 from py_trees.behaviour import Behaviour
+from py_trees.common import Status
 
-from arboleda.core import steps
-from arboleda.core.context import Context
-from arboleda.core.facts import Value, shown
-from arboleda.core.leaves import Act, Await, Require
-from arboleda.core.messages import Failure, Reason
-from arboleda.core.model import Pose, Robot
-from arboleda.core.outside import among, quoted
-from arboleda.core.sentence import Phrase
 from arboleda.kinds.declared import Device, ToldQuery, UseError
 from arboleda.kinds.person import PATIENCE_S, Person
+from arboleda.model.by_class import nearest
+from arboleda.model.facts import Value, shown
+from arboleda.model.messages import Failure, Reason, TaskAnswer
+from arboleda.model.outside import among, quoted
+from arboleda.model.plant_model import Pose, Robot
+from arboleda.model.sentence import Phrase
+from arboleda.trees import steps
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act, Await, Require
 
 from .errors import RecipeError
+from .sharing import check_holds_none
 
 Step = Behaviour
 LONGEST_QUESTION, LONGEST_ANSWER = 300, 60
@@ -32,9 +35,30 @@ ASKING = Phrase("doing.ask", "asking {person}")
 
 
 class Ask(Act):
-    """A question to a device, and what it may answer."""
+    """A question to a device, and what it may answer; `by` is its name, `asked` the question in words."""
 
     answers: tuple[Value, ...] = ()
+    by = asked = ""
+    _answer: Value | None = None  # of an earlier start of the plant
+
+    @property
+    def answer(self) -> Value | None:
+        """What was answered."""
+        return self._answer if self.entry is None else self.entry.answer
+
+    def kept(self) -> Mapping[str, Any] | None:
+        return super().kept() if self.answer is None else {"answer": self.answer}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        if "answer" in state:
+            self._answer = state["answer"]
+        else:
+            super().restore(state)
+
+    def _done(self) -> Status:
+        if self.answer is not None:
+            self.context.note(TaskAnswer(by=self.by, asked=self.asked, answer=self.answer))
+        return super()._done()
 
     def check(self, ways: Mapping[Value, object]) -> None:
         """RecipeError where the ways are not those of all answers, and of no others."""
@@ -71,6 +95,12 @@ class Handle:
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
         return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+
+    def _of(self, act: Act) -> Act:
+        """A command to the device, noted where cells share that."""
+        if self._device.name in self._context.cell.shared:
+            act.uses = self._device.name
+        return act
 
     def _check(self, facts: Mapping[str, Value]) -> None:
         """UseError for what the device never says."""
@@ -118,10 +148,11 @@ class DeviceHandle(Handle):
             zones = steps.interlocked(self._context, told)
             words = " ".join([verb, *map(shown, given.values())])
             if not isinstance(told, ToldQuery):
-                act = Act(f"{name} {words}", self._context, make, f"doing {words}")
+                act = self._of(Act(f"{name} {words}", self._context, make, f"doing {words}"))
                 return steps.sequence(act.title, *zones, act) if zones else act
             asked = Ask(f"{name} {words}", self._context, make, f"doing {words}")
-            asked.answers = told.told.answers
+            asked.answers, asked.by, asked.asked = told.told.answers, name, words
+            self._of(asked)
             return asked
 
         return step
@@ -150,7 +181,8 @@ class PersonHandle(Handle):
 
         name = self._device.name
         asked = Ask(ASK(person=name), self._context, make, ASKING(person=name))
-        asked.answers = tuple(answers)
+        asked.answers, asked.by, asked.asked = tuple(answers), name, question
+        self._of(asked)
         return asked
 
 
@@ -164,30 +196,32 @@ class RobotHandle(Handle):
     def visit(self, target: str, *work: Step | Sequence[Step]) -> Step:
         """Go to a target and do the work there."""
         pose = self._pose(target)
+        check_holds_none("a visit", flat(work))
         parts = steps.visit_from_anywhere(self._context, self._device.name, pose, flat(work))
         return steps.sequence(VISIT(pose=pose.said), *parts)
 
     def home(self) -> Step:
         """Go where it waits."""
-        home = self._context.cell.workspaces[self._device.name].home
+        home = self._context.cell.reach[self._device.name].home
         parts = steps.visit_from_anywhere(self._context, self._device.name, home, [])
         return steps.sequence(HOME(), *parts)
 
     def grip(self) -> Step:
         """Take hold of a part."""
+        self._context.cell.workspaces[self._device.name].hand.grip(id="")  # what it cannot is told at once
         return steps.effector(self._context, self._device.name, on=True)
 
     def let_go(self) -> Step:
         """Let go of what it holds."""
-        return steps.effector(self._context, self._device.name, on=False)
+        name = self._device.name
+        return steps.effector(self._context, name, on=False, then=partial(self._context.store_where, name))
 
     def brings_back_to(self, target: str) -> None:
         """A recovery brings what it holds there; else it is where the part was taken."""
         self._context.back[self._device.name] = self._pose(target)
 
     def _pose(self, target: str) -> Pose:
-        space = self._context.cell.workspaces[self._device.name]
-        poses = {pose.name: pose for pose in space.poses}
+        poses = self._context.cell.spots(self._device.name)
         if target not in poses:
             raise RecipeError(f"{self._device.name} has no target {quoted(target)}; {among(target, poses)}")
         return poses[target]
@@ -195,13 +229,15 @@ class RobotHandle(Handle):
 
 def handle(device: Robot, context: Context) -> Any:
     """What a recipe tells this device with."""
-    if device.name in context.cell.workspaces:
+    if device.name in context.cell.reach:
         return RobotHandle(device, context)
-    if isinstance(device, Device):
-        return DeviceHandle(device, context)
-    if isinstance(device, Person):
-        return PersonHandle(device, context)
-    raise RecipeError(f"{device.name} has no verbs, and no targets in {context.cell.name}")
+    own = nearest(HANDLES, type(device))
+    if own is None:
+        raise RecipeError(f"{device.name} has no verbs, and no targets in {context.cell.name}")
+    return own(device, context)
+
+
+HANDLES: dict[type[Robot], Callable[[Any, Context], Handle]] = {Device: DeviceHandle, Person: PersonHandle}
 
 
 def named(step: object) -> str:

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.core.facts import Value, shown
-from arboleda.core.model import Cell
-from arboleda.core.recipe import Limits, Parameter
+from arboleda.model.facts import Value, shown
+from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import Limits, Parameter
 
 from .errors import RecipeError
 

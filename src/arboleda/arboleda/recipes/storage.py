@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core import steps, zone_plan
-from arboleda.core.context import Context
-from arboleda.core.leaves import Act, Require
-from arboleda.core.messages import Failure, Reason
-from arboleda.core.model import Cell, Pose
-from arboleda.core.recipe import Parameter, Recipe
-from arboleda.core.sentence import Phrase, Sentence
-from arboleda.core.task import Order
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.plant_model import Cell, Pose
+from arboleda.model.recipe import Parameter, Recipe
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.task import Order
 from arboleda.recipes.storage_cell import Path, StorageCell
+from arboleda.trees import steps, zone_plan
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act, Require
 
 STORING = Phrase("step.storage", "storage")
 CYCLE = Phrase("step.palletizing", "palletizing")
@@ -36,6 +36,7 @@ def storage(order: Order, context: Context) -> Behaviour:
     path, station = order.values["path"], order.values["station"]
     cell = _as_storage(context.cell)
     arm, check = cell.arm.name, cell.piece_check
+    context.origins.discard(arm)  # a recipe of one's own may have run before
     pickup = context.back[arm] = cell.pickup_of(path)
     way = storage_way(cell, pickup, station, context.standing(arm))
     visits = [
@@ -52,6 +53,7 @@ def palletizing(order: Order, context: Context) -> Behaviour:
     cell = _as_storage(context.cell)
     arm, check = cell.arm.name, cell.piece_check
     pick, place = cell.palletizing.pick, cell.palletizing.place
+    context.origins.discard(arm)
     context.back[arm] = cell.pickup
     way = palletizing_way(cell, context.standing(arm))
     visits = [
@@ -116,6 +118,11 @@ STORAGE = Recipe(
 )
 PALLETIZING = Recipe(name="palletizing", build=palletizing, alone="arm")
 RECIPES = (STORAGE, PALLETIZING)
+
+
+def only_stores(cell: Cell) -> bool:
+    """Whether a cell of an arm, a mobile robot and a rack offers nothing but what comes with that."""
+    return cell.is_storage and {*cell.recipes} <= {*RECIPES}
 
 
 def _drive(context: Context, path: Path) -> list[Behaviour]:

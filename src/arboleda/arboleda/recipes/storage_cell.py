@@ -7,10 +7,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
-from arboleda.core.commands import Position
-from arboleda.core.model import Cell, Crossing, Pose, Positions, Robot, Workspace
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.commands import Position
+from arboleda.model.plant_model import Cell, Crossing, Pose, Positions, Robot, Workspace
+from arboleda.model.sentence import OWN, Phrase, Sentence
+
+HOME = "home"
+ARM, MOBILE = "arm", "mobile"  # its roles, which are keys of the cell as well
+ROLES = {ARM: Phrase("text.arm", "arm"), MOBILE: Phrase("text.mobile", "mobile")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +55,10 @@ class StorageCell(Cell):
     piece_check: bool = False
     crossings: tuple[Crossing, ...] = ()
     pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
-    keyed_roles: ClassVar[tuple[str, ...]] = ("arm", "mobile")
+    keyed_roles: ClassVar[tuple[str, ...]] = (ARM, MOBILE)
+
+    def role_said(self, role: str) -> Sentence | str:
+        return ROLES[role]() if role in ROLES else role
 
     def described(self) -> dict[str, object]:
         grid = self.mobile.grid
@@ -110,6 +118,38 @@ class StorageCell(Cell):
     def workspaces(self) -> dict[str, Workspace]:
         arm = Workspace(robot=self.arm, home=self.home, poses=self.poses, crossings=self.crossings)
         return {self.arm.name: arm}
+
+    @cached_property
+    def reach(self) -> dict[str, Workspace]:
+        """Recipes of one's own send the mobile robot, too: to where paths begin and end."""
+        start = self.paths[0].nodes[0]
+        ends = tuple(Pose(name=path.code, title=OWN(text=path.code), q=path.nodes[-1]) for path in self.paths)
+        home = Pose(name=HOME, title=OWN(text=HOME), q=start)
+        return {
+            **self.workspaces,
+            self.mobile.name: Workspace(robot=self.mobile, home=home, poses=(home, *ends)),
+        }
+
+    def spots(self, robot: str) -> dict[str, Pose]:
+        """Of the arm `home`, `pickup`, `pickup_b`, `station_7`; of the mobile `home`, the codes of paths."""
+        if robot != self.arm.name:
+            return super().spots(robot)
+        return {HOME: self.home, **self._pickups, **self._stations}
+
+    @cached_property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """What a recipe can have chosen."""
+        codes = tuple(path.code for path in self.paths)
+        return {"stations": tuple(self._stations), "pickups": tuple(self._pickups), "paths": codes}
+
+    @property
+    def _stations(self) -> dict[str, Pose]:
+        return {f"station_{number}": pose for number, pose in enumerate(self.stations)}
+
+    @property
+    def _pickups(self) -> dict[str, Pose]:
+        by_exit = {f"pickup_{path.exit.lower()}": self.pickup_of(path) for path in self.paths}
+        return {"pickup": self.pickup} | by_exit
 
     @cached_property
     def zones(self) -> frozenset[str]:

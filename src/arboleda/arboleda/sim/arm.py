@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.core.facts import Value
 from arboleda.kinds.arm import Arm, Joint
+from arboleda.model.facts import Value
 from arboleda.wire import units
 from arboleda.wire.payloads import JointsGoal
 from arboleda.wire.topics import Channel

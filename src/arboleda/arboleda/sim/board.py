@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from arboleda.core.commands import StopMode
-from arboleda.core.errors import PayloadError
-from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.model.commands import StopMode
+from arboleda.model.errors import PayloadError
+from arboleda.model.plant_model import Evidence, MotionState, Robot
 from arboleda.wire import strict
 from arboleda.wire.payloads import (
     Beat,

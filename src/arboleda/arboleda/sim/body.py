@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from arboleda.core.commands import Position
-from arboleda.core.facts import Facts, Value
+from arboleda.model.commands import Command, Position
+from arboleda.model.facts import Facts, Value
 from arboleda.wire.payloads import Goal, OrderGoal
 from arboleda.wire.topics import Channel
 
@@ -42,6 +42,9 @@ class Robotic:
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
         return "formato"
+
+    def command(self, goal: OrderGoal) -> Command | None:
+        return None
 
     def is_work(self, goal: OrderGoal) -> bool:
         return False
@@ -82,6 +85,9 @@ class Body(Protocol):
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
         """The word that refuses an order now; None where it can be carried out."""
+
+    def command(self, goal: OrderGoal) -> Command | None:
+        """What an order asks for; None where it knows no such verb or value."""
 
     def is_work(self, goal: OrderGoal) -> bool:
         """Whether an order that can be carried out keeps the machine busy."""

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from arboleda.core.model import Link, PlantModel, Robot
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.by_class import nearest
+from arboleda.model.plant_model import Cell, Link, PlantModel, Robot
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .arm import ArmBody
@@ -105,16 +107,27 @@ class Devices:
 
 def _body(model: PlantModel, robot: Robot) -> Body:
     """The body of a robot standing where its cell has it begin, or of a device as its facts begin."""
-    cell = model.cell_of[robot.name]
-    start = cell.start_of(robot.name)
-    if isinstance(robot, Arm):
-        pickups = [pose.joints for pose in cell.supplies(robot.name)]
-        return ArmBody(robot, start=start if isinstance(start, tuple) else robot.reference, pickups=pickups)
-    if isinstance(robot, Mobile):
-        return MobileBody(robot, start_node=start if isinstance(start, int) else 0)
-    if isinstance(robot, Device):
-        return MachineBody(robot.kind)
-    raise TypeError(f"{robot.name} is neither an arm, a mobile robot nor a device of a declared kind")
+    body = nearest(BODIES, type(robot))
+    if body is None:
+        raise TypeError(f"{robot.name} has no virtual board: nothing says how a {robot.kind_name} moves")
+    return body(robot, model.cell_of[robot.name])
+
+
+def _arm(arm: Arm, cell: Cell) -> Body:
+    start, pickups = cell.start_of(arm.name), [pose.joints for pose in cell.supplies(arm.name)]
+    return ArmBody(arm, start=start if isinstance(start, tuple) else arm.reference, pickups=pickups)
+
+
+def _mobile(mobile: Mobile, cell: Cell) -> Body:
+    start = cell.start_of(mobile.name)
+    return MobileBody(mobile, start_node=start if isinstance(start, int) else 0)
+
+
+def _machine(device: Device, cell: Cell) -> Body:
+    return MachineBody(device.kind)
+
+
+BODIES: dict[type[Robot], Callable[[Any, Cell], Body]] = {Arm: _arm, Mobile: _mobile, Device: _machine}
 
 
 def _us(seconds: float) -> int:

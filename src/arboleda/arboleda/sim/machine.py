@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from arboleda.core.commands import OnStop
-from arboleda.core.facts import Facts, Value
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, Told, UseError
+from arboleda.model.commands import OnStop
+from arboleda.model.facts import Facts, Value
 from arboleda.wire.payloads import DEVICE, OrderGoal
 from arboleda.wire.topics import Channel
 
@@ -16,6 +16,7 @@ from .body import End
 
 WORK = frozenset({Effect.MOTION, Effect.PROCESS})
 SUPERSEDED = "relevado"  # the word for a switch that another one of the same fact has overtaken
+UNSHOWN = "virtual"  # the word for what ends in an error of the function that its kind gives virtual devices
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +26,8 @@ class Deed:
     goal: OrderGoal
     command: Told
     ends_us: int
+    is_late: bool = False  # it takes longer than it should
+    is_said_again: bool = False  # a question that was answered, and is answered once more
 
     @property
     def verb(self) -> DeviceVerb:
@@ -42,8 +45,10 @@ class MachineBody:
     as a gripper does whose spring opens it: what it holds is then lost, which is worse for the plant than a
     clamp that stays. Everything else stays as it is: a door does not move because its board boots.
 
-    `answer` says what it answers to a query, and `fails` with what word an order will end as given up; None:
-    it will be done.
+    How it behaves is asked for each order. `answer`: what it answers to a query; `repeats`: after how many s
+    it answers that again, None: never; `refuses`, `fails`: with what word it does not take it, or gives it
+    up, None: not at all; `does`: whether it truly does what it says is done; `lasts`: how many s longer than
+    it should.
     """
 
     axes: int | None = DEVICE
@@ -54,7 +59,11 @@ class MachineBody:
         self.kind = kind
         self.facts: dict[str, Value] = {name: type.first for name, type in kind.facts.items()}
         self.answer: Callable[[OrderGoal], Value] = self.first_answer
+        self.repeats: Callable[[OrderGoal], float | None] = _never
+        self.refuses: Callable[[OrderGoal], str | None] = _never
         self.fails: Callable[[OrderGoal], str | None] = _never
+        self.does: Callable[[OrderGoal], bool] = _always
+        self.lasts: Callable[[OrderGoal], float] = _as_long_as_it_should
         self.ends: list[End] = []
         self._deeds: list[Deed] = []
         self.next_change_us: int | None = None
@@ -63,6 +72,17 @@ class MachineBody:
         self._deeds, self.ends, self.next_change_us = [], [], None
         if self.kind.held_fact is not None:
             self.facts[self.kind.held_fact] = False
+
+    def forget_settings(self) -> None:
+        """What was switched is as it was in the beginning; what was moved stays where it is."""
+        switches = (verb for verb in self.kind.verbs.values() if verb.effect is Effect.SWITCH)
+        for name in {name for verb in switches for name, _ in verb.sets}:
+            self.facts[name] = self.kind.facts[name].first
+
+    def catch_up(self, now_us: int) -> None:
+        """End at last what is late."""
+        self._deeds = [replace(deed, ends_us=now_us + 1) if deed.is_late else deed for deed in self._deeds]
+        self._plan()
 
     def set_by_hand(self, facts: Facts) -> None:
         if not self._deeds:
@@ -85,31 +105,57 @@ class MachineBody:
         return any(deed.is_work and deed.verb.on_stop is OnStop.FINISH for deed in self._deeds)
 
     def first_answer(self, goal: OrderGoal) -> Value:
-        """The first of the answers that its kind declares for a query."""
-        return self.kind.verbs[goal.verb].answers[0]
+        """What its kind has a virtual device answer to a query."""
+        command = self.command(goal)
+        assert command is not None
+        return self.kind.answer_of(command, tuple(self.facts.items()))
 
     def objection(self, goal: OrderGoal, *, latched: bool, faulted: bool) -> str | None:
         """The word that refuses an order now; None where it can be carried out."""
-        command = self._command(goal)
+        command = self.command(goal)
         if command is None:
             return "formato"
+        if (word := self.refuses(goal)) is not None:
+            return word
         works = command.told.effect in WORK
         if latched and not _goes_on_while_stopped(command):
             return "paro"
         if works and (self.moving or faulted):
             return "ocupado"
-        return None if all(self.facts[name] == value for name, value in command.needs) else "condicion"
+        met = all(self.facts[name] == value for name, value in command.needs)
+        return None if met and not self._breaks_its_work(command) else "condicion"
+
+    def _breaks_its_work(self, command: Told) -> bool:
+        """Whether a command would end what the work under way needs."""
+        needs = (need for deed in self._deeds if deed.is_work for need in deed.command.needs)
+        sets = dict(command.sets)
+        return any(sets.get(name, value) != value for name, value in needs)
+
+    def command(self, goal: OrderGoal) -> Told | None:
+        verb = self.kind.verbs.get(goal.verb)
+        types = dict(verb.parameters) if verb else {}
+        read = {name: types[name].read(value) if name in types else None for name, value in goal.values}
+        values = {name: value for name, value in read.items() if value is not None}
+        if len(values) < len(goal.values):
+            return None
+        try:
+            command = self.kind.command(id="", robot="", verb=goal.verb, values=values)
+        except UseError:
+            return None
+        assert isinstance(command, Told)
+        return command
 
     def is_work(self, goal: OrderGoal) -> bool:
         return self.kind.verbs[goal.verb].effect in WORK
 
     def start(self, now_us: int, goal: OrderGoal) -> None:
         """Begin an order without an objection; even what takes no time takes a moment."""
-        command = self._command(goal)
+        command = self.command(goal)
         assert command is not None
         self._supersede(command)
-        takes_us = max(1, round(command.told.takes_s * 1e6))
-        self._deeds.append(Deed(goal=goal, command=command, ends_us=now_us + takes_us))
+        late_s = self.lasts(goal)
+        ends_us = now_us + max(1, round((command.takes_s + late_s) * 1e6))
+        self._deeds.append(Deed(goal=goal, command=command, ends_us=ends_us, is_late=late_s > 0))
         self._plan()
 
     def stop(self, now_us: int) -> None:
@@ -121,7 +167,7 @@ class MachineBody:
         for deed in sorted(self._deeds, key=lambda each: each.ends_us):
             if deed.ends_us <= now_us:
                 self._deeds.remove(deed)
-                self._end(deed)
+                self._end(deed, now_us)
         self._plan()
 
     def take_ends(self) -> list[End]:
@@ -144,39 +190,42 @@ class MachineBody:
     def put_at_reference(self) -> None:
         """It has none."""
 
-    def _command(self, goal: OrderGoal) -> Told | None:
-        """What an order asks for; None where its kind knows no such verb or value."""
-        verb = self.kind.verbs.get(goal.verb)
-        types = dict(verb.parameters) if verb else {}
-        read = {name: types[name].read(value) if name in types else None for name, value in goal.values}
-        values = {name: value for name, value in read.items() if value is not None}
-        if len(values) < len(goal.values):
-            return None
-        try:
-            command = self.kind.command(id="", robot="", verb=goal.verb, values=values)
-        except UseError:
-            return None
-        assert isinstance(command, Told)
-        return command
-
     def _supersede(self, command: Told) -> None:
         """Forget the query that was asked before, and give up the switches whose facts this one sets."""
         effect, sets = command.told.effect, {name for name, _ in command.sets}
-        for deed in [deed for deed in self._deeds if deed.verb.effect is effect]:
+        for deed in [deed for deed in self._deeds if deed.verb.effect is effect and not deed.is_said_again]:
             if effect is Effect.SWITCH and sets & {name for name, _ in deed.command.sets}:
                 self._deeds.remove(deed)
                 self.ends.append(End(deed.goal, failure=SUPERSEDED))
             elif effect is Effect.QUERY:
                 self._deeds.remove(deed)
 
-    def _end(self, deed: Deed) -> None:
-        word = self.fails(deed.goal)
+    def _end(self, deed: Deed, now_us: int) -> None:
+        word = None if deed.is_said_again else self.fails(deed.goal)
         if word is not None:
             self.ends.append(End(deed.goal, failure=word))
             return
-        self.facts.update(deed.command.sets)
+        try:
+            self._become(deed, now_us)
+        except UseError:
+            self.ends.append(End(deed.goal, failure=UNSHOWN))
+
+    def _become(self, deed: Deed, now_us: int) -> None:
+        """What an order leaves behind; UseError where its kind has a function that does not say it."""
         if deed.verb.effect is Effect.QUERY:
             self.ends.append(End(deed.goal, answer=self.answer(deed.goal)))
+            self._say_again(deed, now_us)
+        elif self.does(deed.goal):
+            sets = dict(deed.command.sets)
+            besides = self.kind.shown_by(deed.command, tuple((self.facts | sets).items()))
+            self.facts.update(dict(besides) | sets)
+
+    def _say_again(self, deed: Deed, now_us: int) -> None:
+        after_s = None if deed.is_said_again else self.repeats(deed.goal)
+        if after_s is not None:
+            self._deeds.append(
+                replace(deed, ends_us=now_us + max(1, round(after_s * 1e6)), is_said_again=True)
+            )
 
     def _plan(self) -> None:
         self.next_change_us = min((deed.ends_us for deed in self._deeds), default=None)
@@ -188,4 +237,12 @@ def _goes_on_while_stopped(command: Told) -> bool:
 
 
 def _never(goal: OrderGoal) -> None:
-    """Every order will be done."""
+    """No order is treated so."""
+
+
+def _always(goal: OrderGoal) -> bool:
+    return True
+
+
+def _as_long_as_it_should(goal: OrderGoal) -> float:
+    return 0.0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from arboleda.core.facts import Value
 from arboleda.kinds.mobile import Mobile
+from arboleda.model.facts import Value
 from arboleda.wire.payloads import PathGoal
 from arboleda.wire.topics import Channel
 

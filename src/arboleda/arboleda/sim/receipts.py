@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from arboleda.core.facts import Value
+from arboleda.model.facts import Value
 from arboleda.wire.payloads import FAILURES_KEPT, Goal
 
 UNKNOWN_SEQ = 0  # senders count from 1

@@ -12,10 +12,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 
-from arboleda.core.belief import APART_S
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, Robot
-from arboleda.kinds.mobile import Mobile
+from arboleda.dispatch.belief import APART_S
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
@@ -38,7 +37,7 @@ def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ..
     """Two instants are two readings: a state, or a node, that lasts shorter would not be told at all."""
     if robot.evidence is Evidence.IDS:
         return (None,)
-    too_fast = isinstance(robot, Mobile) and robot.grid.pitch / robot.speed < APART_S
+    too_fast = robot.on_grid and robot.grid.pitch / robot.speed < APART_S
     if robot.evidence is Evidence.STATE or too_fast:
         return (None, _two_topics)
     return (None, _two_topics, _two_instants)

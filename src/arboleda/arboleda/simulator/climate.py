@@ -8,21 +8,16 @@ from dataclasses import dataclass, fields
 from itertools import accumulate
 from typing import Any
 
-from arboleda.core.errors import ArboledaError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
-from .faults import KINDS, Fault
-from .general import GENERAL_FAULTS, is_general
+from .faults import GENERAL, KINDS, OF_CRASHES, Fault, Kind
+from .general import is_general
+from .levels import LEVELS
 
 MINUTE_S = 60.0
-LEVELS: dict[str, tuple[float, float]] = {
-    "none": (0.0, 0.0),
-    "few": (1.0, 4.0),
-    "normal": (8.0, 40.0),
-    "many": (20.0, 90.0),
-}
-"""Faults per minute: from where to where a seed draws its own."""
+CRASHES, CRASH_WEIGHT = "crashes", 8.0  # beside one of each other kind
 
 ABSENT = 0.25  # the share of kinds that a seed does without
 FIELDS = tuple(each.name for each in fields(Fault))
@@ -52,9 +47,9 @@ class Climate:
             raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
         dice, (low, high) = Dice(seed, "climate"), LEVELS[level]
         total = low * (high / low) ** dice.random() if low else 0.0
-        judged = GENERAL_FAULTS if is_general(model) else KINDS
+        judged = GENERAL if is_general(model) else KINDS
         kinds = {name: kind for name, kind in KINDS.items() if name in judged and kind.targets(model)}
-        weights = {name: _weight(dice, kind.weight) for name, kind in kinds.items()}
+        weights = {name: _weight(dice, _weight_at(level, kind)) for name, kind in kinds.items()}
         return cls(model=model, seed=seed, rates=_shared(round(total, 3), weights))
 
     @classmethod
@@ -85,6 +80,10 @@ class Climate:
         name = _one_of(dice, self.rates)
         at = round(begin + dice.below(60_000) / 1000, 3)
         return Fault(kind=name, at=at, seed=dice.below(2**32), **KINDS[name].draw(dice, self.model))
+
+
+def _weight_at(level: str, kind: Kind) -> float:
+    return CRASH_WEIGHT if level == CRASHES and kind.name in OF_CRASHES else kind.weight
 
 
 def _weight(dice: Dice, weight: float) -> float:

@@ -34,15 +34,21 @@ def _reference(world: World, robot: str) -> None:
 def _check(world: World, zone: str) -> None:
     """Whoever may be in the zone is moved out of it: the reference lies outside all zones."""
     holder = world.plant.zones.holder(zone)
-    if holder is not None:
+    if holder in world.model.robots:  # a shared device has no reference, and is held by a cell
         world.put_at_reference(holder)
 
 
 def _free(world: World, device: str) -> None:
-    """Somebody opens the door, or whatever it is, at the machine."""
-    body = world.boards[world.model.robots[device].mqtt].body
+    """Somebody opens the door, or whatever it is, at the machine, where it is not so already.
+
+    A lift is in the way of one zone or of another: it gets out of that in which it is.
+    """
+    board = world.model.robots[device].mqtt
+    facts = world.boards[board].body.true_facts
     for lock in world.model.cell_of[device].interlocks_of(device):
-        body.set_by_hand(lock.free_while)
+        if any(facts.get(name) != value for name, value in lock.free_while):
+            world.set_by_hand(board, lock.free_while)
+            return
 
 
 HANDS: dict[Hand, Callable[[World, str], None]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 
 from .general import GENERAL, is_general
 from .invariants import INVARIANTS, Invariant

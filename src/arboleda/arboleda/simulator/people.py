@@ -6,10 +6,11 @@ from functools import partial
 from itertools import count
 
 from arboleda.core.advice import Advice, Hand
-from arboleda.core.commands import Question
-from arboleda.core.facts import Value
-from arboleda.core.messages import TaskChanged, TaskState, Verb
-from arboleda.core.model import Cell, Link
+from arboleda.model.commands import Question
+from arboleda.model.facts import Value
+from arboleda.model.messages import TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Cell, Link
+from arboleda.recipes.storage import only_stores
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import OrderGoal
 
@@ -18,6 +19,7 @@ from .hands import do
 from .world import World
 
 WAITING = 2  # tasks that the customers of a cell keep in its queue
+REMEMBERED = 24  # of their tasks
 BY_THEMSELVES = (Hand.BRING_BACK, Hand.REPAIR)
 ROUND_S = (2.0, 6.0)  # how long the attendant takes to come by again
 
@@ -26,7 +28,8 @@ class Customers:
     """Bring every cell its next task soon after one of theirs left its queue, until they `go`.
 
     They know their own tasks by the tokens of their requests. `cycles` counts the tasks, whoever asked for
-    them, that started and ended.
+    them, that started and ended. Once the plant has died, their tasks have ids of their own: when it is
+    back, they ask for the last of them again, whatever they know of them.
     """
 
     def __init__(self, world: World, seed: int) -> None:
@@ -37,6 +40,10 @@ class Customers:
         self._started: set[str] = set()
         self._gone = False
         self._tokens = count(1)
+        self._starts = world.starts
+        self._back = Dice(seed, "customers come back")
+        self._theirs: dict[str, str] = {}  # by id, the texts of their last tasks
+        self._texts: dict[str, str] = {}  # by token, of those requests
         self.cycles = 0
         self.outcomes: dict[str, int] = {}
         world.watchers.append(self._look)
@@ -49,18 +56,51 @@ class Customers:
         self._gone = True
 
     def _look(self) -> None:
-        for message in self._world.moment.sent:
+        moment = self._world.moment
+        for message in (*moment.last_words, *moment.sent) if moment.last_words else moment.sent:
             if isinstance(message, TaskChanged):
                 if message.request is None:
                     self._follow(message)
                 elif message.request in self._asked:
                     self._answered(message, self._asked.pop(message.request))
+                elif message.request in self._texts:
+                    self._texts.pop(message.request)
+                    self._heard_again(message)
+        if self._world.starts != self._starts:
+            self._starts = self._world.starts
+            self._come_back()
 
     def _answered(self, answer: TaskChanged, cell: Cell) -> None:
         if answer.state is TaskState.QUEUED:
             self._waiting.add(answer.task)
-        else:
+            return
+        if answer.state is TaskState.REFUSED:
+            self._theirs.pop(answer.text.rpartition("#")[2], None)
+        self._come(cell)
+
+    def _come_back(self) -> None:
+        """The plant has died: who got no answer comes anew, and who has an id asks for it again."""
+        for cell in self._asked.values():
             self._come(cell)
+        self._asked.clear()
+        self._texts.clear()
+        for id in self._theirs:
+            self._world.at(self._world.now + self._back.between(0.0, 20.0), self._ask_again, id)
+
+    def _ask_again(self, id: str) -> None:
+        text = self._theirs.get(id)
+        never_taken = id not in self._world.disk.tasks
+        if text is not None and not (self._gone and never_taken):
+            token = f"customer {next(self._tokens)}"
+            self._texts[token] = text
+            self._world.request_task(text, token)
+
+    def _heard_again(self, answer: TaskChanged) -> None:
+        """What became of a task meanwhile; one that is taken only now waits as any other."""
+        if answer.state is TaskState.QUEUED and answer.task not in self._waiting:
+            self._waiting.add(answer.task)
+        elif answer.state is not TaskState.QUEUED:
+            self._follow(answer)
 
     def _follow(self, change: TaskChanged) -> None:
         if change.task in self._waiting and change.cell is not None:
@@ -82,23 +122,30 @@ class Customers:
 
     def _ask(self, cell: Cell) -> None:
         if not self._gone:
-            token = f"customer {next(self._tokens)}"
+            number = next(self._tokens)
+            token, text = f"customer {number}", self._text(cell)
+            if self._world.starts > 1:
+                id = f"c-{number}"
+                text = self._theirs[id] = f"{text} #{id}"
+                for old in [*self._theirs][:-REMEMBERED]:
+                    del self._theirs[old]
             self._asked[token] = cell
-            self._world.request_task(self._text(cell), token)
+            self._world.request_task(text, token)
 
     def _text(self, cell: Cell) -> str:
-        if not cell.is_storage:
-            return self._any_text(cell)
+        if not only_stores(cell):
+            return any_text(cell, self._dice)
         if self._dice.chance(0.2):
             return f"{cell.name} palletizing"
         path, station = self._dice.pick(cell.paths), self._dice.below(len(cell.stations))
         return f"{cell.name} {path.code} {station}"
 
-    def _any_text(self, cell: Cell) -> str:
-        """One of the recipes of a cell, with one of the words of each parameter."""
-        chosen = self._dice.pick(cell.recipes)
-        words = [self._dice.pick(list(each.words(cell))) for each in chosen.parameters]
-        return " ".join([cell.name, chosen.name, *words])
+
+def any_text(cell: Cell, dice: Dice) -> str:
+    """One of the recipes of a cell, with one of the words of each parameter."""
+    chosen = dice.pick(cell.recipes)
+    words = [dice.pick(list(each.words(cell))) for each in chosen.parameters]
+    return " ".join([cell.name, chosen.name, *words])
 
 
 def answer_anything(world: World, seed: int) -> None:

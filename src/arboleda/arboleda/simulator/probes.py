@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterable, Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core import steps
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.leaves import Act
-from arboleda.core.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import Heartbeat, OperatorAnswer, Report, TaskChanged, TaskState, Verb
 from arboleda.sim.board import SILENCE_US, Board
+from arboleda.trees import steps
+from arboleda.trees.leaves import Act
 
 from .world import BRIDGE, World
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
-from copy import copy
+from functools import cache
 from typing import Any
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home, Motion, Stop, StopMode
-from arboleda.core.ledger import State
-from arboleda.core.messages import (
+from arboleda.core.plant import Plant
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.kinds.arm import MoveJoints
+from arboleda.model.by_class import nearest
+from arboleda.model.commands import Command, Home, Stop, StopMode, Work
+from arboleda.model.messages import (
     Fact,
     InternalError,
     OperatorAnswer,
@@ -22,19 +26,21 @@ from arboleda.core.messages import (
     TaskState,
     Verb,
 )
-from arboleda.core.plant import Plant
-from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath
+from arboleda.model.plant_model import Link
+from arboleda.recipes.storage import only_stores
+from arboleda.trees.leaves import Act
 
 from .recorded.acts import Acts
 from .recorded.boards import Boards, KnownBoard
 from .recorded.bridge import Bridges
 from .recorded.cells import LOOK_S, KnownCell
 from .recorded.commands import Commands, SentCommand
+from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
 from .recorded.refusals import differences
 from .recorded.robots import KnownRobot, Obstacle, Stopped
 from .recorded.scopes import Scopes
+from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
 from .recorded.verbs import Before
@@ -54,7 +60,8 @@ class Record:
     `anew`: the last reports that said something else than before, or the same for some time.
     `away`: whether the plant finds in this step that it did nothing for long; `unattended`: the cells for
     which nobody has asked for anything since, and whether they had something to do then; `unasked`: the
-    motions that it sends to such a cell by itself in this step.
+    motions that it sends to such a cell by itself in this step; `stirring`: the same after a start.
+    `born_at`: when the plant started last, unless that was the first time.
     `undisturbed`: no operator has asked for anything yet.
     `told`: whether the plant spoke of a task, answered somebody, or a cell changed its state.
     `shown`: what each robot said, its board and what the plant shows of it. `slow_until`: reports may be old
@@ -73,13 +80,19 @@ class Record:
         self.commands = Commands()
         self.proofs = Proofs()
         self.bridges = Bridges(model)
-        self.works = Works(self.cells, self.robots, model.timing.dwell_s)
+        self.others = ForeignCommands()
+        storage = {name: known for name, known in self.cells.items() if only_stores(known.cell)}
+        self._storage = tuple(storage.values())
+        self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
+        self.works = Works(storage, self.robots, model.timing.dwell_s)
         self.asked = Before()
         self.acts = Acts()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step
         self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)
+        self.starts = Starts(model)
+        self.lost_stops: list[str] = []
         self.boards = Boards(
             {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
         )
@@ -111,6 +124,10 @@ class Record:
         self._booted: set[str] = set()  # robots that told of a boot in this step
         self._earlier: dict[str, list[KnownRobot]] = {}
         self._plant = world.plant
+        self._cuts = world.disk.cuts
+        self.stirring: list[Command] = []
+        self._since_start = False
+        self.born_at = -math.inf
         self._begin(world.plant)
         self._take_over(world.plant)
 
@@ -119,10 +136,17 @@ class Record:
         moment, plant = self.world.moment, self.world.plant
         if self._has_news:
             self._clear_news()
+        if self.starts.wrong or self.starts.twice:
+            self.starts.clear_news()
+        if moment.sent or moment.last_words or moment.unkept:
+            self.starts.hear((*moment.last_words, *moment.unkept, *moment.sent))
+        for board, goal in moment.executed:
+            self.starts.carries_out(board, goal)
         if moment.delivered or moment.executed:
             self._look_at_boards()
         if moment.bridged:
             self.bridges.look(moment.bridged)
+            self.others.look(moment.bridged, self.bridges.of_others)
         if moment.taken:
             self.stops.look(moment.taken, plant.epoch)
         inbox, now = self.world.broker.clients[BRIDGE].inbox, self.world.now
@@ -142,6 +166,12 @@ class Record:
         """Since when a position that reached the plant at `at` may have been told."""
         return 0.0 if at < self.slow_until else at - self.world.model.timing.stale_after_s
 
+    @property
+    def questions(self) -> list[Entry]:
+        """What people are being asked: nothing is sent for that."""
+        dispatcher = self.world.plant.dispatcher
+        return [entry for name in self._people if (entry := dispatcher.question(name)) is not None]
+
     def _is_new(self, plant: Plant) -> bool:
         return plant is not self._plant
 
@@ -154,15 +184,21 @@ class Record:
 
     def _begin(self, plant: Plant) -> None:
         """A plant that starts knows nothing but what it had to keep."""
-        self._plant = plant
+        self._plant, self._start = plant, self.world.starts
         self.stepped_at, self._version = plant.now, -1
         self.unattended.clear()
-        self.tasks.forget()
+        self.tasks.restart(self.world.found.tasks.values() if self.born else (), plant.now)
         self.commands.forget()
         self.proofs.forget()
-        self.works.forget()
-        for robot in self.robots.values():
+        cuts, self._cuts = self._cuts, self.world.disk.cuts
+        self.works.restart(self.tasks.running, undone=cuts != self._cuts)
+        self.starts.restart(undone=cuts != self._cuts)
+        found = self.world.found.facts
+        displaced, boots = found.get(Fact.DISPLACED, {}), found.get(Fact.BOOT, {})
+        for name, robot in self.robots.items():
             robot.forget()
+            robot.displaced = name in displaced
+            robot.boot = int(boots[name]) if name in boots else None
         for name, cell in self.cells.items():
             cell.begin(plant.cells[name])
         beliefs, boards = plant.dispatcher.beliefs, self.boards.of_robot
@@ -176,7 +212,7 @@ class Record:
             known.heard_at, known.state, known.homed = belief.heard_at, belief.state, belief.homed
             known.boot, known.epoch, known.plant = belief.boot_id, belief.epoch, belief.plant
             known.q, known.node = belief.q, belief.node
-            known.effector, known.piece = belief.effector, belief.piece
+            known.effector, known.piece, known.facts = belief.effector, belief.piece, dict(belief.facts)
             if (board := self.boards.of_robot.get(name)) is not None:
                 board.take_over(self.world.now, belief.q, belief.node)
 
@@ -190,15 +226,18 @@ class Record:
 
     def _look_at_plant(self, plant: Plant) -> None:
         moment = self.world.moment
-        self.stepped = True
+        self.stepped = self.world.has_stepped
         self.born = self._is_new(plant)
         if self.born:
+            self._take_last_words()
             self._begin(plant)
+            self._expect_rest(plant)
         self._earlier.clear()
         self._booted.clear()
         self.away = not self.born and plant.now - self.stepped_at > plant.away_after_s
         if self.away:
             self.unattended = {cell.name: self._has_work(cell) for cell in self._cells}
+            self._since_start = False
         self.proofs.clear_news()
         self.works.clear_news()
         if moment.heard:
@@ -207,7 +246,7 @@ class Record:
             self._ask(moment.asked)
         self.kept = self._kept
         for message in moment.sent:
-            take = TAKES.get(type(message))
+            take = taker(type(message))
             if take is not None:
                 take(self, message)
         self._compare(plant)
@@ -216,6 +255,60 @@ class Record:
             faults, last = self.world.faults_active, self.world.last_fault_at
             self.acts.look(self.cells, last_fault_at=last, faults=faults)
 
+    def _take_last_words(self) -> None:
+        """What a plant said that died in the middle of its step: nobody knows what else it meant to say."""
+        words = self.world.moment.last_words
+        self._unanswered = deque(event for event in words if isinstance(event, OperatorRequest))
+        self.undisturbed &= not self._unanswered
+        for message in words:
+            take = taker(type(message))
+            if take is not None:
+                take(self, message)
+        for request in words:  # what it did of that may be kept, though nobody was told
+            if isinstance(request, OperatorRequest) and request.verb is Verb.RETRY:
+                self._retried(request.scope)
+            elif isinstance(request, OperatorRequest) and request.verb is Verb.CANCEL:
+                self._may_be_cancelled(request.scope)
+        sent = {each.command.id for each in self.commands.new}
+        if sent:
+            self.commands.follow(self._plant.dispatcher.ledger, self._plant.now)
+        self.works.follow(self.tasks, self.commands.new, self._plant.now)
+        for cell in self._cells if sent else ():
+            cell.look(sent)
+            self._follow_steps(cell, sent)
+        self._clear_news()
+        self._kept = {fact: dict(rows) for fact, rows in self.world.found.facts.items()}
+        kept = self._kept.get(Fact.LATCH, {})
+        stopped = [name for name, known in self.robots.items() if known.stop is Stopped.LATCHED]
+        undone = any(each.verb in (Verb.CLEAR, Verb.RESET) for each in self._unanswered)
+        self.lost_stops = [name for name in stopped if kept.get(name) != "on" and not undone]
+        if words:
+            self._take_over_stops()
+
+    def _take_over_stops(self) -> None:
+        """What an operator asked for in such a step was done as far as the disk says."""
+        kept = self._kept.get(Fact.LATCH, {})
+        for name in self.scopes.commanded(""):
+            self.robots[name].stop = STOPS.get(kept.get(name, ""))
+        for cell in self._cells:
+            alone = [
+                name
+                for name in cell.cell.shared
+                if kept.keys().isdisjoint(own for each in self.world.model.cells_of[name] for own in each.own)
+            ]
+            cell.stopped = not kept.keys().isdisjoint((*cell.cell.own, *alone))
+
+    def _expect_rest(self, plant: Plant) -> None:
+        """Cells in which nothing may move by itself now: all but those that go on and were not at work."""
+        self._since_start = True
+        self.born_at = plant.now
+        self.slow_until = self.world.now + SLOW_S  # a bridge tells a new plant all that it knows
+        for cell in self._cells:
+            at_work = cell.name in self.tasks.running
+            if at_work or not cell.cell.goes_on:
+                has_work = bool(self.tasks.queues[cell.name]) or plant.cells[cell.name].task is not None
+                self.unattended[cell.name] = has_work
+
     def _is_behind_work(self, cell: KnownCell) -> bool:
         """Whether those who have what its arm waits for, or are to get it before, were at work until now."""
         zones, asked = self._plant.zones, dict(self._requests)
@@ -223,9 +316,8 @@ class Record:
         wanted = asked[cell.cell.arm.name]
         before = {arm for arm in arms[: arms.index(cell.cell.arm.name)] if wanted & asked[arm]}
         before |= {holder for zone in wanted if (holder := zones.holder(zone)) is not None}
-        at_work = {
-            each.cell.arm.name for each in self._cells if CellState.EXECUTE in (each.state, each.run.state)
-        }
+        working = (each for each in self._cells if CellState.EXECUTE in (each.state, each.run.state))
+        at_work = {user for each in working for user in each.cell.zone_users}
         at_work |= {sent.robot for sent in self.commands.open.values()}
         return before <= at_work and not any(map(zones.is_quarantined, wanted))
 
@@ -237,11 +329,14 @@ class Record:
 
         What is asked of one robot of a cell may move the other: `abandon` of the mobile brings the arm home.
         """
-        moves = isinstance(command, Motion)
-        cell = self.world.model.cell_of[command.robot]
-        if not moves or cell.name not in self.unattended or self._cancels_a_task:
+        moves = isinstance(command, Work)
+        if self._since_start and isinstance(command, Home) and self.robots[command.robot].robot.home_at_start:
             return False
-        return all(GETS_GOING.isdisjoint(self._verbs.get(robot.name, NO_VERBS)) for robot in cell.robots)
+        cells = self.world.model.cells_of[command.robot]
+        if not moves or self._cancels_a_task or any(cell.name not in self.unattended for cell in cells):
+            return False
+        robots = [robot.name for cell in cells for robot in cell.robots]
+        return all(GETS_GOING.isdisjoint(self._verbs.get(name, NO_VERBS)) for name in robots)
 
     def _attend(self, scope: str) -> None:
         for name in self.scopes.cells(scope):
@@ -250,6 +345,7 @@ class Record:
     def _clear_news(self) -> None:
         self.commands.clear_news()
         self.unasked.clear()
+        self.stirring.clear()
         self.tasks.clear_news()
         self.answers.clear()
         self.errors.clear()
@@ -260,6 +356,10 @@ class Record:
     def _compare(self, plant: Plant) -> None:
         """Take over what the plant's books say after this step."""
         moved = self.commands.follow(plant.dispatcher.ledger, plant.now)
+        for sent, _ in self.commands.moved:
+            cell = self.cells[sent.entry.cell] if sent.entry is not None else None
+            if sent.state is State.DONE and cell is not None and cell.run.state is CellState.EXECUTE:
+                self.starts.went_on(sent.command.id)
         if moved:
             self.proofs.follow(list(self.commands.open.values()))
             self._follow_homing()
@@ -274,7 +374,7 @@ class Record:
         if self.world.model.zones:
             self._look_at_zones(plant)
         changed = self._look_at_cells()
-        if changed:
+        if changed or self.born:
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)
@@ -295,7 +395,7 @@ class Record:
             if known is None:
                 continue
             if report.robot in commanded and (asked or known.robot.home_at_start):
-                self._earlier.setdefault(report.robot, []).append(copy(known))
+                self._earlier.setdefault(report.robot, []).append(known.as_it_is())
             self.proofs.hear(report, known)
             if report.boot_id not in (None, known.boot):
                 self._booted.add(report.robot)
@@ -318,7 +418,7 @@ class Record:
         requests = plant.zones.waiting
         if requests != self._requests:
             self._requests, robots = requests, dict(requests)
-            self.waiting = [cell for cell in self._cells if cell.cell.arm.name in robots]
+            self.waiting = [cell for cell in self._storage if cell.cell.arm.name in robots]
         for cell in self.waiting if not self.away else ():
             cell.wait(plant.now - self.stepped_at, behind_work=self._is_behind_work(cell))
         moves: dict[str, list[SentCommand]] = {}
@@ -327,7 +427,7 @@ class Record:
                 of_cell = moves.setdefault(each.entry.cell, [])
                 of_cell += [each] if isinstance(each.command, MoveJoints) else []
         holders = plant.zones.robots
-        for cell in self._cells:
+        for cell in self._storage:
             if cell.name in moves:
                 cell.watch_recovery(moves[cell.name])
             cell.holds_zones = cell.cell.arm.name in holders
@@ -357,12 +457,24 @@ class Record:
             cell.watch_time(now, away=self.away)
             if (due or cell.name in senders) and cell.state is CellState.EXECUTE:
                 cell.look(sent)
+                self._follow_steps(cell, sent)
+
+    def _follow_steps(self, cell: KnownCell, sent: set[str]) -> None:
+        """Which steps of its task gave the commands of this step."""
+        run = cell.run
+        if run.task is None or run.run.recovering:
+            return
+        for leaf in cell.leaves:
+            entry = leaf.entry if isinstance(leaf, Act) else None
+            if entry is not None and entry.command.id in sent:
+                step = Step(run.task.id, turn_of(leaf), entry.command, self._start, cell.retries)
+                self.starts.gave(step)
 
     def _on_command(self, command: Command) -> None:
         known = self.robots[command.robot]
         verbs = frozenset(self._verbs[command.robot]) if command.robot in self._verbs else NO_VERBS
         if self.unattended and self._is_unasked(command):
-            self.unasked.append(command)
+            (self.stirring if self._since_start else self.unasked).append(command)
         obstacles = frozenset() if isinstance(command, Stop) else self._obstacles(known)
         if isinstance(command, Stop):
             verbs |= self._missed(command, known, verbs)
@@ -386,8 +498,9 @@ class Record:
         for earlier in self._earlier.get(known.robot.name, ()):
             earlier.stop = known.stop
             found &= earlier.obstacles(now, self._plant.epoch)
-        cell = self.cells[self.world.model.cell_of[known.robot.name].name]
-        return found | {Obstacle.STOPPED} if cell.stopped else found
+        cells = self.world.model.cells_of[known.robot.name]
+        stopped = all(self.cells[cell.name].stopped for cell in cells)
+        return found | {Obstacle.STOPPED} if stopped else found
 
     def _on_fact(self, said: Remember) -> None:
         kept = {fact: dict(rows) for fact, rows in self._kept.items()}
@@ -420,7 +533,7 @@ class Record:
         self._has_news = True
 
     def _stopped(self, scope: str) -> None:
-        for name in self.scopes.robots(scope):
+        for name in self.scopes.commanded(scope):
             self.robots[name].stop = Stopped.LATCHED
         for name in self.scopes.cells(scope):
             self.cells[name].stopped = True
@@ -430,8 +543,10 @@ class Record:
             cell = self.cells[name]
             if cell.state is CellState.STOPPED:
                 cell.stopped = False
-                for robot in cell.cell.robots:
-                    self.robots[robot.name].stop = None
+                for robot in cell.cell.robots:  # what is shared only with the last of its cells
+                    cells = self.world.model.cells_of[robot.name]
+                    if not any(self.cells[each.name].stopped for each in cells):
+                        self.robots[robot.name].stop = None
 
     def _again(self, scope: str) -> None:
         for name in self.scopes.cells(scope):
@@ -455,6 +570,11 @@ class Record:
         for name in self.scopes.robots(scope):
             self.robots[name].displaced = name in self._booted and beliefs[name].displaced
 
+    def _retried(self, scope: str) -> None:
+        self._again(scope)
+        for name in self.scopes.cells(scope):
+            self.cells[name].retries += 1
+
     def _cancelled(self, scope: str) -> None:
         """A task by its id, or what runs in each cell of the scope that could be cancelled."""
         task, cells = self.tasks.known(scope.strip().lstrip("#")), self.scopes.cells(scope)
@@ -469,23 +589,37 @@ class Record:
         if len(cells) == 1:
             self.unattended.pop(cells[0], None)
 
+    def _may_be_cancelled(self, scope: str) -> None:
+        """Nobody knows whether the cancel was kept of a task, or of what runs in the cells of the scope."""
+        named = self.tasks.known(scope.strip().lstrip("#"))
+        running = (self.tasks.running.get(name, "") for name in self.scopes.cells(scope))
+        found = [named] if named is not None else [self.tasks.open.get(id) for id in running]
+        for task in found:
+            if task is not None and task.cancelled is False:
+                task.cancelled = None
 
+
+STOPS = {"on": Stopped.LATCHED, "cleared": Stopped.CLEARED}
 TAKES: dict[type, Callable[[Record, Any], None]] = {
-    MoveJoints: Record._on_command,
-    FollowPath: Record._on_command,
-    SetEffector: Record._on_command,
-    Stop: Record._on_command,
-    Home: Record._on_command,
+    Command: Record._on_command,
     TaskChanged: Record._on_task,
     OperatorAnswer: Record._on_answer,
     Remember: Record._on_fact,
     InternalError: Record._on_error,
 }
+
+
+@cache
+def taker(kind: type) -> Callable[[Record, Any], None] | None:
+    """What takes in messages of a class; it is asked for every message."""
+    return nearest(TAKES, kind)
+
+
 DONE: dict[Verb, Callable[[Record, str], None]] = {
     Verb.STOP: Record._stopped,
     Verb.RESET: Record._reset,
     Verb.RESUME: Record._again,
-    Verb.RETRY: Record._again,
+    Verb.RETRY: Record._retried,
     Verb.CANCEL: Record._cancelled,
 }
 

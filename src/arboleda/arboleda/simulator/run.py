@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
-from arboleda.core.model import PlantModel
-from arboleda.core.recipe import Builders
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Builders
 
 from .apart import come_apart
 from .faults import Fault

@@ -9,9 +9,10 @@ from functools import cache
 from hashlib import blake2b
 from typing import Any
 
-from arboleda.core.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
+from arboleda.model.messages import Heartbeat, OperatorRequest, TaskChanged, TaskRequest
 from arboleda.wire.hop import shown
 
+from .disk import is_step
 from .world import World
 
 KEPT = 2000  # lines
@@ -48,8 +49,13 @@ class Trace:
         words = [self._world.now.hex().encode()]
         for client, said in moment.published:
             words += (_head(client, said.topic, said.retain), said.payload)
+        if moment.last_words or moment.unkept:
+            said = (*moment.last_words, *moment.unkept)
+            words += [repr(message).encode() for message in said if not is_step(message)]
         if moment.sent or moment.asked:
-            words += [repr(message).encode() for message in (*moment.sent, *moment.asked)]
+            words += [
+                repr(message).encode() for message in (*moment.sent, *moment.asked) if not is_step(message)
+            ]
         self._hash.update(b"".join(words))
         if self._lines is not None or self._tell is not None:
             for line in self._news():
@@ -65,8 +71,11 @@ class Trace:
 
     def _news(self) -> list[str]:
         moment = self._world.moment
+        said_last = (*moment.last_words, *moment.unkept)
+        last = [f"last words {_last(each)}" for each in said_last if not isinstance(each, Heartbeat)]
         asked = [f"asked      {_asked(event)}" for event in moment.asked]
-        sent = [f"plant      {_sent(each)}" for each in moment.sent if not isinstance(each, Heartbeat)]
+        told = [each for each in moment.sent if not is_step(each) and not isinstance(each, Heartbeat)]
+        sent = [f"plant      {_sent(each)}" for each in told]
         said = [
             f"{client or 'stranger':<10} {each.topic} {each.payload.decode(errors='replace')[:200]}"
             for client, each in moment.published
@@ -78,7 +87,7 @@ class Trace:
             if each.sender and not isinstance(each.message, Heartbeat)
         ]
         done = [f"{board:<10} carries out {_fields(goal)}" for board, goal in moment.executed]
-        return [*asked, *sent, *others, *said, *done]
+        return [*last, *asked, *sent, *others, *said, *done]
 
 
 @cache
@@ -92,6 +101,12 @@ def _asked(event: Any) -> str:
     if isinstance(event, OperatorRequest):
         return f"{event.verb.value} {event.scope}{' by hand' if event.by_hand else ''}"
     return _fields(event)
+
+
+def _last(message: Any) -> str:
+    if isinstance(message, TaskRequest | OperatorRequest):
+        return f"asked {_asked(message)}"
+    return _sent(message)
 
 
 def _sent(message: Any) -> str:

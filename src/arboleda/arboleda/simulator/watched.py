@@ -6,11 +6,11 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from arboleda.core.model import PlantModel
-from arboleda.core.recipe import Builders
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Builders
 
 from .faults import KINDS, Fault
-from .general import GeneralTruth, NoRecord, is_general
+from .general import GeneralTruth, is_general
 from .invariants import Invariant
 from .invariants.invariant import Judges, Look
 from .judged import judged_by
@@ -19,7 +19,7 @@ from .trace import Trace
 from .truth import Truth
 from .world import World
 
-REST_S = 600.0  # after the last fault, everything must have come to rest by then
+REST_S = 600.0  # after the last fault, or the end of a task since, everything must have come to rest by then
 STAYS_S = 10.0  # and stay there
 
 
@@ -55,8 +55,8 @@ class Watched:
         self.trace = Trace(self.world, keep=keep, tell=tell)
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
-        known = (GeneralTruth(self.world), NoRecord()) if general else (Truth(self.world), Record(self.world))
-        self._look = Look(world=self.world, truth=known[0], record=known[1])
+        truth = GeneralTruth(self.world) if general else Truth(self.world)
+        self._look = Look(world=self.world, truth=truth, record=Record(self.world))
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 
@@ -96,9 +96,12 @@ class Watched:
         self._rests += 1
         for number in list(self._ends):
             self._end(number)
-        end = self.seconds + REST_S
+        tasks = self._look.record.tasks.open
+        open_tasks, end = len(tasks), self.seconds + REST_S
         while self.seconds < end and not self._judges.is_at_rest(self._look):
             self.world.advance(1.0)
+            if len(tasks) < open_tasks:
+                open_tasks, end = len(tasks), self.seconds + REST_S
         self._raise(self._judges.at_the_end(self._look))
         self.world.advance(STAYS_S)
         self._raise(self._judges.at_the_end(self._look))

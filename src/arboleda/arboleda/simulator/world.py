@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from heapq import heappop, heappush
 from itertools import count
 from typing import Any
 
-from arboleda.core.commands import Command
-from arboleda.core.messages import (
+from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
+from arboleda.core.plant import Plant
+from arboleda.model.commands import Command
+from arboleda.model.facts import Facts
+from arboleda.model.messages import (
     Event,
     Fact,
     Heartbeat,
+    OperatorAnswer,
     OperatorRequest,
-    Remember,
     Report,
+    Shutdown,
+    TaskChanged,
     TaskRequest,
+    Undelivered,
     Verb,
 )
-from arboleda.core.model import PlantModel
-from arboleda.core.plant import Plant
-from arboleda.core.recipe import Builders
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Builders
+from arboleda.model.sentence import as_sentence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.sim.devices import Devices
@@ -32,13 +39,49 @@ from arboleda.wire.hop import HEARTBEAT, FromPlant, command_topic, loses_its_id,
 from arboleda.wire.payloads import Goal
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+from .disk import Content, Disk, DiskFull, is_kept
 from .network import Broker, Client, Hop, Line
 
 PLANT, BRIDGE = "plant", "bridge"
+ENDS_S = 6.0  # how long a plant that ends waits for its robots to stand
 BY_HAND_S = 1.0  # from a robot put right to the word that it is
 AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
 Carry = Callable[[Publication], Iterable[Publication]]
 Part = Callable[[Report], Iterable[Report]]
+
+
+class Side(Enum):
+    """On which side of a commit, or of a message that leaves."""
+
+    BEFORE = "before"
+    AFTER = "after"
+
+
+@dataclass(slots=True, eq=False)
+class Fuse:
+    """The plant dies on this `side` of its commit or message number `count` from now, by `die`."""
+
+    count: int
+    side: Side
+    die: Callable[[], None]
+
+    def burns(self, side: Side) -> bool:
+        """Whether this is the instant; called on both sides of everything that counts."""
+        self.count -= side is Side.BEFORE
+        return self.count <= 0 and side is self.side
+
+
+class _Died(Exception):
+    """The plant died in the middle of its step."""
+
+
+@dataclass(slots=True, eq=False)
+class Ending:
+    """A plant that could not keep something: it halts its robots, and is `gone` once they stand."""
+
+    plant: Plant
+    why: DiskFull
+    starts_again: bool = False
 
 
 @dataclass(slots=True)
@@ -53,7 +96,13 @@ class Passed:
 
 @dataclass(slots=True)
 class Moment:
-    """What happened in one pass over the machines, in order; emptied before the next one."""
+    """What happened in one pass over the machines, in order; emptied before the next one.
+
+    `last_words` are what a plant that died in the middle of its step was asked and had sent by then: the
+    rest of that step is nobody's. `unkept` is what leaves a plant that ends as it can keep nothing more.
+    `late` is what left only when a commit had taken its time, and how many s after its step; `undelivered`
+    are the commands of which the plant heard in this step that they did not leave.
+    """
 
     asked: list[Event] = field(default_factory=list)  # tasks and operators' requests that reached the plant
     heard: list[Report] = field(default_factory=list)  # reports that reached the plant
@@ -65,6 +114,10 @@ class Moment:
     opened: list[str] = field(default_factory=list)  # boards whose effectors somebody else opened
     bridged: list[Passed] = field(default_factory=list)  # what the bridge took in, and gave out
     put_right: list[str] = field(default_factory=list)  # boards whose robots somebody moved by hand
+    last_words: list[Any] = field(default_factory=list)
+    unkept: list[Any] = field(default_factory=list)
+    undelivered: list[str] = field(default_factory=list)
+    late: list[tuple[Any, float]] = field(default_factory=list)
 
     def clear(self) -> None:
         self.asked.clear()
@@ -77,6 +130,10 @@ class Moment:
         self.opened.clear()
         self.bridged.clear()
         self.put_right.clear()
+        self.last_words.clear()
+        self.unkept.clear()
+        self.undelivered.clear()
+        self.late.clear()
 
 
 class World:
@@ -84,8 +141,9 @@ class World:
     every pass with what happened in `moment`.
 
     `carriers` turn what somebody publishes into what the network gets, `partings` a robot's report into
-    several, stamped with when they come; `memory` is what the plant had to keep. Processes and their lines
-    are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
+    several, stamped with when they come; `disk` is what the plant kept, `found` what of
+    it was there when it started last; `starts` counts that.
+    Processes and their lines are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
     """
 
     def __init__(
@@ -105,7 +163,14 @@ class World:
         self.carriers = list(carriers)
         self.partings: dict[str, Part] = {}
         self.before_asking: list[Callable[[], None]] = []  # called before a step in which somebody asks
-        self.memory: dict[Fact, dict[str, str]] = {}
+        self.disk = Disk()
+        self.starts = 1
+        self.found = Content()
+        self.has_stepped = False  # since it started
+        self.fuses: list[Fuse] = []
+        self.when_gone: list[Callable[[], None]] = []  # called once when a plant that ends is gone
+        self._ending: Ending | None = None
+        self._writes_until = now  # the end of the plant's last commit
         self.faults_active = 0  # lasting faults that have begun and not ended
         self.last_fault_at = -math.inf  # when anything last broke, or was mended again
         self.deceptions: Counter[tuple[str, str]] = Counter()  # (board, what it now may lie about)
@@ -122,7 +187,7 @@ class World:
         self.to_bridge, self.to_plant = Hop(), Hop()  # the hop between plant and bridge
         self.beat_reached_bridge_at = -math.inf  # the last heartbeat, since the bridge started
         self.recipes = recipes
-        self.plant = Plant(model, epoch=next(self._epochs), now=now, recipes=recipes)
+        self.plant = self._new_plant()
         self.devices = Devices(model, now=now, boot_ids=lambda: next(self._boot_ids))
         self.boards: dict[str, Board] = self.devices.boards
         self.bridge: Bridge | None = None
@@ -136,7 +201,8 @@ class World:
 
     def request_task(self, text: str, token: str | None = None) -> None:
         """Somebody asks for a task; the plant takes it in at its next step, and answers with the token."""
-        self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token))
+        kept = self.disk.ended(text.rpartition("#")[2]) if "#" in text else None
+        self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token, kept=kept))
 
     def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
         """An operator acts; one who says that a robot is homed by hand has put it at its reference before."""
@@ -161,19 +227,27 @@ class World:
             body.switch_effector(False)
             self.moment.opened.append(board)
 
+    def set_by_hand(self, board: str, facts: Facts) -> None:
+        """Somebody makes facts so at a device that does nothing meanwhile."""
+        self.boards[board].body.set_by_hand(facts)
+        self.moment.put_right.append(board)
+
     def tell(self, event: Event) -> None:
-        """Put an event into the plant's inbox."""
-        self._plant_inbox.append(event)
+        """Put an event into the plant's inbox; nobody hears it where the plant does not run."""
+        self._post(event)
+
+    @property
+    def memory(self) -> dict[Fact, dict[str, str]]:
+        """The facts that the plant had to keep."""
+        return self.disk.facts
 
     def crash(self, process: str = PLANT) -> None:
-        """A process dies and starts anew at once, the plant with what it had to keep, a board as it boots."""
+        """A process dies and starts anew at once, the plant with what it kept, a board as it boots."""
         self.last_fault_at = self.now
         if process == PLANT:
-            self._plant_inbox = []
-            self.plant = Plant(
-                self.model, epoch=next(self._epochs), now=self.now, memory=self.memory, recipes=self.recipes
-            )
-            self._due[PLANT] = self.now
+            if self.is_on(PLANT):
+                self.stop_plant()
+                self.start_plant()
         elif process == BRIDGE:
             self.stop_bridge()
             self.start_bridge()
@@ -181,10 +255,52 @@ class World:
             self.power_off(process)
             self.power_on(process)
 
+    def stop_plant(self) -> None:
+        """The plant's process dies; the next one has what was kept, and does nothing before it starts."""
+        self.last_fault_at = self.now
+        if PLANT in self._stalled:  # one that is frozen does nothing, not even that
+            return
+        self.fuses.clear()
+        if PLANT in self._off:
+            self._be_gone(self._ending)
+            return
+        self._writes_until = self.now
+        self._plant_inbox = []
+        self._off.add(PLANT)
+        self._due[PLANT] = math.inf
+        self.starts += 1
+        self.has_stepped = False
+        self.plant = self._new_plant()
+
+    def start_plant(self) -> None:
+        """The plant starts on what is left; it has heard nothing of what was said meanwhile.
+
+        Where there is no room on the disk it does not start, and one that ends has to be gone before.
+        """
+        if PLANT in self._off and self._ending is not None:
+            self._ending.starts_again = True
+        elif PLANT in self._off and not self.disk.full:
+            if PLANT in self._stalled:  # its machine is frozen
+                self.at(self._stalled[PLANT], lambda _: self.start_plant())
+                return
+            self._off.discard(PLANT)
+            self._due[PLANT] = self.now
+            if self.plant.now != self.now:
+                self.plant = self._new_plant()
+
+    def cut_power(self, reached: int) -> None:
+        """The plant's machine loses power: of the commits that nothing had synced the first ones stay."""
+        if PLANT not in self._off or self._ending is not None:
+            self.disk.cut_power(reached)
+            self.stop_plant()
+
     def stall(self, process: str, seconds: float) -> None:
         """A process does nothing for a while; what reaches it waits."""
         self.last_fault_at = self.now
-        until = max(self.now + seconds, self._stalled.get(process, 0.0))
+        self._stall(process, self.now + seconds)
+
+    def _stall(self, process: str, until: float) -> None:
+        until = max(until, self._stalled.get(process, 0.0))
         self._stalled[process] = until
         self.at(until, self._go_on, process)
 
@@ -192,6 +308,7 @@ class World:
         """Time passes in which nobody does anything: whatever was to come happens so much later."""
         self.now += seconds
         self.skipped_s += seconds
+        self._writes_until += seconds
         self._agenda = [(at + seconds, *rest) for at, *rest in self._agenda]  # in the same order
         self._stalled = {process: until + seconds for process, until in self._stalled.items()}
         for line in self._lines():
@@ -208,13 +325,20 @@ class World:
             yield from (client.up, client.down)
 
     def go_on(self, process: str) -> None:
-        """A process that is stalled does something again."""
-        if self._stalled.pop(process, None) is not None:
+        """A process that is stalled does something again; a plant that waits for its disk goes on waiting."""
+        if process == PLANT and self.writes:
+            self._stalled[PLANT] = self._writes_until
+        elif self._stalled.pop(process, None) is not None:
             self.wake(process)
 
     def is_stalled(self, process: str) -> bool:
         """Whether a process does nothing for a while."""
         return process in self._stalled
+
+    @property
+    def writes(self) -> bool:
+        """Whether the plant waits for a commit."""
+        return self._writes_until > self.now
 
     def wake(self, process: str) -> None:
         """Have a process that is there step in this pass, as something was done to it."""
@@ -251,7 +375,7 @@ class World:
         self._reconnect(self.broker.clients[board])
 
     def is_on(self, process: str) -> bool:
-        """Whether a board has power, or the bridge runs."""
+        """Whether a board has power, or the bridge or the plant runs."""
         return process not in self._off
 
     def stop_broker(self) -> None:
@@ -337,13 +461,18 @@ class World:
         raise AssertionError(f"the machines do not come to rest at {self.now}")
 
     def _has_work(self) -> bool:
-        if self._plant_inbox and self._awake(PLANT):
+        if self._plant_inbox and self._plant_awake:
             return True
         full = [client.name for client in self.broker.clients.values() if client.inbox]
         return bool(full) and any(self._awake(name) for name in full)
 
     def _awake(self, process: str) -> bool:
         return process not in self._off and process not in self._stalled
+
+    @property
+    def _plant_awake(self) -> bool:
+        """Whether a plant steps, be it one that ends."""
+        return (PLANT not in self._off or self._ending is not None) and PLANT not in self._stalled
 
     def _go_on(self, process: str) -> None:
         if self._stalled.get(process, math.inf) <= self.now:
@@ -362,8 +491,8 @@ class World:
                 self._step_board(now_us, name, board, client)
         if bridge.inbox or due.get(BRIDGE, math.inf) <= now:  # what the boards said
             self._step_bridge(bridge)
-        if (self._plant_inbox or due[PLANT] <= now) and self._awake(PLANT):
-            self._step_plant()
+        if (self._plant_inbox or due[PLANT] <= now) and self._plant_awake:
+            self._step_plant() if self._ending is None else self._step_ending(self._ending)
 
     def _step_board(self, now_us: int, name: str, board: Board, client: Client) -> None:
         if client.inbox:
@@ -395,7 +524,7 @@ class World:
                     for part in self.partings[message.robot](message):
                         self.at(part.at, self._report, part)
                 elif clear and message.at == now:
-                    self._plant_inbox.append(message)
+                    self._post(message)
                 else:
                     self._carry(self.to_plant.carry_on(message.robot, now, message), self._to_plant, message)
             elif isinstance(message, Publication):
@@ -407,19 +536,143 @@ class World:
         self._carry(self.to_plant.carry_on(report.robot, self.now, report), self._to_plant, report)
 
     def _step_plant(self) -> None:
+        self.has_stepped = True
         events, self._plant_inbox = self._plant_inbox, []
         for event in events:
-            (self.moment.heard if isinstance(event, Report) else self.moment.asked).append(event)  # type: ignore[arg-type]
+            if isinstance(event, Undelivered):
+                self.moment.undelivered.append(event.id)
+            else:
+                (self.moment.heard if isinstance(event, Report) else self.moment.asked).append(event)  # type: ignore[arg-type]
         if self.moment.asked:
             for look in self.before_asking:
                 look()
-        for message in self.plant.step(self.now, events):
-            self.moment.sent.append(message)
+        self._writes_until = self.now
+        said = deque(self.plant.step(self.now, events))
+        try:
+            while said:
+                self._let_out(said[0])
+                said.popleft()
+        except _Died:
+            return
+        except DiskFull as full:
+            self._end(said, full)
+            return
+        self._due[PLANT] = self.plant.next_deadline
+        if self.writes:
+            self._stall(PLANT, self._writes_until)
+
+    def _let_out(self, message: Any) -> None:
+        """What is kept is on the disk before anybody hears of it."""
+        if is_kept(message):
+            self._burn(Side.BEFORE)
+            self._writes_until += self.disk.commit(message, self.now)
+            self._burn(Side.AFTER)
+        leaves = isinstance(message, Command | TaskChanged | OperatorAnswer)
+        if leaves:
+            self._burn(Side.BEFORE)
+        self.moment.sent.append(message)
+        if isinstance(message, Command | Heartbeat) and self.writes:
+            self.at(self._writes_until, self._say_late, (self.plant, message))
+        elif isinstance(message, Command | Heartbeat):
+            self._say(message)
+        if leaves:
+            self._burn(Side.AFTER)
+
+    def _burn(self, side: Side) -> None:
+        """One commit, or one message that leaves, nearer to the instant in which the plant is to die."""
+        self._burn_fuses(side)
+        if PLANT in self._off:
+            self._make_last_words()
+            raise _Died
+
+    def _burn_fuses(self, side: Side) -> None:
+        for fuse in [each for each in self.fuses if each.burns(side)]:
+            if fuse in self.fuses:
+                fuse.die()
+
+    def _say_late(self, late: tuple[Plant, Command | Heartbeat]) -> None:
+        """What had to wait for a commit leaves after it, unless it is too late or its plant has died."""
+        plant, message = late
+        if plant is not self.plant or PLANT in self._off:
+            return
+        if not is_too_late(message, plant, self.now):
+            self.moment.late.append((message, self.now - plant.now))
+            self._say(message)
+        elif isinstance(message, Command):
+            why = SENT_TOO_LATE(seconds=self.now - plant.now)
+            self._post(Undelivered(at=self.now, id=message.id, robot=message.robot, sentence=why))
+
+    def _make_last_words(self) -> None:
+        """What the plant was asked and has sent in this step is all that there will be of it."""
+        moment = self.moment
+        moment.last_words += [*moment.asked, *moment.sent]
+        moment.asked.clear()
+        moment.heard.clear()
+        moment.sent.clear()
+
+    def _end(self, unkept: Iterable[Any], why: DiskFull) -> None:
+        """A plant that cannot keep something ends: it counts as dead, and has its robots halted before."""
+        ending, fuses = Ending(self.plant, why), [*self.fuses]
+        self.stop_plant()
+        self._make_last_words()
+        self._ending, self._due[PLANT], self.fuses = ending, self.now, fuses
+        self.at(self.now + ENDS_S, self._be_gone, ending)
+        self._let_out_unkept(unkept, ending)
+        if self._ending is ending:
+            self._plant_inbox.append(Shutdown(at=self.now))
+
+    def _step_ending(self, ending: Ending) -> None:
+        events, self._plant_inbox = self._plant_inbox, []
+        said = ending.plant.step(self.now, events)
+        self._due[PLANT] = ending.plant.next_deadline
+        self._let_out_unkept(said, ending)
+        if ending.plant.intake.closed and ending.plant.at_rest:
+            self._be_gone(ending)
+
+    def _let_out_unkept(self, said: Iterable[Any], ending: Ending) -> None:
+        for message in said:
+            if not leaves_unkept(message):
+                if isinstance(message, Command):
+                    why = as_sentence(ending.why)
+                    undelivered = Undelivered(at=self.now, id=message.id, robot=message.robot, sentence=why)
+                    self._plant_inbox.append(undelivered)
+                continue
+            self._burn_fuses(Side.BEFORE)
+            if self._ending is not ending:
+                return
+            self.moment.unkept.append(message)
             if isinstance(message, Command | Heartbeat):
                 self._say(message)
-            elif isinstance(message, Remember):
-                self._remember(message)
-        self._due[PLANT] = self.plant.next_deadline
+            self._burn_fuses(Side.AFTER)
+            if self._ending is not ending:
+                return
+
+    def _be_gone(self, ending: Ending | None) -> None:
+        """Nothing is left of a plant that ends, if this is the one that does."""
+        if ending is None or ending is not self._ending:
+            return
+        self._ending, self._plant_inbox, self._due[PLANT] = None, [], math.inf
+        self.plant = self._new_plant()
+        called, self.when_gone = self.when_gone, []
+        for call in called:
+            call()
+        if ending.starts_again:
+            self.start_plant()
+
+    def _post(self, event: Event) -> None:
+        if PLANT not in self._off or self._ending is not None:
+            self._plant_inbox.append(event)
+
+    def _new_plant(self) -> Plant:
+        self.found = self.disk.found()
+        return Plant(
+            self.model,
+            epoch=next(self._epochs),
+            now=self.now,
+            memory=self.found.facts,
+            kept=self.found.tasks.values(),
+            recipes=self.recipes,
+        )
 
     def _say(self, message: Command | Heartbeat) -> None:
         """The plant speaks to the bridge on topics of ROS 2, to all of which another node listens, too."""
@@ -450,18 +703,11 @@ class World:
         self.broker.clients[BRIDGE].inbox.append(heard)
 
     def _to_plant(self, report: Report) -> None:
-        self._plant_inbox.append(report if report.at == self.now else report.again(self.now))
+        self._post(report if report.at == self.now else report.again(self.now))
 
     def _hear(self, client: Client, delivery: Delivery) -> None:
         self.moment.delivered.append((client.name, delivery))
         client.inbox.append(delivery)
-
-    def _remember(self, fact: Remember) -> None:
-        kept = self.memory.setdefault(fact.fact, {})
-        if fact.value is None:
-            kept.pop(fact.name, None)
-        else:
-            kept[fact.name] = fact.value
 
     def _declare_homed(self, scope: str) -> None:
         """Nobody says so of a robot that moves; one that booted meanwhile is put right once more."""

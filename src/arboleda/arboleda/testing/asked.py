@@ -7,8 +7,8 @@ from pathlib import Path
 
 from arboleda.app import config
 from arboleda.app.simulate.plants import Plant
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.chance import Dice
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.faults.kind import NONE, Kind

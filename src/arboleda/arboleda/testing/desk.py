@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
+from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.simulator.world import BY_HAND_S, World
 
 NO_ANSWER = "the plant did not answer"

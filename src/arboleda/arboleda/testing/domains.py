@@ -8,7 +8,7 @@ import tempfile
 from itertools import count
 from pathlib import Path
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 LAST = 101  # the DDS ports of higher ROS domains lie among the ports that Linux hands out
 _begin = count(os.getpid())

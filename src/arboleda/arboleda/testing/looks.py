@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from arboleda.core.facts import Value
 from arboleda.kinds.arm import Arm
+from arboleda.model.facts import Value
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.mobile import MobileBody
 from arboleda.simulator.world import World
@@ -75,7 +75,7 @@ def robot(world: World, name: str) -> RobotLook:
     model, belief = world.model.robots[name], world.plant.dispatcher.beliefs[name]
     heard = {"name": name, "online": belief.online, "homed": belief.homed}
     body = world.boards[model.mqtt].body
-    if isinstance(model, Arm) and isinstance(body, ArmBody):
+    if model.has_joints and isinstance(body, ArmBody):
         true = tuple(
             joint.step * steps for joint, steps in zip(model.joints, body.true_position, strict=True)
         )

@@ -7,8 +7,8 @@ from functools import cache
 from typing import Any
 
 from arboleda.app.config import load
-from arboleda.core.model import PlantModel
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from py_trees.common import Status
 
-from arboleda.core.messages import Event, OperatorAnswer, TaskChanged, Verb
-from arboleda.core.model import PlantModel
+from arboleda.model.messages import Event, OperatorAnswer, TaskChanged, Verb
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.world import PLANT, World
 from arboleda.views import view
 from arboleda.wire.transport import Publication

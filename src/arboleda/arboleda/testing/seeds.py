@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.model import PlantModel
-from arboleda.core.recipe import Builders
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Builders
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.run import MINUTE_S, Plan, Result, Simulation

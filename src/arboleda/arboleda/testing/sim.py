@@ -8,13 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-from arboleda.core.messages import Verb
-from arboleda.core.model import PlantModel
-from arboleda.core.recipe import Build
-from arboleda.simulator.climate import LEVELS
+from arboleda.model.messages import Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.recipe import Build
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.levels import LEVELS
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.simulator.watched import Broken, Watched
@@ -142,7 +142,7 @@ class Sim:
         """Run this plant `count` times with tasks, people and faults drawn from seeds, each to its rest.
 
         The first seed that breaks an invariant is an AssertionError, with as few faults as still break it;
-        `faults` is a level of `arboleda.simulator.climate.LEVELS`.
+        `faults` is a level of `arboleda.simulator.levels.LEVELS`.
         """
         level = known("a level of faults", faults, LEVELS)
         drawn = seeds.Seeds(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.simulator.faults import KINDS, Fault
 

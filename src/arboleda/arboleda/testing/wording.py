@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 
 from arboleda.app.simulate.words import told
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.run import Result
 from arboleda.simulator.watched import Broken, Watched

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.facts import shown
+from arboleda.model.facts import shown
 from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
@@ -18,6 +18,11 @@ def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
     """One (name, hardware id, level, message, values) per robot and cell of a snapshot."""
     yield from map(_robot_diagnostic, snapshot["robots"])
     yield from map(_cell_diagnostic, snapshot["cells"])
+
+
+def record(trouble: str) -> Diagnostic:
+    """The same of the flight record; `trouble` is why it has stopped, "" while it is written."""
+    return ("arboleda: record", "", WARN if trouble else OK, trouble or "written", {})
 
 
 def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.commands import Position
-from arboleda.core.model import PlantModel, Pose, Workspace
+from arboleda.model.commands import Position
+from arboleda.model.plant_model import PlantModel, Pose, Workspace
 
 Row = dict[str, Any]
 
@@ -35,20 +35,22 @@ def _spots(model: PlantModel, zone: str) -> list[Row]:
 
 
 def _is_drawn(space: Workspace) -> bool:
-    """Whether its poses are joints of a robot that is drawn."""
-    return space.robot.drawn() is not None and isinstance(space.home.q, tuple)
+    return space.robot.drawn() is not None
 
 
 def _in_space(space: Workspace, zone: str) -> list[Row]:
     poses = {pose.name: pose for pose in space.poses}
+    nodes = (space.robot.drawn() or {}).get("nodes")
     inside = [_reach(pose) for pose in space.poses if zone in pose.zones]
     ways = [[poses[way.a].q, poses[way.b].q] for way in space.crossings if zone in way.zones]
-    return [{"robot": space.robot.name, "path": [_numbers(q) for q in path]} for path in [*inside, *ways]]
+    paths = [[_numbers(q, nodes) for q in path] for path in [*inside, *ways]]
+    return [{"robot": space.robot.name, "path": path} for path in paths]
 
 
 def _reach(pose: Pose) -> list[Position]:
     return [pose.q] if pose.above is None else [pose.q, pose.above]
 
 
-def _numbers(position: Position) -> list[float]:
-    return [position] if isinstance(position, int) else list(position)
+def _numbers(position: Position, nodes: Any) -> list[float]:
+    """The joints of an arm; of a robot that stands on nodes, where that one lies on the floor."""
+    return list(nodes[position]) if isinstance(position, int) else list(position)

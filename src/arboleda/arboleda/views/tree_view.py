@@ -9,14 +9,24 @@ from py_trees import composites
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.commands import Command
-from arboleda.core.leaves import Act, Announce, Await, Carry, Dwell, Require, TakeZones, Unless, title_of
-from arboleda.core.sentence import NOTHING, Phrase, Sentence
-from arboleda.core.steps import MAIN, PHASES, RECOVERY, is_frame
+from arboleda.model.commands import Command
+from arboleda.model.sentence import NOTHING, Sentence
+from arboleda.trees.leaves import (
+    Act,
+    Announce,
+    Await,
+    Carry,
+    Dwell,
+    Require,
+    TakeDevices,
+    TakeZones,
+    Unless,
+    title_of,
+)
+from arboleda.trees.steps import MAIN, PHASES, is_frame
 
 Times = tuple["float | None", "float | None"]  # s since it began, s left until it is given up
 UNKNOWN: Times = (None, None)
-IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
 
 
 def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
@@ -24,21 +34,6 @@ def rows(tree: Behaviour, now: float) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     _add(tree, "", now, found)
     return found
-
-
-def step_of(tree: Behaviour | None) -> Sentence | None:
-    """The name of the step that runs, not of its parts nor of what frames it; a recovery's steps say so."""
-    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
-    if not running:
-        return None
-    step = running[0]
-    while step.parent is not None and not _frames(step.parent):
-        step = step.parent
-    phase = step.parent
-    while phase is not None and phase.name not in PHASES:
-        phase = phase.parent
-    title = title_of(step)
-    return IN_RECOVERY(step=title) if phase is not None and phase.name == RECOVERY else title
 
 
 def progress_of(tree: Behaviour | None) -> float | None:
@@ -62,10 +57,6 @@ def _steps(frame: Behaviour, *, done: bool) -> list[bool]:
         over = done or node.status is Status.SUCCESS
         found += _steps(node, done=over) if is_frame(node) else [over]
     return found or [done]
-
-
-def _frames(node: Behaviour) -> bool:
-    return node.name in PHASES or is_frame(node)
 
 
 def _add(node: Behaviour, path: str, now: float, found: list[dict[str, Any]]) -> None:
@@ -141,7 +132,8 @@ def _of_command(node: Any) -> dict[str, Any]:
 
 def _of_await(node: Any) -> dict[str, Any]:
     zones = {"zones": sorted(node.zones)} if isinstance(node, TakeZones) else {}
-    return {"seconds": node.seconds, **zones}
+    devices = {"devices": sorted(node.devices)} if isinstance(node, TakeDevices) else {}
+    return {"seconds": node.seconds, **zones, **devices}
 
 
 TOLD: dict[str, Callable[[Any], dict[str, Any]]] = {

@@ -6,14 +6,14 @@ from typing import Any
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
-from arboleda.core.commands import Motion, Position, Switch
-from arboleda.core.grips import Grip
-from arboleda.core.leaves import Act
-from arboleda.core.ledger import OPEN, Entry, State
-from arboleda.core.model import Cell
 from arboleda.core.plant import Plant
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.ledger import OPEN, Entry, State
+from arboleda.model.commands import Motion, Position, Switch
+from arboleda.model.grips import Grip
+from arboleda.model.plant_model import Cell
+from arboleda.trees.leaves import Act
 
 Row = dict[str, Any]
 UNDER_WAY = frozenset({State.SENT, State.RUNNING})

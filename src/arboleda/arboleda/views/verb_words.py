@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterable, Iterator
 from typing import Any
 
 from arboleda.core.advice import Advice, Hand, in_words, sentence
-from arboleda.core.belief import Belief
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Question
-from arboleda.core.facts import Value
-from arboleda.core.ledger import Entry
-from arboleda.core.messages import OperatorRequest, TaskChanged, Verb
-from arboleda.core.model import Cell, PlantModel, Robot
 from arboleda.core.operator import OperatorAct
 from arboleda.core.plant import Plant
-from arboleda.core.sentence import BOTH, NOTHING, Sentence
-from arboleda.core.task import Task
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.ledger import Entry
+from arboleda.model.commands import Question
+from arboleda.model.facts import Value
+from arboleda.model.messages import OperatorRequest, TaskChanged, Verb
+from arboleda.model.plant_model import Cell, PlantModel, Robot
+from arboleda.model.sentence import BOTH, NOTHING, Sentence
+from arboleda.model.task import Task
+from arboleda.trees.tree_run import step_of
 
 from . import forms, places, tree_view, twin_view
 
@@ -55,7 +56,8 @@ def in_parts(plant: Plant) -> Generator[None, None, dict[str, Any]]:
     open_tasks: dict[str, dict[str, Any]] = {}
     for cell in plant.cells.values():
         cells.append(_cell(plant, cell))
-        robots += [_robot(plant, plant.dispatcher.beliefs[robot.name]) for robot in cell.cell.robots]
+        mine = [robot.name for robot in cell.cell.robots if plant.model.cell_of[robot.name] is cell.cell]
+        robots += [_robot(plant, plant.dispatcher.beliefs[name]) for name in mine]
         waiting = [cell.task, *cell.queue] if cell.task else cell.queue
         open_tasks |= {task.id: _task(task, plant.now) for task in waiting}
         yield
@@ -106,14 +108,28 @@ def _devices(cell: Cell) -> list[dict[str, Any]]:
 
 
 def _device(role: str, robot: Robot) -> dict[str, Any]:
-    """`position`: the key of its row that has it; `holds`: the fact that says whether it holds a part."""
+    """`position`: the key of its row that has it; `holds`: the fact that says whether it holds a part.
+
+    `asked`: whether it is somebody who answers on the plant's own screens.
+    """
     return {
         "role": role,
         "name": robot.name,
         "kind": robot.kind_name,
         "position": robot.position_key,
         "holds": robot.held_fact,
+        "asked": robot.is_asked,
     }
+
+
+def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each device of some cells, with its cell; one that cells share with the first of them."""
+    seen: set[str] = set()
+    for cell in cells:
+        for device in cell["devices"]:
+            if device["name"] not in seen:
+                seen.add(device["name"])
+                yield cell["name"], device
 
 
 def task_by_id(plant: Plant, id: str) -> dict[str, Any] | None:
@@ -161,7 +177,7 @@ def _cell(plant: Plant, cell: CellRun) -> dict[str, Any]:
         **_by_role(cell.cell),
         "devices": _devices(cell.cell),
         "task": _task(cell.task, now) if cell.task else None,
-        "step": tree_view.step_of(cell.tree),
+        "step": step_of(cell.tree),
         "progress": tree_view.progress_of(cell.tree),
         "queue": [task.id for task in cell.queue],
         "paused": cell.queue_paused,
@@ -246,6 +262,7 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "elapsed_s": None if started is None else ended - started,
         "started_at": started,
         "ended_at": task.ended_at,
+        "answers": [dict(vars(each)) for each in task.answers],
     }
 
 
@@ -255,6 +272,7 @@ def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:
     return {
         "name": robot.name,
         "kind": robot.kind_name,
+        "holder": plant.zones.holder(robot.name) if robot.name in plant.model.shared else None,
         "mqtt": robot.mqtt,
         "online": belief.online,
         "obstacle": obstacle.sentence if obstacle else None,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
-from arboleda.core.commands import Command, Stop, StopMode, Work
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Facts
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, MotionState, Robot
-from arboleda.core.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Facts
+from arboleda.model.messages import Receipt, Report
+from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.sentence import NOTHING, Phrase, Sentence
 
 from . import goals, rejections
 from .copies import Copies
@@ -253,7 +253,7 @@ class Board:
         if not self.link.up:
             return "no_link"
         return goals.refusal(self.robot, command) or (
-            "paro" if self._latched and goals.needs_clear(command) else None
+            "paro" if self._latched and needs_clear(command) else None
         )
 
     def _send(self, at: float, command: Command, sender: str = "") -> list[Message]:
@@ -304,6 +304,7 @@ class Board:
             answer=answer,
             failed=failed,
             failure=failure,
+            receipt=_receipt(said),
         )
 
     def _report(self, at: float, **said: object) -> Report:
@@ -333,6 +334,12 @@ class Board:
 
     def _count(self, sentence: Sentence) -> None:
         self.counters = replace(self.counters, refused=self.counters.refused + 1, last=sentence)
+
+
+def _receipt(said: Telemetry) -> Receipt | None:
+    if said.ack_epoch is None or said.ack is None:
+        return None
+    return Receipt(said.ack_epoch, said.ack, said.done)
 
 
 @lru_cache(maxsize=256)

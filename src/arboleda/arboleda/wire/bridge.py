@@ -11,12 +11,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from arboleda.core.commands import Command, Stop
-from arboleda.core.errors import PayloadError
-from arboleda.core.messages import Heartbeat, Report
-from arboleda.core.model import ForeignCommands, Link, PlantModel
-from arboleda.core.outside import quoted
-from arboleda.core.sentence import as_sentence
+from arboleda.model.commands import Command, Stop
+from arboleda.model.errors import PayloadError
+from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import ForeignCommands, Link, PlantModel
+from arboleda.model.sentence import as_sentence
 
 from . import epochs, rejections, topics
 from .board import Board, Counters, Message

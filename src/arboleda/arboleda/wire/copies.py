@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import Command
+from arboleda.model.commands import Command
 
 from .hop import without_id
 

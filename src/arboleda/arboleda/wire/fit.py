@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Value
-from arboleda.core.model import MotionState
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import MotionState
 
 from . import strict
 from .payloads import DEVICE_REFUSALS, FAILURES_KEPT, OrderGoal, Telemetry, encode
@@ -45,7 +45,7 @@ def _values(whose: str, values: tuple[Value, ...]) -> Iterator[str]:
 
 def _silent(kind: DeviceKind) -> Iterator[str]:
     for verb in kind.verbs.values():
-        if verb.effect is Effect.SWITCH and not verb.sets:
+        if verb.effect is Effect.SWITCH and not verb.sets_facts:
             what = f"{verb.name} of {kind.name} is a switch that sets no fact"
             yield f"{what}: nothing would say that it is done"
 

@@ -7,15 +7,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Facts
-from arboleda.core.model import Robot
-from arboleda.core.outside import quoted
-from arboleda.core.sentence import Phrase, Sentence
 from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
 from arboleda.kinds.declared import Device, FactType, Told, UseError
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.by_class import nearest
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Facts
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Robot
+from arboleda.model.sentence import Phrase, Sentence
 
 from .payloads import DEVICE, EffectorGoal, Goal, HomeGoal, JointsGoal, OrderGoal, PathGoal, StopGoal
 from .topics import Channel
@@ -58,7 +59,7 @@ class Form:
 
     def way(self, kind: type[Command]) -> Way | None:
         """How commands of this class go, or of its nearest base that has a way."""
-        return next((self.ways[base] for base in kind.__mro__ if base in self.ways), None)
+        return nearest(self.ways, kind)
 
     def told(self, facts: Facts | None) -> Facts | None:
         """The facts of its telemetry as its kind declares them; PayloadError for one that it cannot say."""
@@ -77,7 +78,10 @@ class Form:
 
 def form_of(robot: Robot) -> Form:
     """That of the nearest type of robot that has one."""
-    return next(FORMS[base] for base in type(robot).__mro__ if base in FORMS)(robot)
+    form = nearest(FORMS, type(robot))
+    if form is None:
+        raise TypeError(f"{robot.name} is reached over no wire: nothing says how a {robot.kind_name} is told")
+    return form(robot)
 
 
 def _check_joints(arm: Arm, command: MoveJoints) -> str | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from arboleda.core.commands import Command, Switch, Work
-from arboleda.core.model import Robot
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import Robot
 
 from .forms import form_of
 from .payloads import Goal
@@ -22,8 +22,3 @@ def goal(robot: Robot, command: Command, *, seq: int | None, epoch: int | None) 
     way = form_of(robot).way(type(command))
     assert way is not None
     return way.channel, way.goal(**way.body(robot, command), seq=seq, epoch=epoch)  # type: ignore[arg-type]
-
-
-def needs_clear(command: Command) -> bool:
-    """Whether a stop latch forbids the command: all work, and every switch but one that lets go of a part."""
-    return isinstance(command, Work) or (isinstance(command, Switch) and command.grips is not False)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.facts import shown as shown_value
-from arboleda.core.messages import Heartbeat
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.declared import Told
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.facts import shown as shown_value
+from arboleda.model.messages import Heartbeat
 
 COMMAND = "command"
 ORDER = "order"

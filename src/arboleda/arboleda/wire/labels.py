@@ -6,8 +6,8 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from typing import TypeVar
 
-from arboleda.core.commands import Command
-from arboleda.core.facts import Value
+from arboleda.model.commands import Command
+from arboleda.model.facts import Value
 
 from .payloads import Telemetry
 from .strict import UINT32

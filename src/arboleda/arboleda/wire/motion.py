@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Motion, Position, Work
-from arboleda.core.facts import Facts
-from arboleda.core.model import Evidence, MotionState, Robot
+from arboleda.model.commands import Motion, Position, Work
+from arboleda.model.facts import Facts
+from arboleda.model.plant_model import Evidence, MotionState, Robot
 
 from .payloads import Telemetry
 

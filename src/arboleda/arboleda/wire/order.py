@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import json
 
-from arboleda.core.commands import Command, Stop, StopMode
-from arboleda.core.errors import PayloadError
 from arboleda.kinds.declared import Device, Told, UseError
+from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.errors import PayloadError
 
 from . import strict
 from .status import command_id

@@ -6,11 +6,11 @@ import re
 from collections.abc import Callable
 from functools import cache, lru_cache
 
-from arboleda.core.commands import StopMode
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Facts
-from arboleda.core.model import MotionState
-from arboleda.core.outside import quoted
+from arboleda.model.commands import StopMode
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Facts
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import MotionState
 
 from . import strict
 from .topics import Channel

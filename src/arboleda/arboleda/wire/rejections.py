@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command
-from arboleda.core.model import Robot
-from arboleda.core.sentence import OWN, Phrase, Sentence
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import Robot
+from arboleda.model.sentence import OWN, Phrase, Sentence
 
 from .forms import BEYOND, NODES, ON_THE_GRID, UNDONE, form_of
 from .hop import shown

@@ -13,12 +13,12 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Facts, Value
-from arboleda.core.messages import Report
-from arboleda.core.model import MotionState, Robot
-from arboleda.core.outside import quoted
-from arboleda.core.sentence import OWN, Sentence, from_data
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Facts, Value
+from arboleda.model.messages import Receipt, Report
+from arboleda.model.outside import quoted
+from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.sentence import OWN, Sentence, from_data
 
 from . import strict
 from .rejections import SAID_OF_OTHERS
@@ -186,6 +186,15 @@ def _in_json(key: str, text: str) -> object:
         raise PayloadError(f"{key}: {error}") from None
 
 
+def _receipt(key: str, text: str) -> Receipt:
+    epoch, accepted, *done = text.split(",")[:3] if text.count(",") in (1, 2) else ("", "")
+    return Receipt(_count(key, epoch), _count(key, accepted), _count(key, done[0]) if done else None)
+
+
+def _write_receipt(receipt: Receipt) -> str:
+    return ",".join(str(number) for number in receipt if number is not None)
+
+
 def _write_facts(facts: Facts) -> str:
     return json.dumps(dict(facts), separators=(",", ":"))
 
@@ -221,6 +230,7 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "effector": ("effector", _flag, _write_flag),
     "piece": ("piece", _flag, _write_flag),
     "facts": ("facts", _facts, _write_facts),
+    "receipt": ("receipt", _receipt, _write_receipt),
     "foreign_refused": ("foreign_refused", _count, str),
     "foreign_obeyed": ("foreign_obeyed", _count, str),
 }

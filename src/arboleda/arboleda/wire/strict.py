@@ -7,9 +7,9 @@ import math
 import re
 from collections.abc import Callable, Collection
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.facts import Facts, Value
-from arboleda.core.outside import quoted
+from arboleda.model.errors import PayloadError
+from arboleda.model.facts import Facts, Value
+from arboleda.model.outside import quoted
 
 LIMIT_BYTES = 512
 UINT32 = 2**32 - 1

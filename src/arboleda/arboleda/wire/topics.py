@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from enum import Enum
 
-from arboleda.core.errors import PayloadError
-from arboleda.core.outside import quoted
+from arboleda.model.errors import PayloadError
+from arboleda.model.outside import quoted
 
 _BOARD = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 

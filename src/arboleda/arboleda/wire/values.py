@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import StopMode
-from arboleda.core.facts import Facts, Value
-from arboleda.core.model import MotionState
+from arboleda.model.commands import StopMode
+from arboleda.model.facts import Facts, Value
+from arboleda.model.plant_model import MotionState
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,8 +13,8 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from arboleda.core.messages import Reason, TaskChanged, TaskState
-from arboleda.core.sentence import as_sentence
+from arboleda.model.messages import Reason, TaskChanged, TaskState
+from arboleda.model.sentence import as_sentence
 
 from ..asking import Asker
 from . import values

@@ -11,7 +11,7 @@ from arboleda_interfaces.action import ExecuteTask
 from rclpy.action import ActionServer
 from rclpy.action.server import ServerGoalHandle
 
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.messages import TaskChanged, TaskState
 
 
 @dataclass(kw_only=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-from arboleda.core.messages import TaskChanged
+from arboleda.model.messages import TaskChanged
 
 from ..asking import Asker
 from .execute_task import ExecuteTaskAction

@@ -8,8 +8,8 @@ from arboleda_interfaces.msg import Task
 from arboleda_interfaces.srv import CellCommand, SubmitTask
 from rclpy.node import Node
 
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.outside import quoted
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.outside import quoted
 from arboleda.views import view
 
 from ..asking import Asker, NoAnswer

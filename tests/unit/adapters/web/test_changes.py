@@ -12,7 +12,7 @@ from arboleda.adapters.web import changes
 from arboleda.adapters.web.changes import Reader, changed
 from arboleda.adapters.web.schema import Snapshot
 from arboleda.core.plant import Plant
-from arboleda.core.sentence import in_json
+from arboleda.model.sentence import in_json
 from arboleda.testing.plants import shipped
 from arboleda.views import view
 

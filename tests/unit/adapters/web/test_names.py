@@ -12,7 +12,7 @@ from arboleda.adapters.web.names import (
     public_origin,
     url_host,
 )
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 
 @pytest.mark.parametrize(("host", "near"), [("127.0.0.1", True), ("127.9.9.9", True), ("::1", True)])

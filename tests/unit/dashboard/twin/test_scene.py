@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import pytest
 
-from arboleda.core.model import Crossing, PlantModel
 from arboleda.dashboard.twin import kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.scene import MARGIN, scene
+from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
 from arboleda.testing import shipped
 from arboleda.views.places import places
 
@@ -68,6 +68,24 @@ def test_a_zone_is_around_the_tool_at_its_poses(drawings: dict[str, Body]) -> No
     x, y, z = at(made["cells"][0]["pickups"][0])
     assert all(math.dist((x, y), corner) == pytest.approx(MARGIN, abs=1e-6) for corner in spot["outline"])
     assert (spot["low"], spot["high"]) == pytest.approx((z - MARGIN, z + MARGIN))
+
+
+def test_a_zone_of_a_mobile_robot_is_around_its_node(drawings: dict[str, Body]) -> None:
+    plant = zoned()
+    (cell,) = plant.cells
+    pose = Pose(name="dock", q=5, zones=frozenset({"dock"}))
+    space = Workspace(robot=cell.mobile, home=Pose(name="home", q=0), poses=(pose,))
+    driven = Cell(name="drive", queue_limit=1, members=(("mobile", cell.mobile),), spaces=(space,))
+    made = scene(places(replace(plant, cells=(driven,), zones=("dock", "lid"))), drawings)
+    (zone,) = made["zones"]  # what no robot that is drawn gets into has no place
+    grid = cell.mobile.grid
+    turn = (math.cos(grid.origin.yaw), math.sin(grid.origin.yaw))
+    x, y = grid.position(5)
+    point = (
+        grid.origin.x + x * turn[0] - y * turn[1],
+        grid.origin.y + x * turn[1] + y * turn[0],
+    )
+    assert zone["zone"] == "dock" and inside(point, zone["outline"])
 
 
 def test_a_zone_of_a_move_covers_the_way_between_its_ends(drawings: dict[str, Body]) -> None:

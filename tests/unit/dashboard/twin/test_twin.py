@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.core.messages import Report, TaskRequest, Verb
-from arboleda.core.model import Cell, Evidence, MotionState, PlantModel
 from arboleda.core.plant import Plant
 from arboleda.dashboard.twin import kinematics
 from arboleda.dashboard.twin.bodies import Body
 from arboleda.dashboard.twin.twin import Twin
+from arboleda.model.messages import Report, TaskRequest, Verb
+from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
 from arboleda.views.places import places

@@ -44,15 +44,16 @@ class Who:
 class Access:
     """The plant itself does everything; a board writes its own telemetry and presence and reads its own
     topics; any other user reads everything and writes nothing. With `guests` nobody needs a password, and
-    all do everything."""
+    all do everything. Where they are `certified`, boards and readers show a certificate with their name."""
 
     plant: tuple[str, str]  # user and password
     passwords: Mapping[str, str]
     boards: frozenset[str]
     guests: bool
+    certified: bool = False
 
-    def login(self, user: str | None, password: bytes | None) -> Who | None:
-        """Who that is; None for a stranger."""
+    def login(self, user: str | None, password: bytes | None, shown: str = "") -> Who | None:
+        """Who that is, with a certificate in the name of `shown`; None for a stranger."""
         given = password or b""
         if user == self.plant[0] and hmac.compare_digest(self.plant[1].encode(), given):
             return Who(role=Role.PLANT, user=user)
@@ -60,6 +61,8 @@ class Access:
             return Who(role=Role.GUEST)
         expected = self.passwords.get(user) if user is not None else None
         if user is None or expected is None or not hmac.compare_digest(expected.encode(), given):
+            return None
+        if self.certified and shown != user:
             return None
         return Who(role=Role.BOARD if user in self.boards else Role.READER, user=user)
 

@@ -148,7 +148,7 @@ class Client(asyncio.BufferedProtocol):
             said = packets.read_connect(packet.body)
             if len(said.client_id.encode()) > limits.CLIENT_ID_BYTES or not (said.client_id or said.clean):
                 raise packets.Refused(Answer.CLIENT_ID)
-            who = self._sessions.log_in(self, said)
+            who = self._sessions.log_in(self, said, self._shown)
         except packets.Refused as refused:
             self._refuse(refused.answer)
             return
@@ -239,6 +239,12 @@ class Client(asyncio.BufferedProtocol):
             self._transport.close()
 
     # --- its limits ---
+
+    @property
+    def _shown(self) -> str:
+        """The name in the certificate that it has shown; "" where it has shown none."""
+        subject = (self._transport.get_extra_info("peercert") or {}).get("subject", ())
+        return next((value for part in subject for name, value in part if name == "commonName"), "")
 
     @property
     def _known(self) -> Who:

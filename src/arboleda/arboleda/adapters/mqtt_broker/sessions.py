@@ -47,9 +47,10 @@ class Sessions:
         elif len(self._waiting) > self._may_wait:
             next(iter(self._waiting)).cut("others want to log in")
 
-    def log_in(self, client: Connection, said: Connect) -> Who:
-        """Let it in, in the place of an earlier connection of its user with its client id; Refused."""
-        who = self.access.login(said.user, said.password)
+    def log_in(self, client: Connection, said: Connect, shown: str = "") -> Who:
+        """Let it in, by what it says and the name that its certificate has (`shown`), in the place of an
+        earlier connection of its user with its client id; Refused."""
+        who = self.access.login(said.user, said.password, shown)
         if who is None or (said.will is not None and not self.access.may_write(who, said.will.topic)):
             raise Refused(Answer.NOT_AUTHORIZED)
         # No client can send an id like the one that stands for none.

@@ -3,32 +3,51 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
+from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any, TypeVar
 from urllib.parse import quote
 
 from fastapi import APIRouter, FastAPI, Request
-from fastapi.responses import JSONResponse
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse, PlainTextResponse
 from pydantic import BaseModel, ValidationError
 from starlette.exceptions import HTTPException
 
 from arboleda import __version__
-from arboleda.core.errors import ArboledaError, PayloadError, QueueFull, TextError
-from arboleda.core.messages import Verb
-from arboleda.core.outside import plain, quoted
+from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
+from arboleda.model.messages import Verb
+from arboleda.model.outside import plain, quoted
 
-from . import limits, listing, login, stream
+from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, table
+from . import limits, listing, login, metrics, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
 from .nothing_else import NothingElse
 from .plain_json import PlainJson, explained
-from .plant_side import PlantSide
-from .schema import ByHand, Done, Offer, Sentence, Snapshot, Task, TaskForm, TaskText
+from .plant_side import COMMAND_LINE, PlantSide
+from .schema import (
+    ByHand,
+    CellOee,
+    Done,
+    KeptTask,
+    Offer,
+    Sentence,
+    Snapshot,
+    Task,
+    TaskForm,
+    TaskText,
+    Wanted,
+    WantedOee,
+)
 
 log = logging.getLogger(__name__)
 Answer = TypeVar("Answer")
+Query = TypeVar("Query", bound=BaseModel)
 
 ANSWER_S = 5.0
 ABOUT = """Look at a running plant, give it tasks, and operate it. What is refused says why in one sentence.
@@ -44,14 +63,17 @@ REFUSED: Answers = {
     422: {"model": Sentence, "description": "The request is wrong."},
     503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
 }
+WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
 
-def make_app(side: PlantSide, *, streams: int = limits.STREAMS) -> FastAPI:
+def make_app(
+    side: PlantSide, *, streams: int = limits.STREAMS, counts: Callable[[], bytes] | None = None
+) -> FastAPI:
     """An application with the routes; pages may be mounted on it afterwards. It wants a Guard before it.
 
-    At most so many `streams` of changes are open at a time.
+    At most so many `streams` of changes are open at a time; `counts` is what Prometheus gets, in its format.
     """
     app = FastAPI(
         title="Arboleda",
@@ -65,7 +87,8 @@ def make_app(side: PlantSide, *, streams: int = limits.STREAMS) -> FastAPI:
     app.add_exception_handler(ArboledaError, refuse)
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(Exception, own_up)
-    routers = (routes(side), stream.routes(side, streams), login.routes(), listing.routes(app))
+    routers = [routes(side), stream.routes(side, streams), login.routes(), listing.routes(app)]
+    routers += [metrics.routes(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)
     app.router.routes.append(NothingElse([route for router in routers for route in router.routes]))
@@ -75,7 +98,13 @@ def make_app(side: PlantSide, *, streams: int = limits.STREAMS) -> FastAPI:
 def routes(side: PlantSide) -> APIRouter:
     """Look, submit, operate."""
     api = APIRouter(prefix="/api")
+    _look(api, side)
+    _submit(api, side)
+    _operate(api, side)
+    return api
 
+
+def _look(api: APIRouter, side: PlantSide) -> None:
     @api.get("/plant", response_model=Snapshot)
     async def plant() -> JSONResponse:
         """The whole plant: cells with their trees, robots, tasks, zones."""
@@ -86,11 +115,43 @@ def routes(side: PlantSide) -> APIRouter:
         """Every open task and those that ended last, in the order of their acceptance."""
         return PlainJson([explained(task) for task in side.snapshot()["tasks"]])
 
+    wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(Wanted)}
+
+    @api.get("/history", response_model=list[KeptTask], **wanted)
+    async def history(request: Request) -> JSONResponse:
+        """Tasks of all starts, the last accepted first; the next page is `before` the last `number`."""
+        rows = await run_in_threadpool(side.history, asked(request, Wanted).query())
+        return PlainJson([_kept(row) for row in rows])
+
+    @api.get("/history.csv", response_class=PlainTextResponse, **wanted)
+    async def history_as_table(request: Request) -> PlainTextResponse:
+        """The same as a table for other programs, with a line of names."""
+        rows = await run_in_threadpool(side.history, asked(request, Wanted).query())
+        return PlainTextResponse(table(rows), media_type="text/csv; charset=utf-8")
+
+    about: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(WantedOee)}
+
+    @api.get("/oee", response_model=list[CellOee], **about)
+    async def oee(request: Request) -> JSONResponse:
+        """The OEE of the cells, of the last 24 hours where no time is asked for; docs/how-to/oee.md."""
+        rows = await run_in_threadpool(side.oee, asked(request, WantedOee).query())
+        return PlainJson([row.data() for row in rows])
+
     @api.get("/recipes", response_model=list[Offer])
     async def recipes() -> JSONResponse:
         """What each cell can be asked for: its recipes, their parameters, and what these can be."""
         return PlainJson(side.offers())
 
+    @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
+    async def task(task_id: str) -> JSONResponse:
+        """One task."""
+        known = side.find(task_id)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
+        return PlainJson(explained(known))
+
+
+def _submit(api: APIRouter, side: PlantSide) -> None:
     @api.post(
         "/tasks",
         status_code=202,
@@ -103,17 +164,12 @@ def routes(side: PlantSide) -> APIRouter:
         require(request.scope["arboleda.role"], SUBMIT)
         asked = task_asked(await request.body())
         text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.model_dump())
-        task = await in_time(side.submit(text))
+        is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
+        task = await in_time(side.submit(text, COMMAND if is_ours else HTTP))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
-    @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
-    async def task(task_id: str) -> JSONResponse:
-        """One task."""
-        known = side.find(task_id)
-        if known is None:
-            raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
-        return PlainJson(explained(known))
 
+def _operate(api: APIRouter, side: PlantSide) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
         "responses": REFUSED | CONFLICT,
@@ -137,8 +193,6 @@ def routes(side: PlantSide) -> APIRouter:
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
         return JSONResponse({"verb": verb.value, "scope": scope})
-
-    return api
 
 
 async def in_time(answer: Future[Answer]) -> Answer:
@@ -182,6 +236,20 @@ def task_asked(body: bytes) -> TaskText | TaskForm:
     )
 
 
+def asked(request: Request, model: type[Query]) -> Query:
+    """What the query says; PayloadError names the first thing that is wrong in it."""
+    try:
+        return model.model_validate(dict(request.query_params))
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False)[0]
+        name = quoted(str(found["loc"][0]), 80)
+        if found["type"] == "extra_forbidden":
+            raise PayloadError(
+                f"{name} is nothing to ask for; there are {', '.join(model.model_fields)}."
+            ) from None
+        raise PayloadError(f"{name} is {quoted(str(found['input']), 80)}: {found['msg'].lower()}.") from None
+
+
 async def refuse(_request: Request, error: Exception) -> JSONResponse:
     """A refusal as status and sentence; with the headers that belong to it, such as Allow."""
     if isinstance(error, HTTPException):
@@ -202,3 +270,18 @@ def _body(*models: type[BaseModel], required: bool = True) -> dict[str, Any]:
     schemas = [model.model_json_schema() for model in models]
     schema = schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
     return {"requestBody": {"content": {"application/json": {"schema": schema}}, "required": required}}
+
+
+def _query(model: type[BaseModel]) -> dict[str, Any]:
+    """What may stand in the query."""
+    properties = model.model_json_schema()["properties"]
+    return {
+        "parameters": [{"name": name, "in": "query", "schema": each} for name, each in properties.items()]
+    }
+
+
+def _kept(row: TaskRow) -> dict[str, Any]:
+    answers = [vars(each) for each in answers_of(row)]
+    data = asdict(row) | {"sentence": row.sentence or "", "answers": answers}
+    said = json.loads(data.pop("said") or "{}")
+    return {**data, **said} if row.sentence else data

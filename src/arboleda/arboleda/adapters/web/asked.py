@@ -9,7 +9,7 @@ from starlette.types import Scope
 
 from .names import is_loopback
 
-API, LOGIN, LOGOUT = "/api/", "/login", "/logout"
+API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
 STOP = re.compile(r"/api/(plant|cells/[^/]+)/stop")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
@@ -18,7 +18,7 @@ FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwa
 
 def is_api(path: str) -> bool:
     """Whether an address is one of the API's, be there something or not."""
-    return path == API.rstrip("/") or path.startswith(API)
+    return path in (API.rstrip("/"), METRICS) or path.startswith(API)
 
 
 class Asked:

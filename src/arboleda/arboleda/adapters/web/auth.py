@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
-from arboleda.core.errors import ArboledaError
-from arboleda.core.messages import Verb
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Verb
 
 log = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.sentence import in_json
+from arboleda.model.sentence import in_json
 
 from .plant_side import PlantSide, Snapshot
 
@@ -28,6 +28,7 @@ ROWS = {
         "name",
         (
             "online",
+            "holder",
             "obstacle",
             "state",
             "node",

@@ -7,7 +7,7 @@ from urllib.parse import parse_qsl
 from starlette.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from arboleda.core.outside import quoted
+from arboleda.model.outside import quoted
 
 from . import limits
 from .asked import LOGIN, Asked

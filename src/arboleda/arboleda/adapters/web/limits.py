@@ -23,6 +23,7 @@ MESSAGE = (50.0, 200)
 CONNECTIONS = 300  # of one server; a plant says how many its limit of open files allows
 SOCKETS = 64
 STREAMS = 64
+BEAT_S = 15.0  # after so long without a change a stream says that it is still there
 
 
 def lasting(most: int, connections: int) -> int:

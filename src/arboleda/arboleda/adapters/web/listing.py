@@ -10,7 +10,7 @@ from typing import Any
 from fastapi import APIRouter, FastAPI
 from fastapi.responses import HTMLResponse, JSONResponse
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
 from .plain_page import page

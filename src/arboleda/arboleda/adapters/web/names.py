@@ -7,7 +7,7 @@ import re
 import socket
 from dataclasses import dataclass
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 LOCAL = "127.0.0.1"
 LOOPBACK = {LOCAL, "localhost", "[::1]"}
@@ -21,11 +21,13 @@ DEFAULT_PORTS = {"http": ":80", "https": ":443"}
 @dataclass(frozen=True, kw_only=True)
 class Names:
     """A page of another site may make a browser send requests here, under its own name (Origin) or, with a
-    name that suddenly resolves to this machine, under ours (Host). `public` is the origin before a proxy."""
+    name that suddenly resolves to this machine, under ours (Host). `public` is the origin before a proxy,
+    `scheme` that of the server itself."""
 
     hosts: frozenset[str]
     any_address: bool = False
     public: str | None = None
+    scheme: str = "http"
 
     def knows_host(self, host: str) -> bool:
         """Whether a Host header is ours. On a network any address is: nobody can make it lead elsewhere."""
@@ -37,21 +39,27 @@ class Names:
         its public scheme only: in the clear, anybody on the way may have made it."""
         origin = origin.lower()
         direct = host_name(host) != self._public_name
-        return origin == self.public or (direct and origin == f"http://{host.lower()}")
+        return origin == self.public or (direct and origin == f"{self.scheme}://{host.lower()}")
 
     @property
     def _public_name(self) -> str | None:
         return host_name(self.public.partition("//")[2]) if self.public else None
 
 
-def names_for(host: str, public_url: str | None) -> Names:
-    """The names of a server bound to `host`; StartError for an address or URL that cannot be used."""
+def names_for(host: str, public_url: str | None, *, scheme: str = "http") -> Names:
+    """The names of a server that is bound to `host` and speaks `scheme`; StartError for an address or URL
+    that cannot be used."""
     public = public_origin(public_url) if public_url else None
     hosts = LOOPBACK | {url_host(host)} | ({host_name(public.partition("//")[2])} if public else set())
     if not is_loopback(host):
-        own = socket.gethostname().lower()
-        hosts |= {own, own.partition(".")[0], f"{own.partition('.')[0]}.local"}
-    return Names(hosts=frozenset(hosts), any_address=not is_loopback(host), public=public)
+        hosts |= own_names()
+    return Names(hosts=frozenset(hosts), any_address=not is_loopback(host), public=public, scheme=scheme)
+
+
+def own_names() -> set[str]:
+    """What this machine calls itself, and what others of its network may call it."""
+    own = socket.gethostname().lower()
+    return {own, own.partition(".")[0], f"{own.partition('.')[0]}.local"}
 
 
 def listen_address(host: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from fastapi.responses import JSONResponse
 
-from arboleda.core.sentence import OWN, Sentence, in_json
+from arboleda.model.sentence import OWN, Sentence, in_json
 
 
 class PlainJson(JSONResponse):

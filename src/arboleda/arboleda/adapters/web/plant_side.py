@@ -6,9 +6,14 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any, Protocol
 
-from arboleda.core.facts import Value
-from arboleda.core.messages import OperatorAnswer, Verb
+from arboleda.model.facts import Value
+from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.views.oee import Oee
 
+from ..oee_rows import OeeQuery
+from ..task_rows import TaskQuery, TaskRow
+
+COMMAND_LINE = "arboleda"  # what our own command says it is, before its version
 Snapshot = dict[str, Any]
 
 
@@ -26,7 +31,13 @@ class PlantSide(Protocol):
     def find(self, task: str) -> dict[str, Any] | None:
         """One task by its id, None where the plant knows none."""
 
-    def submit(self, text: str) -> Future[dict[str, Any]]:
+    def history(self, query: TaskQuery) -> list[TaskRow]:
+        """Tasks of this start and of earlier ones; it waits for the disk."""
+
+    def oee(self, query: OeeQuery) -> list[Oee]:
+        """The figures of its cells, in the order of the plant file; it waits for the disk."""
+
+    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
         """A future of the task. A state `refused` or a TextError in it is the caller's mistake, any other
         ArboledaError means "not now"."""
 

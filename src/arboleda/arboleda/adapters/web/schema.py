@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
+
+from ..oee_rows import OeeQuery
+from ..task_rows import TaskQuery
 
 
 class _Asked(BaseModel):
@@ -20,6 +23,48 @@ class _Told(BaseModel):
     """What a client gets; more keys may come."""
 
     model_config = ConfigDict(extra="allow")
+
+
+class Wanted(BaseModel):
+    """Which tasks of the history: all of what is asked; nothing asks for the last `limit`."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str = ""
+    state: Literal["", "queued", "running", "done", "failed", "cancelled"] = ""
+    recipe: str = ""
+    words: str = Field(default="", description="In the task's text or id.")
+    since: float | None = Field(default=None, description="Accepted since then, Unix time in seconds.")
+    until: float | None = Field(default=None, description="Accepted before then.")
+    before: int | None = Field(default=None, description="With a lower number, as the next page begins.")
+    limit: int = Field(default=100, ge=1, le=1000)
+
+    def query(self) -> TaskQuery:
+        """What it asks of the plant's memory."""
+        return TaskQuery(
+            cell=self.cell,
+            state=self.state,
+            recipe=self.recipe,
+            words=self.words,
+            since_s=self.since,
+            until_s=self.until,
+            before=self.before,
+            limit=self.limit,
+        )
+
+
+class WantedOee(BaseModel):
+    """Of which time the figures are; nothing asks for the last 24 hours of all cells."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    cell: str = ""
+    since: FiniteFloat | None = Field(default=None, description="Unix time in seconds.")
+    until: FiniteFloat | None = Field(default=None, description="Not later than now.")
+
+    def query(self) -> OeeQuery:
+        """What it asks of the plant's memory."""
+        return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
 
 
 class TaskText(_Asked):
@@ -53,6 +98,14 @@ class Sentence(_Told):
     values: dict[str, Any] | None = Field(default=None, description="What stands in it, by name.")
 
 
+class TaskAnswer(_Told):
+    """What a device or a person answered while a task ran."""
+
+    by: str
+    asked: str = Field(description="The question, or the verb and its values.")
+    answer: bool | int | float | str
+
+
 class Task(_Told):
     id: str
     text: str
@@ -62,6 +115,48 @@ class Task(_Told):
     sentence: str = ""
     key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
     values: dict[str, Any] | None = None
+    answers: list[TaskAnswer] = Field(default=[], description="Of this task, in the order they came.")
+
+
+class KeptTask(_Told):
+    """A task of this start or of an earlier one; times are Unix times, in seconds."""
+
+    number: int = Field(description="Grows by one with each task that the plant accepts.")
+    id: str
+    text: str
+    cell: str
+    recipe: str
+    state: str = Field(description="queued, running, done, failed or cancelled.")
+    reason: str | None = None
+    sentence: str = ""
+    key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
+    values: dict[str, Any] | None = None
+    accepted_s: float
+    started_s: float | None = None
+    ended_s: float | None = None
+    asked_by: str | None = Field(
+        default=None, description="The way by which it came: command, page, http or ros2; null: not known."
+    )
+    attempts: int = Field(default=0, description="How often it was begun, or tried again by `retry`.")
+    answers: list[TaskAnswer] = Field(default=[], description="Of one that has ended, in their order.")
+
+
+class CellOee(_Told):
+    """OEE of one cell; shares from 0 to 1, null where `missing` says why nobody can say."""
+
+    cell: str
+    since_s: float = Field(description="Unix time; later than asked where nothing was kept before.")
+    until_s: float
+    planned_s: float = Field(description="A task waited or was at work.")
+    worked_s: float = Field(description="Of that, the cell was at work.")
+    done: int
+    failed: int
+    timed: int = Field(description="Of these, tasks whose shortest time is known.")
+    availability: float | None
+    performance: float | None
+    quality: float | None
+    oee: float | None = Field(description="The three of them multiplied.")
+    missing: str | None
 
 
 class Parameter(_Told):
@@ -115,6 +210,7 @@ class Device(_Told):
     kind: str = Field(description="arm, mobile, or a kind of your own.")
     position: str | None = Field(description="The key of its row under `robots` that has its position.")
     holds: str | None = Field(description="The fact that says whether it holds a part.")
+    asked: bool = Field(description="Whether it is a person, who answers on the plant's own screens.")
 
 
 class Cell(_Told):
@@ -150,6 +246,7 @@ class Robot(_Told):
 
     name: str
     kind: str
+    holder: str | None = Field(default=None, description="Of what cells share: the cell that holds it.")
     online: bool
     obstacle: str | None = Field(description="Why it gets no command now.")
     state: int | None = Field(
@@ -178,4 +275,6 @@ class Snapshot(_Told):
     cells: list[Cell]
     robots: list[Robot]
     tasks: list[Task]
-    zones: list[dict[str, Any]]
+    zones: list[dict[str, Any]] = Field(
+        description="Zones and devices that cells share, each with its state, who holds it and who waits."
+    )

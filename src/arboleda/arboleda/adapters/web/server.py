@@ -2,30 +2,42 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import socket
 import threading
+from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import uvicorn
 from starlette.types import ASGIApp
 
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 
 from .. import descriptors
+from ..seldom import Seldom
 from . import limits
 from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket
 
+if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
+    from ..server_tls import ServerTls
+
 DEFAULT_PORT = 8080
 START_S = 20.0
+SENTENCE = b"This plant speaks TLS here: its address begins with https://\n"
+SPEAKS_TLS = (
+    b"HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n"
+    b"Content-Length: %d\r\n\r\n%s" % (len(SENTENCE), SENTENCE)
+)
 
 
 class Server:
     """Serves `app` on `host`, on DEFAULT_PORT or where that is taken on another, unless a `port` is named.
 
-    At most `connections` are open at a time, websockets and streams among them.
+    At most `connections` are open at a time, websockets and streams among them. With `tls` everybody
+    speaks TLS.
     """
 
     def __init__(
@@ -35,13 +47,14 @@ class Server:
         host: str = "127.0.0.1",
         port: int | None = None,
         connections: int = limits.CONNECTIONS,
+        tls: ServerTls | None = None,
     ) -> None:
         self._host = host
         self._port = port
         self._server = _Uvicorn(
             uvicorn.Config(
                 app,
-                http=partial(Connection, admission=Admission(connections)),  # type: ignore[arg-type]
+                http=_protocol(Admission(connections), tls),  # type: ignore[arg-type]
                 ws=Socket,
                 ws_max_size=limits.MESSAGE_BYTES,
                 ws_per_message_deflate=False,
@@ -81,6 +94,18 @@ class Server:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
+
+
+def _protocol(admission: Admission, tls: ServerTls | None) -> Callable[..., asyncio.Protocol]:
+    """What makes the protocol of each connection."""
+    if tls is None:
+        return partial(Connection, admission=admission)
+    from ..tls_layer import TlsLayer
+
+    layered = partial(
+        TlsLayer, tls.context, server="The HTTP server", seldom=Seldom(), plain_answer=SPEAKS_TLS
+    )
+    return lambda **options: layered(Connection(**options, admission=admission))
 
 
 class _Uvicorn(uvicorn.Server):

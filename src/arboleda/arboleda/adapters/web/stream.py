@@ -14,7 +14,6 @@ from . import limits
 from .changes import Changes
 from .plant_side import PlantSide
 
-BEAT_S = 15.0
 ABOUT: dict[int | str, dict[str, Any]] = {
     200: {
         "description": "A stream. `snapshot` is the whole plant; `plant`, `cell`, `robot`, `task` and "
@@ -48,7 +47,7 @@ async def tell(changes: Changes, last: str, alive: Callable[[], bool]) -> AsyncI
     try:
         while alive():
             try:
-                event = await asyncio.wait_for(reader.next(), BEAT_S)
+                event = await asyncio.wait_for(reader.next(), limits.BEAT_S)
             except asyncio.TimeoutError:
                 yield ": still here\n\n"
                 continue

@@ -7,8 +7,8 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.errors import PayloadError
 from arboleda.kinds.arm import Arm
+from arboleda.model.errors import PayloadError
 from arboleda.wire import strict
 from arboleda.wire.payloads import MAX_ANGLE_DEG, REFUSALS
 from arboleda.wire.topics import Channel, parse

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.adapters.mqtt import Credentials
-from arboleda.core.errors import StartError
-from arboleda.core.model import Evidence, PlantModel
+from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
 from arboleda.kinds.arm import Arm
+from arboleda.model.errors import StartError
+from arboleda.model.plant_model import Evidence, PlantModel
 
 from .. import config
-from ..parts.broker import MQTT_PORT, address, login
 from ..where import PlantFile
-from .judge import CHECKS, LEVELS, Finding, Judge
-from .trial import Trial
+
+if TYPE_CHECKING:
+    from .judge import Finding, Judge
 
 PASSED, FAILED = 0, 1
 HELP = """Run the contract against an arm's board, of whatever kind, and say which level it reaches.
@@ -56,7 +56,7 @@ def add_to(cli: typer.Typer) -> None:
 
 
 def _arm(model: PlantModel, name: str) -> Arm:
-    arms = {robot.mqtt: robot for robot in model.robots.values() if isinstance(robot, Arm)}
+    arms = {robot.mqtt: robot for robot in model.robots.values() if robot.has_joints}
     arms |= {robot.name: robot for robot in arms.values()}
     if name not in arms:
         raise typer.BadParameter(
@@ -66,6 +66,8 @@ def _arm(model: PlantModel, name: str) -> Arm:
 
 
 def _try(arm: Arm, broker: str, credentials: Credentials | None) -> int:
+    from .trial import Trial  # it takes a while to load, and only this command needs it
+
     console = Console(highlight=False)
     try:
         where = address(broker)
@@ -95,6 +97,8 @@ def _line(finding: Finding) -> Text:
 
 
 def _verdict(arm: Arm, judge: Judge) -> Text:
+    from .judge import CHECKS, LEVELS
+
     wrong = [finding.check.name for finding in judge.findings if finding.wrong]
     if judge.reached is None:
         return Text(f"{arm.mqtt} reaches no level; wrong: {', '.join(wrong)}", style="red")

@@ -6,8 +6,8 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.payloads import Beat, encode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery

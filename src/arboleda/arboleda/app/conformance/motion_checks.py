@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import copysign
 
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 from arboleda.wire.topics import Channel
 from arboleda.wire.units import to_wire
 

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from uuid import uuid4
 
 from arboleda.adapters import clock
-from arboleda.adapters.mqtt import Address, Credentials, MqttClient, NotConnected
-from arboleda.core.errors import StartError
+from arboleda.adapters.broker_login import Address, Credentials
+from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.kinds.arm import Arm
+from arboleda.model.errors import StartError
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 

@@ -10,16 +10,16 @@ from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.core.commands import Command
-from arboleda.core.messages import Heartbeat, Notice, Report
-from arboleda.core.model import PlantModel
+from arboleda.adapters.seldom import Seldom
+from arboleda.model.commands import Command
+from arboleda.model.messages import Heartbeat, Notice, Report
+from arboleda.model.plant_model import PlantModel
 from arboleda.wire.bridge import Bridge, Leaving, Message
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery
 
 from ..loop import Loop
-from ..seldom import Seldom
 from .part import BrokerAddress, Crash, not_sent
 
 LOG = logging.getLogger("arboleda.bridge")

@@ -11,7 +11,7 @@ from typing import Any
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.sim.devices import Devices, FromBoard, ToBoard
 from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic

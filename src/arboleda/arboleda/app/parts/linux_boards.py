@@ -9,10 +9,10 @@ import threading
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from arboleda.core.errors import StartError
-from arboleda.core.model import Evidence, Link, PlantModel
-from arboleda.core.outside import plain, quoted
 from arboleda.kinds.arm import Arm
+from arboleda.model.errors import StartError
+from arboleda.model.outside import plain, quoted
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.wire.units import to_wire
 
 from .lookout import Lookout
@@ -27,7 +27,7 @@ END_S = 5.0
 
 def on_linux(model: PlantModel) -> tuple[Arm, ...]:
     """The robots whose boards can be the firmware's; StartError where there is none."""
-    arms = [robot for robot in model.robots.values() if isinstance(robot, Arm)]
+    arms = [robot for robot in model.robots.values() if robot.has_joints]
     fitting = tuple(arm for arm in arms if arm.model == MODEL and arm.link is Link.MQTT and _speaks_as(arm))
     if not fitting:
         raise StartError(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from uuid import uuid4
 
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.core.errors import StartError
+from arboleda.model.errors import StartError
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery
 

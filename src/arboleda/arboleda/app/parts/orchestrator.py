@@ -7,19 +7,27 @@ import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from typing import Any, Protocol
+from dataclasses import replace
+from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.store import Store
-from arboleda.core.commands import Command, Stop, StopMode
-from arboleda.core.errors import ArboledaError
-from arboleda.core.facts import Value
-from arboleda.core.messages import (
+from arboleda.adapters.task_rows import COMMAND, ROS, TaskHistory, TaskQuery
+from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
+from arboleda.core.plant import Plant
+from arboleda.core.text import spelled
+from arboleda.dispatch.dispatcher import Memory
+from arboleda.model.commands import Command
+from arboleda.model.errors import ArboledaError
+from arboleda.model.facts import Value
+from arboleda.model.messages import (
+    ENDED,
     Absence,
     Event,
     InternalError,
     Journal,
+    KeptTask,
     Notice,
     OperatorAnswer,
     OperatorRequest,
@@ -32,15 +40,14 @@ from arboleda.core.messages import (
     Undelivered,
     Verb,
 )
-from arboleda.core.model import PlantModel
-from arboleda.core.plant import Plant
-from arboleda.core.sentence import Phrase, as_sentence
-from arboleda.core.text import spelled
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import as_sentence
 from arboleda.views import diagnostics, forms, twin_view, view
 
 from ..loop import Loop
-from ..memory import remembered
+from ..memory import kept_task, kept_tasks, remembered
 from .part import Crash
+from .router import PlantPort
 from .slices import PAUSE_S, Slices
 from .urgency import Urgency
 
@@ -48,18 +55,20 @@ LOG = logging.getLogger(__name__)
 TASKS = logging.getLogger("arboleda.tasks")
 REQUESTS = logging.getLogger("arboleda.requests")  # those that were refused
 OPERATORS = logging.getLogger("arboleda.operators")
-SENT_TOO_LATE = Phrase("command.too_late", "the plant was away for {seconds:.1f} s before it could send this")
 VIEW_S = 1.0
 # A snapshot takes as long as several steps: it waits until whoever was sent a command had the processor.
 SETTLE_S = 0.01
 SHARE = 0.1  # of the thread's time for snapshots, at most: one of 100 busy cells takes as long as 500 steps
+DAY_S = 86_400.0
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
 
 
-class PlantPort(Protocol):
-    """The way from the plant to its robots."""
+class StepRecorder(Protocol):
+    """What writes the flight record: told of each step in the plant's thread; `trouble` is why it stopped."""
 
-    def send(self, message: Command | Notice) -> None: ...
+    trouble: str
+
+    def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
 
 
 class RosPort(PlantPort, Protocol):
@@ -74,6 +83,14 @@ class RosPort(PlantPort, Protocol):
     def publish_diagnostics(self, statuses: Iterable[diagnostics.Diagnostic]) -> Iterator[None]: ...
 
 
+class Began(NamedTuple):
+    """What a plant was made of beside its file and its epoch: its clock's time, and what was remembered."""
+
+    now: float
+    memory: Memory
+    kept: Sequence[KeptTask]
+
+
 class TooLate(ArboledaError):
     """A command was not sent: it is older than a robot's silence may be."""
 
@@ -82,12 +99,24 @@ class Orchestrator:
     """The plant in its loop; `connect` its port before `start`.
 
     What the plant wants remembered is in the `store` before anything after it leaves. Where that fails, the
-    plant ends: from then on robots are told to stop, nothing else.
+    plant ends: from then on robots are told to stop, nothing else. Tasks that wait at the end are left for
+    the next start, unless it `drops_waiting`.
     """
 
-    def __init__(self, model: PlantModel, epoch: int, crash: Crash, store: Store | None = None) -> None:
-        memory = remembered(store) if store is not None else {}
-        self.plant = Plant(model, epoch=epoch, now=clock.seconds(), memory=memory)
+    def __init__(
+        self,
+        model: PlantModel,
+        epoch: int,
+        crash: Crash,
+        store: Store | None = None,
+        *,
+        history: TaskHistory | None = None,
+        drops_waiting: bool = False,
+    ) -> None:
+        now, memory = clock.seconds(), remembered(store) if store is not None else {}
+        kept = kept_tasks(store, clock_s=now, unix_s=time.time()) if store is not None else []
+        self.plant = Plant(model, epoch=epoch, now=now, memory=memory, kept=kept)
+        self.began = Began(now, memory, kept)
         self.loop: Loop[Any, Any] = Loop(
             "orchestrator",
             self.plant,
@@ -98,7 +127,12 @@ class Orchestrator:
         )
         self.listeners: list[Callable[[TaskChanged], None]] = []
         self.watchers: list[Callable[[dict[str, Any]], None]] = []
+        self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
+        self.reacted: Callable[[float], None] = lambda _seconds: None
+        self.recorder: StepRecorder | None = None
         self._store = store
+        self._history = history
+        self._drops_waiting = drops_waiting
         self._crash = crash
         self._amnesia: Exception | None = None
         self._port: PlantPort | None = None
@@ -110,28 +144,47 @@ class Orchestrator:
         self._showing: Slices[None] | None = None  # a snapshot that is being made and shown
         self._urgency = Urgency(self.plant)
         self._waiting: dict[str, Future[Any]] = {}
+        self._asked_by: dict[str, str] = {}  # by token, the way by which a task came
         self._at_rest = threading.Event()
 
     def hear(self, event: Event) -> None:
         """What comes in by the port, from its thread; a report that is no news may wait for others."""
+        if isinstance(event, TaskRequest):
+            event = self._recalled(event)
         self.loop.post(event, self._urgency.within_s(event) if isinstance(event, Report) else 0.0)
+
+    def _recalled(self, request: TaskRequest) -> TaskRequest:
+        """The request, with the task of its id where that ended too long ago for the plant to know it."""
+        id = request.text.rpartition("#")[2]
+        if self._history is None or id == request.text or id in self.plant.intake.tasks:
+            return request
+        found = self._history.select(TaskQuery(id=id, is_open=False, limit=1))
+        kept = [kept_task(row, clock_s=request.at, unix_s=time.time()) for row in found]
+        return replace(request, kept=next(iter(kept), None))
 
     def connect(self, port: PlantPort) -> None:
         self._port = port
 
     def connect_ros(self, port: RosPort) -> None:
-        self._port = self._ros = port
+        """What it shows itself on; its commands go by the port of `connect`."""
+        self._ros = port
 
     def start(self) -> None:
         """StartError where another node already commands these robots."""
         if self._ros is not None:
             self._ros.check_alone()
+        for run in self.plant.cells.values():
+            if run.found is not None:
+                TASKS.warning("%s", run.found)
+            if run.left_over:
+                TASKS.warning("%s", run.why_paused)
         self.loop.start()
 
-    def submit(self, text: str) -> Future[TaskChanged]:
+    def submit(self, text: str, asked_by: str = COMMAND) -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state."""
         answer, token = self._expect()
-        self.loop.post(TaskRequest(at=clock.seconds(), text=text, request=token))
+        self._asked_by[token] = asked_by
+        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token))
         return answer
 
     def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
@@ -156,6 +209,11 @@ class Orchestrator:
             time.sleep(PAUSE_S)
         return slices.result
 
+    @property
+    def stepped_at(self) -> float:
+        """When the plant made its last step, on its clock; it makes one for each of its heartbeats."""
+        return self.loop.read(lambda plant: plant.now)
+
     def positions(self) -> dict[str, Any]:
         """What moves; `now` is on the plant's clock."""
         return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
@@ -165,7 +223,7 @@ class Orchestrator:
 
     def stop(self) -> None:
         """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
-        self.loop.post(Shutdown(at=clock.seconds()))
+        self.loop.post(Shutdown(at=clock.seconds(), drops_waiting=self._drops_waiting))
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
@@ -183,8 +241,11 @@ class Orchestrator:
                 message.seconds,
             )
             return
-        if self._amnesia is not None and isinstance(message, Command) and not _ends_motion(message):
-            raise self._amnesia
+        if self._amnesia is not None and not leaves_unkept(message):
+            self._refuse_unkept(message, self._amnesia)
+            return
+        if isinstance(message, TaskChanged):
+            self._keep_task(message)
         if isinstance(message, TaskChanged | OperatorAnswer):
             _log(message)
             self._answer(message)
@@ -195,11 +256,23 @@ class Orchestrator:
             self._refuse_late(message)
             self._port.send(message)
 
+    def _refuse_unkept(self, message: Command | Notice, amnesia: Exception) -> None:
+        """Whoever waits for an answer hears why there is none; nobody else hears what is not kept."""
+        if isinstance(message, Command):
+            raise amnesia
+        if isinstance(message, TaskChanged | OperatorAnswer):
+            self._answer(message)
+        if isinstance(message, OperatorAnswer):
+            refused = replace(message, refusal=message.refusal or as_sentence(amnesia))
+            _log(refused)
+            if self._port is not None:
+                self._port.send(refused)
+
     def _refuse_late(self, message: Command | Notice) -> None:
         """A process that was stopped in the middle of a step must not send what was right before."""
-        late_s = clock.seconds() - self.plant.now
-        if late_s > self.plant.away_after_s and isinstance(message, Command) and not _ends_motion(message):
-            raise TooLate(SENT_TOO_LATE(seconds=late_s))
+        now = clock.seconds()
+        if is_too_late(message, self.plant, now):
+            raise TooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
@@ -208,8 +281,24 @@ class Orchestrator:
             return
         if isinstance(message, Remember):
             self._store.keep(message)
-        else:
-            self._store.journal(message, time.time())
+            return
+        self._store.journal(message, time.time())
+        if message.verb is Verb.RETRY:
+            for name in [message.cell] if message.cell else self.plant.cells:
+                task = self.plant.cells[name].task
+                if task is not None:
+                    self._store.attempted(task.id, task.attempts)
+
+    def _keep_task(self, change: TaskChanged) -> None:
+        """Whoever asked for a task, or waits for its end, hears of it once it is kept."""
+        if self._store is None:
+            return
+        known, unix_s = self.plant.intake.tasks.get(change.task), time.time()
+        asked_by = self._asked_by.get(change.request or "", ROS)
+        recipe, answers = (known.order.recipe, known.answers) if known else ("", [])
+        self._store.task(change, recipe, unix_s, asked_by, answers)
+        if change.state in ENDED:
+            self._store.forget_tasks(unix_s - self.plant.model.history_days * DAY_S)
 
     def _expect(self) -> tuple[Future[Any], str]:
         """A future, and the token of the request whose answer it will hold."""
@@ -218,6 +307,7 @@ class Orchestrator:
         return answer, token
 
     def _answer(self, answer: TaskChanged | OperatorAnswer) -> None:
+        self._asked_by.pop(answer.request or "", None)
         waiting = self._waiting.pop(answer.request or "", None)
         if waiting is None:
             return
@@ -227,9 +317,11 @@ class Orchestrator:
             waiting.set_exception(self._amnesia)
 
     def _not_sent(self, message: Any, error: Exception) -> None:
-        if isinstance(message, Remember | Journal):
+        if isinstance(message, Remember | Journal | TaskChanged):
             self._amnesia = error
             self._crash("orchestrator", error)
+            if isinstance(message, TaskChanged):
+                self._answer(message)
         elif isinstance(message, Command):
             event = Undelivered(
                 at=clock.seconds(), id=message.id, robot=message.robot, sentence=as_sentence(error)
@@ -238,7 +330,17 @@ class Orchestrator:
         else:
             raise error
 
-    def _stepped(self, now: float, _events: Sequence[Any], _messages: Sequence[Any]) -> None:
+    def _stepped(self, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None:
+        if events and any(isinstance(message, Command) for message in messages):
+            # What is no news may have waited for the last event, which is why this step was made.
+            self.reacted(clock.seconds() - max(event.at for event in events))
+        if self.recorder is not None:
+            self.recorder.stepped(self.plant, now, events, messages)
+        for observer in self.observers:
+            try:
+                observer(self.plant)
+            except Exception as error:  # noqa: BLE001 - whatever is told of a plant must not end it
+                _log_defect("what is told of the plant", error)
         if self.plant.intake.closed and self.plant.at_rest:
             self._at_rest.set()
         if self._showing is not None:
@@ -294,7 +396,9 @@ class Orchestrator:
         if self._ros is not None:
             yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
-                yield from self._ros.publish_diagnostics(diagnostics.diagnostics(snapshot))
+                recorder = [] if self.recorder is None else [diagnostics.record(self.recorder.trouble)]
+                rows = (*diagnostics.diagnostics(snapshot), *recorder)
+                yield from self._ros.publish_diagnostics(rows)
         rows = [*snapshot["cells"], *snapshot["robots"], *snapshot["tasks"]]
         del snapshot
         while rows:  # to give back the memory of them all at once takes as long as some slices
@@ -333,7 +437,3 @@ def _log(message: TaskChanged | OperatorAnswer) -> None:
     else:
         level = logging.WARNING if message.state is TaskState.FAILED else logging.INFO
         TASKS.log(level, "%s", task_line(message), extra={"change": message})
-
-
-def _ends_motion(command: Command) -> bool:
-    return isinstance(command, Stop) and command.mode is not StopMode.CLEAR

@@ -8,7 +8,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 from arboleda.views import view
 
 from ..urdf import robot_urdf
@@ -34,6 +34,8 @@ class PageSide:
         self.snapshot = side.snapshot
         self.submit = side.submit
         self.operate = side.operate
+        self.history = side.history
+        self.oee = side.oee
         self.watch = side.watch
         self.links = sources.links
         self.positions = sources.positions

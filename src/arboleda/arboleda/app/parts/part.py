@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable
 from typing import Protocol
 
-from arboleda.adapters.mqtt import Address, Credentials
+from arboleda.adapters.broker_login import Address, Credentials
 
 LOG = logging.getLogger(__name__)
 Crash = Callable[[str, BaseException], None]  # told which part broke down, and on what

@@ -6,9 +6,9 @@ from dataclasses import fields
 from operator import attrgetter
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, MotionState
 from arboleda.core.plant import Plant
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, MotionState
 
 COMPANY_S = 0.02  # a fifth of a telemetry period, too short to be seen in the twin
 RESTING_S = 0.25  # the plant steps as often by itself, to beat

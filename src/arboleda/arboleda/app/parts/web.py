@@ -8,9 +8,12 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Protocol
+from urllib.parse import urlencode
 
 from fastapi import FastAPI
 
+from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door
@@ -18,10 +21,11 @@ from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
 from arboleda.adapters.web.server import DEFAULT_PORT, Server
-from arboleda.core.errors import QueueFull
-from arboleda.core.facts import Value
-from arboleda.core.messages import OperatorAnswer, TaskChanged, Verb
+from arboleda.model.errors import QueueFull
+from arboleda.model.facts import Value
+from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.views import view
+from arboleda.views.oee import Oee
 
 from .. import tokens
 from ..web_options import WebOptions
@@ -36,15 +40,17 @@ class Asked(Protocol):
     def snapshot(self) -> Snapshot: ...
     def offers(self) -> list[dict[str, Any]]: ...
     def find(self, task: str) -> dict[str, Any] | None: ...
+    def history(self, query: TaskQuery) -> list[TaskRow]: ...
+    def oee(self, query: OeeQuery) -> list[Oee]: ...
     def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str: ...
-    def submit(self, text: str) -> Future[TaskChanged]: ...
+    def submit(self, text: str, asked_by: str) -> Future[TaskChanged]: ...
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
 
 
 class Announce(Protocol):
     """Tells other processes of this machine where the server is reached."""
 
-    def __call__(self, port: int, *, host: str, guarded: bool) -> None: ...
+    def __call__(self, port: int, *, host: str, guarded: bool, certificate: str) -> None: ...
 
 
 class Side:
@@ -57,12 +63,14 @@ class Side:
         self.snapshot = plant.snapshot
         self.offers = plant.offers
         self.find = plant.find
+        self.history = plant.history
+        self.oee = plant.oee
         self.spelled = plant.spelled
         self.operate = plant.operate
 
-    def submit(self, text: str) -> Future[dict[str, Any]]:
+    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()
-        self._plant.submit(text).add_done_callback(lambda answer: _pass_on(answer, plain))
+        self._plant.submit(text, asked_by).add_done_callback(lambda answer: _pass_on(answer, plain))
         return plain
 
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
@@ -96,6 +104,7 @@ class WebPart:
         mount: Callable[[FastAPI, Side], None] | None = None,
         *,
         connections: int = limits.CONNECTIONS,
+        counts: Callable[[], bytes] | None = None,
     ) -> None:
         self.side = Side(plant)
         self._options = options
@@ -103,18 +112,21 @@ class WebPart:
         self._announce = announce
         self._port = 0
         self._shows_page = mount is not None
-        app = make_app(self.side, streams=limits.lasting(limits.STREAMS, connections))
+        app = make_app(self.side, streams=limits.lasting(limits.STREAMS, connections), counts=counts)
         if mount is not None:
             mount(app, self.side)
         door = Door(tokens.TokenFile(state) if options.guarded else None)
         sockets = limits.lasting(limits.SOCKETS, connections)
-        guarded = Guard(app, names_for(options.address, options.public_url), door, sockets=sockets)
-        self._server = Server(guarded, host=options.address, port=options.port, connections=connections)
+        names = names_for(options.address, options.public_url, scheme=options.scheme)
+        guarded = Guard(app, names, door, sockets=sockets)
+        self._server = Server(
+            guarded, host=options.address, port=options.port, connections=connections, tls=options.tls
+        )
 
     @property
     def notes(self) -> list[str]:
         """What a person should know, a line each."""
-        address = f"http://{self._options.near}:{self._port}"
+        address = self._here
         notes = [f"HTTP API: {address}/api/plant"]
         if self._options.port is None and self._port != DEFAULT_PORT:
             notes[0] += f" (port {DEFAULT_PORT} is taken)"
@@ -122,15 +134,33 @@ class WebPart:
             notes.insert(0, f"Page: {address}")
         if self._options.guarded:
             notes.append(f"Tokens: {self._state / tokens.TOKENS}; arboleda token shows them")
-        if not is_loopback(self._options.host):
+        if not is_loopback(self._options.host) and self._options.tls is None:
             notes.append(CLEAR.format(host=self._options.host))
         return notes
+
+    def address_of(self, cell: str, task: str | None) -> str | None:
+        """Where a browser sees a cell, or a task of it; None where there is no page."""
+        if not self._shows_page:
+            return None
+        place = {"tab": "cells", "cell": cell} if task is None else {"tab": "tasks", "task": task}
+        origin = self._options.public_url or self._here
+        return f"{origin}/?{urlencode(place)}"
+
+    @property
+    def _here(self) -> str:
+        """Its origin, for this machine."""
+        return f"{self._options.scheme}://{self._options.near}:{self._port}"
 
     def start(self) -> None:
         if self._options.guarded:
             tokens.read(self._state)
         self._port = self._server.start()
-        self._announce(self._port, host=self._options.near, guarded=self._options.guarded)
+        self._announce(
+            self._port,
+            host=self._options.near,
+            guarded=self._options.guarded,
+            certificate=self._options.tls.pem if self._options.tls else "",
+        )
 
     def stop(self) -> None:
         self._server.stop()

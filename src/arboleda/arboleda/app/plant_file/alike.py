@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
-from arboleda.core.commands import Position
-from arboleda.core.model import Crossing, Pose, Workspace
+from arboleda.model.commands import Position
+from arboleda.model.plant_model import Crossing, Pose, Workspace
 
 WHY = "in every joint they are within twice the arm's tolerance of each other, so it cannot tell them apart"
 Pair = frozenset[str]  # of names of poses

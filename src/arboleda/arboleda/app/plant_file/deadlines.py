@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.core.belief import APART_S
-from arboleda.core.evidence import QUIET_S
-from arboleda.core.model import Cell, Evidence, Robot, Timing
+from arboleda.dispatch.belief import APART_S
+from arboleda.dispatch.evidence import QUIET_S
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, Evidence, Robot, Timing
 
 from .document import Document, Place
 
@@ -27,12 +26,12 @@ def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timin
     """Keeps a problem for each robot whose moves may be given up or taken for done before they show."""
     for cell in cells:
         for role, robot in cell.roles.items():
-            if not isinstance(robot, (Arm, Mobile)):
+            if not robot.goes:
                 continue  # a verb of a declared kind has a time of its own
             _check_patience(document, robot, timing)
             spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), SHOWN_S[robot.evidence]
             if spare_s < needed_s - ROUNDING_S:
-                key: Place = (role,) if isinstance(cell, StorageCell) else ("devices", role)
+                key: Place = (role,) if cell.is_storage else ("devices", role)
                 document.problem(("cells", cell.name, *key), _sentence(robot, timing, spare_s, needed_s))
 
 
@@ -53,9 +52,9 @@ def _spare_s(robot: Robot, longest_s: float, timing: Timing) -> float:
 
 
 def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
-    if isinstance(robot, Arm):
+    if robot.has_joints:
         return robot.travel_s(None, [robot.reference])
-    if isinstance(cell, StorageCell):
+    if cell.is_storage:
         ways = [path.nodes for path in cell.paths]
         ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
     else:

@@ -2,44 +2,91 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from functools import partial
 
-from arboleda.core.model import Cell, Evidence, Link, Retry, Robot
+from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
-from arboleda.kinds.person import person
+from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
+from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire import fit
 
-from . import targets
+from . import own_kinds, shared, targets
+from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
-from .kinds import RESERVED
-from .robots import arm, arm_model, mobile
-from .shapes import (
-    NAME_RULE,
-    ArmDeviceShape,
-    DeviceCellShape,
-    DeviceShape,
-    MobileDeviceShape,
-    PersonShape,
-    RetryShape,
-    is_name,
-)
+from .drivers import OF_DEVICES, link
+from .registry import COME_WITH_IT, RESERVED
+from .robot_kind import RobotKind
+from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, is_name
+from .used import KindInPython, Used
 
 CELLS: Place = ("cells",)
-PERSON = "person"
-OF_ROBOTS = ARM, MOBILE = ("arm", "mobile")
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kinds:
+    """The kinds that devices of a plant may be of: those that its file declares, and those in Python."""
+
+    declared: Mapping[str, DeviceKind]
+    names: Collection[str]  # of those that it declares, be they right or wrong
+    used: Used
+
+    def in_python(self, name: object) -> KindInPython | None:
+        """The kind in Python of that name; what the plant file declares may have the name before it."""
+        if not isinstance(name, str) or (name in self.names and name not in RESERVED):
+            return None
+        return self.used.kinds.get(name)
+
+    def goes(self, document: Document, place: Place) -> bool:
+        """Whether the device there is a robot that goes from place to place."""
+        kind = self.of_robots(document, place)
+        return kind is not None and kind.goes
+
+    def has_twin(self, document: Document, place: Place) -> bool:
+        """Whether the device there may be drawn under another name."""
+        kind = self.of_robots(document, place)
+        return kind is not None and kind.has_twin
+
+    def of_robots(self, document: Document, place: Place) -> RobotKind | None:
+        """The kind of the device there, where that reads by itself what the plant file says."""
+        kind = self.in_python(document.value((*place, "kind")))
+        return kind if isinstance(kind, RobotKind) else None
+
+    @property
+    def known(self) -> list[str]:
+        """The names of all kinds that there are."""
+        used = self.used
+        return list(dict.fromkeys([*self.names, *used.kinds, *COME_WITH_IT, *used.installed]))
 
 
 def is_of_devices(document: Document, place: Place) -> bool:
     """Whether a cell is one of devices, going by its keys."""
     has = document.keys(place)
-    return "devices" in has or (document.has(("kinds",)) and not any(key in has for key in OF_ROBOTS))
+    return "devices" in has or (
+        document.has(("kinds",)) and not any(key in has for key in StorageCell.keyed_roles)
+    )
 
 
-def device_cell(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Cell | None:
-    """The cell, still without recipes; None, with its problems kept, where something is wrong with it."""
-    both = [key for key in OF_ROBOTS if document.has((*place, key))]
+def shared_devices(document: Document, kinds: Kinds) -> dict[str, Robot]:
+    """The devices that cells share, by name."""
+
+    def read(place: Place) -> Robot | None:
+        return _device(document, place, kinds)
+
+    found = shared.shared_devices(document, read, partial(kinds.goes, document))
+    shared.check_use(document)
+    return found
+
+
+def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[str, Robot]) -> Cell | None:
+    """The cell, still without recipes; None, with its problems kept, where something is wrong with it.
+
+    `common` are the devices that it may share with others, by name.
+    """
+    both = [key for key in StorageCell.keyed_roles if document.has((*place, key))]
     for key in both:
         rule = 'a cell has either "arm" and "mobile" or "devices"'
         what = f'{rule}; as one of its devices, it is "{key}: {{kind: {key}, ...}}"'
@@ -47,7 +94,13 @@ def device_cell(document: Document, place: Place, kinds: Mapping[str, DeviceKind
     shape = None if both else document.read(DeviceCellShape, place)
     retry = document.read(RetryShape, (*place, "retry")) if document.has((*place, "retry")) else RetryShape()
     names = document.keys((*place, "devices"))
-    found = {role: _device(document, (*place, "devices", role), kinds) for role in names}
+    sharing = shared.named(document, place)
+    found = {
+        role: shared.in_role(document, (*place, "devices", role), common)
+        if role in sharing
+        else _device(document, (*place, "devices", role), kinds)
+        for role in names
+    }
     members = {role: device for role, device in found.items() if device is not None}
     tools = _tools(document, (*place, "devices"), members)
     if shape is None or retry is None or len(members) < len(found):
@@ -60,7 +113,10 @@ def device_cell(document: Document, place: Place, kinds: Mapping[str, DeviceKind
         members=tuple(members.items()),
         spaces=spaces,
         arrays=targets.groups(document, place, spaces),
+        grids=tuple((each.group, each.rows, each.columns) for each in arrays(document, place)),
+        shared=tuple(sharing.values()),
         queue_limit=shape.queue_limit,
+        goes_on=shape.on_restart == "go_on",
         zone_wait_s=shape.zone_wait_s,
         retry=Retry(**retry.model_dump()),
     )
@@ -69,7 +125,7 @@ def device_cell(document: Document, place: Place, kinds: Mapping[str, DeviceKind
 def _tools(document: Document, place: Place, members: Mapping[str, Robot]) -> dict[str, Robot]:
     """The devices that robots carry, by the role of the robot."""
     tools: dict[str, Robot] = {}
-    robots = [role for role in members if document.value((*place, role, "kind")) in OF_ROBOTS]
+    robots = [role for role, device in members.items() if device.goes]
     for role, device in members.items():
         here = (*place, role, "tool_of")
         carrier = document.value(here) if role not in robots and document.has(here) else None
@@ -87,24 +143,26 @@ def _tools(document: Document, place: Place, members: Mapping[str, Robot]) -> di
     return tools
 
 
-def _device(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Robot | None:
-    role, kind = str(place[-1]), document.value((*place, "kind"))
+def _device(document: Document, place: Place, kinds: Kinds) -> Robot | None:
+    role, kind = str(place[-1]), kinds.of_robots(document, place)
     if not is_name(role):
         document.problem(place, f"a role must be {NAME_RULE}", at=place)
         return None
-    if kind == ARM:
-        return arm(document, place, arm_model(document, place), ArmDeviceShape)
-    if kind == PERSON:
-        named = document.read(PersonShape, place)
-        return None if named is None else person(named.name or role)
-    if kind == MOBILE:
-        return mobile(document, place, MobileDeviceShape)
-    return _declared(document, place, kinds)
+    if kind is None:
+        return _machine(document, place, kinds)
+    return own_kinds.robot(document, place, kind, kinds.used)
 
 
-def _declared(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> Device | None:
-    shape = document.read(DeviceShape, place)
-    kind = _kind(document, (*place, "kind"), kinds)
+def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
+    written = kinds.in_python(document.value((*place, "kind")))
+    if isinstance(written, WrittenKind):
+        found = own_kinds.device(document, place, written, kinds.used)
+        shape, kind = found or (None, None)
+    else:
+        kind = _kind(document, (*place, "kind"), kinds)
+        name = document.value((*place, "kind"))
+        is_unknown = isinstance(name, str) and name not in kinds.names  # then nobody knows its keys
+        shape = None if is_unknown else document.read(DeviceShape, place)
     if shape is None or kind is None:
         return None
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
@@ -115,7 +173,7 @@ def _declared(document: Document, place: Place, kinds: Mapping[str, DeviceKind])
     return Device(
         name=name,
         mqtt=shape.mqtt or name,
-        link=Link.MQTT,
+        link=link(document, place, shape.link, OF_DEVICES),
         evidence=evidence,
         timeout_s=max(verb.at_most_s for verb in kind.verbs.values()),
         has_stop=shape.stop == "supported",
@@ -123,19 +181,17 @@ def _declared(document: Document, place: Place, kinds: Mapping[str, DeviceKind])
     )
 
 
-def _kind(document: Document, place: Place, kinds: Mapping[str, DeviceKind]) -> DeviceKind | None:
-    """The kind of that name; of a misspelt or a broken one None, with the problem kept."""
-    name, declared = document.value(place), document.keys(("kinds",))
-    if not isinstance(name, str) or name in declared:
-        return kinds.get(name) if isinstance(name, str) else None
-    known = [*declared, *RESERVED]
-    hint = nearest(name, known)
-    if not declared and not hint:
-        document.problem(
-            place, f'there is no kind {shown(name)}; declare it under "kinds" at the top of the file'
-        )
-    else:
-        document.problem(place, f"must be {choice(known)}, is {shown(name)}{hint}")
+def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
+    """The declared kind of that name; of a misspelt or a broken one None, with the problem kept."""
+    name = document.value(place)
+    if not isinstance(name, str) or name in kinds.names:
+        return kinds.declared.get(name) if isinstance(name, str) else None
+    hint = nearest(name, kinds.known)
+    if name in kinds.used.broken or not kinds.used.may_import:
+        return None
+    if hint or kinds.used.is_whole:  # else what could not be imported may have had it
+        own = "" if hint else '; one of your own is declared under "kinds" at the top of the file'
+        document.problem(place, f"must be {choice(kinds.known)}, is {shown(name)}{hint or own}")
     return None
 
 
@@ -156,7 +212,7 @@ def _is_proven(
     if verb.effect is Effect.QUERY and evidence is not Evidence.IDS:
         why = f"{verb.name} of {kind.name} is a query, and its answer has to name the command"
         document.problem(here, f"must be ids: {why}")
-    elif verb.effect is Effect.MOTION and evidence is Evidence.JOINTS and not verb.sets:
+    elif verb.effect is Effect.MOTION and evidence is Evidence.JOINTS and not verb.sets_facts:
         document.problem(here, f"facts cannot prove {verb.name} of {kind.name}: it sets none")
     elif spare_s < needed_s - ROUNDING_S:
         what = (

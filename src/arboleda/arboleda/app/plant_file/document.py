@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 from .problems import Problems
 from .yaml_marks import Mark, Node, YamlFault, clipped, parse
@@ -24,6 +24,7 @@ KINDS = {
     "model_type": "a mapping (key: value)",
     "dict_type": "a mapping (key: value)",
     "list_type": "a list [a, b, ...]",
+    "tuple_type": "a list [a, b, ...]",
     "float_type": "a number",
     "finite_number": "a finite number",
     "int_type": "a whole number",
@@ -47,6 +48,7 @@ class Document(Problems):
     def __init__(self, name: str, raw: bytes, folder: Path | None = None) -> None:
         super().__init__(name)
         self.folder = folder
+        self.files: dict[Path, bytes] = {}  # those of them that were read
         try:
             self._root, faults = parse(raw)
         except YamlFault as fault:

@@ -7,30 +7,24 @@ import keyword
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
-from arboleda.core.facts import Value
+from arboleda.kinds import rules
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Slot
+from arboleda.kinds.rules import SLOT
+from arboleda.model.facts import Value
 from arboleda.recipes.handles import DeviceHandle
 
 from .document import Document, Place, choice, nearest, shown
+from .registry import RESERVED
 from .shapes import MAPPING, NAME_RULE, KindShape, VerbShape, is_name
 
 T = TypeVar("T")
 Types = Mapping[str, "FactType | None"]
 SECTION: Place = ("kinds",)
-PLAIN = {
-    "int": FactType(type=int, first=0),
-    "number": FactType(type=float, first=0.0),
-    "text": FactType(type=str, first=""),
-    "bool": FactType(type=bool, first=False),
-}
-RESERVED = ("arm", "mobile", "person")
+PLAIN = {"int": rules.INT, "number": rules.NUMBER, "text": rules.TEXT, "bool": rules.BOOL}
 OF_STEPS = tuple(
     name for name, _ in inspect.getmembers(DeviceHandle, inspect.isfunction) if not name.startswith("_")
 )
 OF_FACTS = ("self", "at_most_s")  # what those steps have beside facts
-PATIENCE, LEAST_S = 3.0, 2.0  # a verb may take so many times `takes_s`, and never less than this
-LONGEST_WORD = 64
-SLOT = "$"
 
 
 def kinds(document: Document) -> dict[str, DeviceKind]:
@@ -51,7 +45,9 @@ def _kind(document: Document, name: str) -> DeviceKind | None:
         verb: _verb(document, (*place, "verbs", verb), facts) for verb in document.keys((*place, "verbs"))
     }
     types, whole = _right(facts), _right(verbs)
-    if shape is None or types is None or whole is None or not _lets_go(document, place, whole):
+    if shape is None or types is None or whole is None:
+        return None
+    if not _is_free_of(document, place, rules.release_objection(whole)):
         return None
     return DeviceKind(name=name, facts=types, verbs=whole) if named else None
 
@@ -66,7 +62,6 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
     parameters = _right(slots)
     if shape is None or parameters is None or sets is None or needs is None:
         return None
-    at_most_s = shape.at_most_s or max(LEAST_S, PATIENCE * shape.takes_s)
     verb = DeviceVerb(
         name=str(place[-1]),
         effect=shape.effect,
@@ -74,7 +69,7 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
         sets=sets,
         needs=tuple((fact, value) for fact, value in needs if not isinstance(value, Slot)),
         takes_s=shape.takes_s,
-        at_most_s=at_most_s,
+        at_most_s=shape.at_most_s or rules.patience_s(shape.takes_s),
         on_stop=shape.on_stop,
         holds=document.has((*place, "holds")),
         answers=answers or (),
@@ -84,10 +79,14 @@ def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:
 
 
 def _check_time(document: Document, place: Place, verb: DeviceVerb) -> bool:
-    if verb.at_most_s < verb.takes_s:
-        rule = f"must be at least takes_s, which is {verb.takes_s:g}"
-        document.problem((*place, "at_most_s"), f"{rule}; is {verb.at_most_s:g}")
-    return verb.at_most_s >= verb.takes_s
+    return _is_free_of(document, (*place, "at_most_s"), rules.time_objection(verb))
+
+
+def _is_free_of(document: Document, place: Place, objection: str | None) -> bool:
+    """Whether there is no objection; one that there is is kept."""
+    if objection is not None:
+        document.problem(place, objection)
+    return objection is None
 
 
 def _check_stop(document: Document, place: Place, verb: DeviceVerb) -> bool:
@@ -110,36 +109,7 @@ def _check_query(document: Document, place: Place, verb: DeviceVerb) -> bool:
 
 
 def _check_holds(document: Document, place: Place, verb: DeviceVerb) -> bool:
-    """Whether a verb that holds a part says so by one fact, a yes or no."""
-    here = (*place, "holds")
-    if not verb.holds:
-        return True
-    types = dict(verb.parameters)
-    values = [types[value.name].first if isinstance(value, Slot) else value for _, value in verb.sets]
-    if verb.effect is not Effect.SWITCH:
-        document.problem(here, f"only a switch holds a part, and this is a {verb.effect.value}")
-    elif len(values) != 1 or not isinstance(values[0], bool):
-        told = "must set exactly one fact, and that a bool: whether it holds a part"
-        document.problem(here, f"a verb that holds a part {told}")
-    elif len(types) > sum(isinstance(value, Slot) for _, value in verb.sets):
-        document.problem(here, "a verb that holds a part has no parameter but the one that it sets")
-    else:
-        return True
-    return False
-
-
-def _lets_go(document: Document, place: Place, verbs: Mapping[str, DeviceVerb]) -> bool:
-    """Whether what verbs hold is one part, and can be let go."""
-    holding = {name: verb.sets[0] for name, verb in verbs.items() if verb.holds}
-    facts = list(dict.fromkeys(fact for fact, _ in holding.values()))
-    if len(facts) > 1:
-        document.problem(place, f"a device holds one part; these facts say so: {', '.join(facts)}")
-    elif holding and all(value is True for _, value in holding.values()):
-        what = f"nothing lets go of the part: no verb with holds: part sets {facts[0]} to false"
-        document.problem(place, what)
-    else:
-        return True
-    return False
+    return _is_free_of(document, (*place, "holds"), rules.holding_objection(verb))
 
 
 def _answers(document: Document, place: Place, effect: Effect) -> tuple[Value, ...] | None:
@@ -188,35 +158,12 @@ def _type(document: Document, place: Place) -> FactType | None:
 
 
 def _listed(document: Document, place: Place) -> FactType | None:
-    """One of some words, or of some numbers; the first is what a virtual device begins with."""
-    values = document.value(place)
-    types = {type(value) for value in values}
-    if types == {int, float}:
-        values, types = [float(value) for value in values], {float}
-    wrong = next((index for index, value in enumerate(values) if not _is_word(value)), None)
-    if not values:
-        document.problem(place, "must have at least 1 value, has 0")
-    elif types == {bool}:
-        document.problem(place, "for true and false, write bool")
-    elif len(types) > 1:
-        document.problem(
-            place, "must be all words or all numbers; a word that looks like a number needs quotes"
-        )
-    elif wrong is not None:
-        rule = f"must be a number, or a word of 1 to {LONGEST_WORD} letters without {SLOT} before it"
-        document.problem((*place, wrong), f"{rule}; is {shown(values[wrong])}")
-    elif len(set(values)) < len(values):
-        twice = next(index for index, value in enumerate(values) if value in values[:index])
-        document.problem((*place, twice), f"{shown(values[twice])} is there twice")
-    else:
-        return FactType(type=types.pop(), words=tuple(values), first=values[0])
-    return None
-
-
-def _is_word(value: object) -> bool:
-    if isinstance(value, str):
-        return 0 < len(value) <= LONGEST_WORD and value.isprintable() and not value.startswith(SLOT)
-    return isinstance(value, int | float) and abs(value) < float("inf")
+    """One of some words, or of some numbers."""
+    try:
+        return rules.listed(document.value(place), shown)
+    except rules.ListError as error:
+        document.problem(place if error.index is None else (*place, error.index), str(error))
+        return None
 
 
 def _facts(
@@ -251,11 +198,8 @@ def _slot(document: Document, place: Place, fact: FactType, slots: Types) -> Slo
     given = slots[name]
     if given is None:
         return None
-    beyond = bool(fact.words) and not given.words
-    if beyond or not all(fact.takes(value) for value in given.words or (given.first,)):
-        document.problem(place, f"{name} may be {given.allowed()}, and {place[-1]} is {fact.allowed()}")
-        return None
-    return Slot(name=name)
+    fits = _is_free_of(document, place, rules.slot_objection(name, given, str(place[-1]), fact))
+    return Slot(name=name) if fits else None
 
 
 def _value(document: Document, place: Place, type: FactType) -> Value | None:
@@ -270,11 +214,17 @@ def _value(document: Document, place: Place, type: FactType) -> Value | None:
 
 def _is_named(document: Document, place: Place, what: str, taken: Sequence[str]) -> bool:
     """Whether the last key of `place` can be a name in a recipe, as `mill.run(program=1)` has three."""
-    name = str(place[-1])
-    good = is_name(name) and not keyword.iskeyword(name) and name not in taken
+    objection = name_objection(str(place[-1]), what, taken)
+    if objection is not None:
+        document.problem(place, objection, at=place)
+    return objection is None
+
+
+def name_objection(name: str, what: str, taken: Sequence[str]) -> str | None:
+    """Why something cannot have that name."""
     if not is_name(name):
-        document.problem(place, f"the name of {what} must be {NAME_RULE}", at=place)
-    elif not good:
-        why = "is a word of Python" if keyword.iskeyword(name) else "is taken"
-        document.problem(place, f"the name {shown(name)} {why}; give {what} another one", at=place)
-    return good
+        return f"the name of {what} must be {NAME_RULE}"
+    if not keyword.iskeyword(name) and name not in taken:
+        return None
+    why = "is a word of Python" if keyword.iskeyword(name) else "is taken"
+    return f"the name {shown(name)} {why}; give {what} another one"

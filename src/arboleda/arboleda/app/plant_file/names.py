@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from arboleda.recipes.storage_cell import ARM, MOBILE
+
 from .document import Document, Place, dotted, shown
 from .shapes import NAME_RULE, is_name
 
 RESERVED = ("plant", "system")  # first words of the plant's own ROS 2 topics
 
 
-def check_names(document: Document) -> None:
-    """Keeps a problem for each cell name that is none, each reserved word and each name used twice."""
+def check_names(document: Document, has_twin: Callable[[Place], bool]) -> None:
+    """Keeps a problem for each cell name that is none, each reserved word and each name used twice.
+
+    A device that `has_twin` may be drawn under another name.
+    """
     cells: list[Place] = [("cells", name) for name in document.keys(("cells",))]
-    arms: list[Place] = [(*cell, "arm") for cell in cells]
-    robots = [place for cell in cells for place in ((*cell, "arm"), (*cell, "mobile"))]
-    devices = [(*cell, "devices", role) for cell in cells for role in document.keys((*cell, "devices"))]
-    arms += [place for place in devices if document.value((*place, "kind")) == "arm"]
+    arms: list[Place] = [(*cell, ARM) for cell in cells]
+    robots = [place for cell in cells for place in ((*cell, ARM), (*cell, MOBILE))]
+    in_roles = [(*cell, "devices", role) for cell in cells for role in document.keys((*cell, "devices"))]
+    devices = [place for place in in_roles if not document.has((*place, "shared"))]
+    devices += [("shared", name) for name in document.keys(("shared",))]
+    arms += [place for place in devices if has_twin(place)]
     own = _names(document, robots, "name") + _names(document, devices, "name")
     names = [(str(cell[-1]), cell) for cell in cells] + own
     for name, place in names:
@@ -42,8 +51,8 @@ def _names(document: Document, robots: list[Place], key: str) -> list[tuple[str,
 
 
 def _is_role(place: Place) -> bool:
-    """Whether a place is that of a device, which may have the name of its role."""
-    return len(place) == 4 and place[2] == "devices"
+    """Whether a place is that of a device, which may have the name of its role, or of a shared one."""
+    return (len(place) == 4 and place[2] == "devices") or (len(place) == 2 and place[0] == "shared")
 
 
 def _differ(document: Document, names: list[tuple[str, Place]], what: str) -> None:
@@ -53,7 +62,8 @@ def _differ(document: Document, names: list[tuple[str, Place]], what: str) -> No
         by_default = what != "name" and not {place[-1], other[-1]} & {"mqtt", "twin"}
         if other != place and not by_default:
             named_by_role = _is_role(place)
-            own = f'; give it another, as in "name: {name}_{place[1]}"' if named_by_role else ""
+            by_role = named_by_role and place[0] == "cells"
+            own = f'; give it another, as in "name: {name}_{place[1]}"' if by_role else ""
             at = place if named_by_role else None
             document.problem(
                 place, f"the {what} {shown(name)} is already that of {dotted(other)}{own}", at=at

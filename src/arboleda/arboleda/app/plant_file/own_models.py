@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from arboleda.core.errors import ConfigError
-from arboleda.core.outside import plain
 from arboleda.kinds.arm import Description, Joint
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
 from arboleda.wire.units import to_wire
 
 from .. import user_file
@@ -95,7 +95,9 @@ def _content(document: Document, place: Place, file: str) -> bytes | None:
     else:
         largest = xml_marks.LARGEST if file.endswith(".urdf") else yaml_marks.LARGEST
         try:
-            return user_file.read_bytes(_path(document, file), largest)
+            path = _path(document, file)
+            content = document.files[path] = user_file.read_bytes(path, largest)
+            return content
         except ConfigError as error:
             document.problem(place, plain(str(error), LONGEST))
     return None

@@ -1,4 +1,4 @@
-"""Recipes that a plant file uses: of Python files beside it, or of installed modules."""
+"""Recipes, kinds and drivers that a plant file uses: of Python files beside it, or of installed modules."""
 
 from __future__ import annotations
 
@@ -6,63 +6,31 @@ import ast
 import importlib
 import inspect
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from hashlib import sha256
 from pathlib import Path
-from traceback import extract_tb
 from types import ModuleType
+from typing import Any
 
-from arboleda.core.errors import ArboledaError, ConfigError
-from arboleda.core.outside import plain
-from arboleda.core.recipe import Recipe
+from arboleda.drivers.port import spec_of
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Link
+from arboleda.model.recipe import Recipe
 from arboleda.recipes.storage import RECIPES
 
 from .. import user_file
 from .document import Document, Place, nearest, shown
+from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
+from .used import LONGEST, Spot, Used, Watch, Written, said
 
 SECTION: Place = ("uses",)
 ENDING = ".py"
 LARGEST = 256 * 1024  # bytes of a file
-LONGEST = 500  # characters of a path, or of what an error says
 TAKEN = tuple(each.name for each in RECIPES)
-Watch = Callable[["Spot", str], None]
-"""Told what begins now, and where it stands: whoever watches knows what takes too long."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Spot:
-    """A line of a file of Python, as problems name it."""
-
-    file: str
-    line: int = 1
-
-    def problem(self, sentence: str) -> str:
-        return f"{plain(self.file, LONGEST)}:{self.line}:1: {plain(sentence, LONGEST)}"
-
-
-@dataclass
-class Used:
-    """What `uses` has brought: recipes by name, and the files that problems can be found in."""
-
-    recipes: dict[str, Recipe] = field(default_factory=dict)
-    files: dict[str, str] = field(default_factory=dict)  # as Python knows them: as people do
-
-    def spot(self, recipe: Recipe) -> Spot:
-        """Where the function of a recipe begins."""
-        code = inspect.unwrap(recipe.build).__code__
-        return Spot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
-
-    def where(self, error: BaseException, otherwise: Spot) -> Spot:
-        """The line of a user's file that an error came by last."""
-        frames = [frame for frame in extract_tb(error.__traceback__) if frame.filename in self.files]
-        if isinstance(error, SyntaxError) and error.filename in self.files:
-            return Spot(file=self.files[error.filename], line=error.lineno or 1)
-        if not frames:
-            return otherwise
-        return Spot(file=self.files[frames[-1].filename], line=frames[-1].lineno or 1)
+LINKS = tuple(each.value for each in Link)
 
 
 def listed(document: Document) -> tuple[str, ...]:
@@ -75,28 +43,17 @@ def listed(document: Document) -> tuple[str, ...]:
 
 
 def imported(document: Document, words: Sequence[str], watch: Watch) -> Used:
-    """The recipes of all of them; the problems of those that cannot be imported are kept."""
-    used = Used()
+    """What all of them bring; the problems of those that cannot be imported are kept."""
+    used = Used(watch=watch)
     for index, word in enumerate(words):
         place = (*SECTION, index)
         is_file = word.endswith(ENDING) or "/" in word
         module = (_file if is_file else _module)(document, place, word, used, watch)
-        if module is not None:
+        if module is None:
+            used.is_whole = False
+        else:
             _collect(document, place, module, used)
     return used
-
-
-def said(error: BaseException) -> str:
-    """An error in words, as a sentence goes on."""
-    if isinstance(error, ArboledaError):
-        return str(error)
-    if isinstance(error, SystemExit):
-        return f"it ends the program (SystemExit: {error})"
-    try:
-        text = str(error.msg if isinstance(error, SyntaxError) else error)
-    except Exception:  # noqa: BLE001 - an error of the user's may have no words
-        text = ""
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
 def _file(document: Document, place: Place, word: str, used: Used, watch: Watch) -> ModuleType | None:
@@ -116,13 +73,14 @@ def _file(document: Document, place: Place, word: str, used: Used, watch: Watch)
         return None
     used.files |= {str(each): str(Path(known_as).parent / each.name) for each in _beside(path)}
     used.files[str(path)] = known_as
+    document.files[path] = source
     watch(Spot(file=known_as), "importing this")
     try:
-        with _importing(path.parent):
+        with _importing(path.parent, document.files):
             module = _run(path, source)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         spot = used.where(error, Spot(file=known_as))
-        document.keep_those_of(ConfigError((spot.problem(f"cannot be imported: {said(error)}"),)))
+        used.keep(document, spot.problem(f"cannot be imported: {said(error)}"))
         return None
     _check_twice(document, known_as, source)
     return module
@@ -163,8 +121,9 @@ def _run(path: Path, source: bytes) -> ModuleType:
 
 
 @contextmanager
-def _importing(folder: Path) -> Iterator[None]:
-    """What lies in `folder` can be imported meanwhile, and is forgotten: other plants have other files."""
+def _importing(folder: Path, files: dict[Path, bytes]) -> Iterator[None]:
+    """What lies in `folder` can be imported meanwhile, is added to `files`, and is forgotten: other plants
+    have other files."""
     before, writes = set(sys.modules), sys.dont_write_bytecode
     sys.path.insert(0, str(folder))
     sys.dont_write_bytecode = True
@@ -177,47 +136,61 @@ def _importing(folder: Path) -> Iterator[None]:
         for name in set(sys.modules) - before:
             file = getattr(sys.modules[name], "__file__", None)
             if file is not None and folder in Path(file).parents and not name.startswith("arboleda_uses_"):
+                with suppress(OSError):  # whoever imports may have deleted it since
+                    files[Path(file)] = Path(file).read_bytes()
                 del sys.modules[name]
 
 
 def _collect(document: Document, place: Place, module: ModuleType, used: Used) -> None:
-    found = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
-    if not found:
-        document.problem(place, 'has no recipe; one is a function with @recipe("its name") before it')
-    for each in found.values():
-        problem = _objection(each, used)
-        if not inspect.isfunction(inspect.unwrap(each.build)):
-            document.problem(place, f"the recipe {shown(each.name)} is no function")
-        elif problem is None:
-            used.recipes[each.name] = each
+    recipes = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
+    kinds = {id(each): each for each in vars(module).values() if isinstance(each, IN_PYTHON)}
+    drivers = {id(spec): spec for each in vars(module).values() if (spec := spec_of(each)) is not None}
+    if not recipes and not kinds and not drivers:
+        how = 'one is a function with @recipe("its name") or @kind("its name") before it'
+        document.problem(place, f"has neither a recipe nor a kind; {how}, a driver a class with @driver")
+        used.is_whole = False
+    for recipe in recipes.values():
+        if not inspect.isfunction(inspect.unwrap(recipe.build)):
+            document.problem(place, f"the recipe {shown(recipe.name)} is no function")
+        elif problem := _objection("recipe", recipe, used.recipes, TAKEN, used):
+            used.keep(document, used.spot(recipe).problem(problem))
         else:
-            document.keep_those_of(ConfigError((used.spot(each).problem(problem),)))
+            used.recipes[recipe.name] = recipe
+    for kind in kinds.values():
+        if problem := _objection("kind", kind, used.kinds, RESERVED, used):
+            used.keep(document, used.spot(kind).problem(problem))
+        else:
+            used.kinds[kind.name] = kind
+    for spec in drivers.values():
+        if problem := _objection("driver", spec, used.drivers, LINKS, used):
+            used.keep(document, used.spot(spec).problem(problem))
+        else:
+            used.drivers[spec.name] = spec
 
 
-def _objection(recipe: Recipe, used: Used) -> str | None:
-    """Why it cannot be a recipe beside those that there are."""
-    if not isinstance(recipe.name, str) or not is_name(recipe.name):
-        return f"{shown(recipe.name)} cannot be the name of a recipe; it must be {NAME_RULE}"
-    if recipe.name in TAKEN:
-        return f"the recipe {shown(recipe.name)} comes with Arboleda; give this one another name"
-    other = used.recipes.get(recipe.name)
-    if other is None or other is recipe:
+def _objection(
+    what: str, found: Written, there: Mapping[str, Any], taken: Sequence[str], used: Used
+) -> str | None:
+    """Why it cannot be one beside those that there are."""
+    name = found.name
+    if not isinstance(name, str) or not is_name(name):
+        return f"{shown(name)} cannot be the name of a {what}; it must be {NAME_RULE}"
+    if name in taken:
+        return f"the {what} {shown(name)} comes with Arboleda; give this one another name"
+    other = there.get(name)
+    if other is None or other is found:
         return None
     first = used.spot(other)
-    return (
-        f"the recipe {shown(recipe.name)} is there twice; the other is on line {first.line} of {first.file}"
-    )
+    return f"the {what} {shown(name)} is there twice; the other is on line {first.line} of {first.file}"
 
 
 def _check_twice(document: Document, known_as: str, source: bytes) -> None:
-    """Keeps a problem for each recipe whose function has the name of a later one: Python forgets it."""
+    """Keeps a problem for each recipe and kind whose function's name a later one has: Python forgets it."""
     lines: dict[str, int] = {}
     for node in ast.parse(source).body:
         if not isinstance(node, ast.FunctionDef | ast.ClassDef):
             continue
-        marked = [
-            each for each in node.decorator_list if isinstance(each, ast.Call) and _is_recipe(each.func)
-        ]
+        marked = [each for each in node.decorator_list if isinstance(each, ast.Call) and _marks(each.func)]
         first = lines.setdefault(node.name, node.lineno)
         if first != node.lineno and marked:
             spot = Spot(file=known_as, line=node.lineno)
@@ -225,6 +198,6 @@ def _check_twice(document: Document, known_as: str, source: bytes) -> None:
             document.keep_those_of(ConfigError((spot.problem(sentence),)))
 
 
-def _is_recipe(decorator: ast.expr) -> bool:
+def _marks(decorator: ast.expr) -> bool:
     name = decorator.attr if isinstance(decorator, ast.Attribute) else getattr(decorator, "id", "")
-    return name == "recipe"
+    return name in ("recipe", "kind")

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterable
 from itertools import pairwise
 
-from arboleda.core.belief import APART_S
-from arboleda.core.model import Evidence
+from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
+from arboleda.model.plant_model import Evidence
 from arboleda.recipes.storage_cell import Path
 
 from .document import Document, Place, choice

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from arboleda.core.model import Pose
+from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_cell import Path
 
 from .document import Document, Place, choice

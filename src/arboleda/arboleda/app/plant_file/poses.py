@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import count, repeat
 
-from arboleda.core.counting import counted
-from arboleda.core.model import Pose
-from arboleda.core.sentence import Phrase, Sentence
 from arboleda.kinds.arm import Joint
+from arboleda.model.counting import counted
+from arboleda.model.plant_model import Pose
+from arboleda.model.sentence import Phrase, Sentence
 
 from .document import Document, Place
 from .robot_models import TO_SI, millimetres

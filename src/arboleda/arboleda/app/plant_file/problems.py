@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 from .yaml_marks import Mark
 

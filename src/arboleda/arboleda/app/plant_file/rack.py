@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from itertools import product
 
-from arboleda.core.counting import counted
-from arboleda.core.model import Pose
+from arboleda.model.counting import counted
+from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_cell import Palletizing
 
 from .document import Place, shown

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations as pairs
 
 from py_trees import behaviours, composites, decorators, timers
 from py_trees.behaviour import Behaviour
 
-from arboleda.core.commands import Work
-from arboleda.core.context import Context
-from arboleda.core.errors import ConfigError
-from arboleda.core.leaves import Act
-from arboleda.core.model import Cell, PlantModel
 from arboleda.core.plant import Plant
-from arboleda.core.recipe import Recipe
-from arboleda.core.task import Order
+from arboleda.model.commands import Work
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Cell, PlantModel
+from arboleda.model.recipe import Recipe
+from arboleda.model.task import Order
 from arboleda.recipes.errors import RoleError
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act
 
 from .document import Document, Place, choice, nearest, shown
-from .own_recipes import Used, Watch, said
+from .own_recipes import SECTION
+from .used import Used, Watch, said
 
 SPELLABLE = re.compile(r"(?!#)[!-~]+", re.ASCII)
 MOST = 200  # combinations of parameters that are tried
@@ -67,12 +68,17 @@ class Trial:
             if name not in offered:
                 self._keep(problems)
         for cell in cells:
-            if not self.offers[cell.name] and self.used.recipes and offered:
+            if not (self.offers[cell.name] or cell.recipes) and self._brings_all(offered):
                 place = ("cells", cell.name)
                 self.document.problem(
                     place, 'offers no recipe: none that "uses" brings fits its devices', at=place
                 )
         return self.offers
+
+    def _brings_all(self, offered: Collection[str]) -> bool:
+        """Whether nothing else is told of recipes that do not fit: of some that fit elsewhere, or of none."""
+        none = self.used.is_whole and not self.used.recipes and self.document.has(SECTION)
+        return bool(offered) or none
 
     def _named(self, cell: Cell) -> list[str] | None:
         """The recipes that the cell names and that there are; None where it names none."""
@@ -98,6 +104,9 @@ class Trial:
     def _fits(self, cell: Cell, recipe: Recipe, named: bool) -> bool:
         """Whether the cell has what a recipe needs, or says so; what is wrong with its builds is kept."""
         spot = self.used.spot(recipe)
+        if not named and (empty := _without_value(cell, recipe)):
+            self.misfits.setdefault(recipe.name, []).append(spot.problem(empty))
+            return False
         if unfit := _unspellable(cell, recipe):
             self._keep([spot.problem(unfit)])
             return True
@@ -200,12 +209,20 @@ def _sampled(words: Sequence[Sequence[str]], number: int) -> list[str]:
     return chosen
 
 
+def _without_value(cell: Cell, recipe: Recipe) -> str | None:
+    """That a parameter can be nothing in a cell: it has no such targets."""
+    for each in recipe.parameters:
+        if not each.words(cell):
+            return f"{each.name} of {recipe.name} has no value to choose"
+    return None
+
+
 def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
     """Why no task text can name a value of a parameter."""
+    if empty := _without_value(cell, recipe):
+        return empty
     for each in recipe.parameters:
         words = each.words(cell)
-        if not words:
-            return f"{each.name} of {recipe.name} has no value to choose"
         for word in words:
             if not SPELLABLE.fullmatch(word):
                 rule = "one word of ASCII letters, digits and signs, not beginning with #"

@@ -1,4 +1,4 @@
-"""The arms and mobile robots of a plant file: the model's numbers, narrowed by the file and never widened."""
+"""The robots and people of a plant file: a model's numbers are narrowed by the file and never widened."""
 
 from __future__ import annotations
 
@@ -6,16 +6,32 @@ import math
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from arboleda.core.model import Evidence, Link
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
+from arboleda.kinds.person import Person, person
+from arboleda.model.plant_model import Evidence
 
+from . import drivers
 from .document import Document, Place, choice, closest, nearest, shown
 from .own_models import is_own, own_model
 from .poses import PoseReader, in_file_unit, span
 from .robot_models import TO_SI, ArmModel, arm_models, millimetres, mobile_models
-from .shapes import LIMITS, MAPPING, SPEED, ArmShape, BaseShape, GridShape, MobileShape, RobotShape
+from .shapes import (
+    LIMITS,
+    MAPPING,
+    SPEED,
+    ArmDeviceShape,
+    ArmShape,
+    BaseShape,
+    DrivenArmShape,
+    DrivenMobileShape,
+    GridShape,
+    MobileDeviceShape,
+    MobileShape,
+    PersonShape,
+    RobotShape,
+)
 
 T = TypeVar("T")
 
@@ -42,17 +58,18 @@ def arm_model(document: Document, place: Place) -> ArmModel | None:
 
 
 def arm(
-    document: Document, place: Place, model: ArmModel | None, written: type[ArmShape] = ArmShape
+    document: Document, place: Place, model: ArmModel | None, written: type[ArmShape] | None = None
 ) -> Arm | None:
     """The arm of a cell; None, with its problems kept, where something is wrong with it."""
-    shape = document.read(written, place)
+    of_a_cell = DrivenArmShape if document.has((*place, drivers.KEY)) else ArmShape
+    shape = document.read(written or of_a_cell, place)
     base = _section(document, (*place, "base"), BaseShape)
     _check_homing(document, place, shape)
     tolerance = _tolerance(document, (*place, "tolerance"), model) if model else None
     if shape is None or base is None or model is None:
         return None
     return Arm(
-        **_common(shape, place),
+        **_common(document, shape, place),
         model=model.name,
         twin=shape.twin or shape.name or str(place[-1]),
         base=_placement(base),
@@ -65,9 +82,10 @@ def arm(
     )
 
 
-def mobile(document: Document, place: Place, written: type[MobileShape] = MobileShape) -> Mobile | None:
+def mobile(document: Document, place: Place, written: type[MobileShape] | None = None) -> Mobile | None:
     """The mobile robot of a cell; None, with its problems kept, where something is wrong with it."""
-    shape = document.read(written, place)
+    of_a_cell = DrivenMobileShape if document.has((*place, drivers.KEY)) else MobileShape
+    shape = document.read(written or of_a_cell, place)
     grid = _section(document, (*place, "grid"), GridShape)
     _check_homing(document, place, shape)
     model = _model(document, (*place, "model"), mobile_models(), default="mobile")
@@ -78,12 +96,28 @@ def mobile(document: Document, place: Place, written: type[MobileShape] = Mobile
         fastest = f"{model.speed * 1000:g} mm/s, the speed of the model {model.name}"
         document.problem((*place, "speed_mm_s"), f"must be at most {fastest}, is {shape.speed_mm_s:g}")
     return Mobile(
-        **_common(shape, place),
+        **_common(document, shape, place),
         model=model.name,
         grid=Grid(origin=_placement(grid), pitch=millimetres(grid.pitch_mm)),
         speed=speed,
         timeout_s=shape.timeout_s,
     )
+
+
+def arm_device(document: Document, place: Place) -> Arm | None:
+    """The same of one that a cell has among its devices."""
+    return arm(document, place, arm_model(document, place), ArmDeviceShape)
+
+
+def mobile_device(document: Document, place: Place) -> Mobile | None:
+    """The same of one that a cell has among its devices."""
+    return mobile(document, place, MobileDeviceShape)
+
+
+def person_device(document: Document, place: Place) -> Person | None:
+    """A person at the cell; None, with the problems kept, where something is wrong."""
+    named = document.read(PersonShape, place)
+    return None if named is None else person(named.name or str(place[-1]))
 
 
 def _check_homing(document: Document, place: Place, shape: RobotShape | None) -> None:
@@ -96,12 +130,12 @@ def _check_homing(document: Document, place: Place, shape: RobotShape | None) ->
         document.problem((*place, "home_at_start"), needs)
 
 
-def _common(shape: RobotShape, place: Place) -> dict[str, Any]:
+def _common(document: Document, shape: RobotShape, place: Place) -> dict[str, Any]:
     name = shape.name or str(place[-1])
     return {
         "name": name,
         "mqtt": shape.mqtt or name,
-        "link": Link(shape.link),
+        "link": drivers.link(document, place, shape.link, drivers.COME_WITH_IT),
         "evidence": shape.evidence,
         "assume_homed": shape.assume_homed,
         "home_at_start": shape.home_at_start,

@@ -8,10 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, TypeAdapter
 from pydantic_core import PydanticCustomError
 
-from arboleda.core.commands import OnStop
-from arboleda.core.model import Cell, Evidence, Retry, Timing
 from arboleda.kinds.declared import Effect
+from arboleda.model.commands import OnStop
+from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Timing
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.recorder.beginning import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
 
@@ -56,6 +57,7 @@ Speed = Annotated[float, Field(ge=0.1, allow_inf_nan=False)]
 Reach = Literal["mqtt", "ros", "none"]
 QUEUE_LIMIT = 100
 QueueLimit = Annotated[int, Field(ge=1, le=10_000)]
+OnRestart = Literal["hold", "go_on"]
 Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
 
 
@@ -65,14 +67,29 @@ class PlantShape(Shape):
     name: Annotated[str, AfterValidator(_plant_name)]
     uses: Any = None
     kinds: Any = None
+    shared: Any = None
     cells: Annotated[dict[str, Any], Field(min_length=1)]
     timing: Any = None
     mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
     foreign_commands: Literal["refuse", "obey"] = "refuse"
+    history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
     zones: Any = None
+
+
+class FileShape(PlantShape):
+    """All of the file: the plant, and what is recorded of it."""
+
+    record: Any = None
+
+
+class RecordShape(Shape):
+    """`record:`, how much of the flight record is kept."""
+
+    megabytes: Annotated[float, Field(ge=2, le=1_000_000, allow_inf_nan=False)] = Limits.megabytes
+    days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = Limits.days
 
 
 class TimingShape(Shape):
@@ -101,6 +118,7 @@ class CellShape(Shape):
     stations: Any = None
     palletizing: Any = None
     queue_limit: QueueLimit = QUEUE_LIMIT
+    on_restart: OnRestart = "hold"
     drive_to_start: bool = True
     retry: Any = None
     piece_check: bool = False
@@ -114,6 +132,7 @@ class DeviceCellShape(Shape):
     recipes: Annotated[list[str], Field(min_length=1)] = Field(default_factory=list)
     default_recipe: str = ""
     queue_limit: QueueLimit = QUEUE_LIMIT
+    on_restart: OnRestart = "hold"
     retry: Any = None
     targets: Any = None
     groups: Any = None
@@ -142,14 +161,25 @@ class VerbShape(Shape):
 
 
 class DeviceShape(Shape):
-    """One device of a cell, in the role that is its key; an empty `name` is the role, `mqtt` the name."""
+    """One device of a cell, in the role that is its key; an empty `name` is the role, `mqtt` the name.
+
+    A `link` is the short form of a `driver` that comes with Arboleda.
+    """
 
     kind: str
     name: Name = ""
     mqtt: Name = ""
+    link: Literal["mqtt", "ros"] = "mqtt"
+    driver: Any = None
     evidence: Literal["ids", "facts", "joints", "state"] = "ids"
     stop: Literal["supported", "none"] = "supported"
     tool_of: str = ""
+
+
+class SharedRoleShape(Shape):
+    """A device that several cells have, in a role of one of them."""
+
+    shared: str
 
 
 class RetryShape(Shape):
@@ -160,11 +190,15 @@ class RetryShape(Shape):
 
 
 class RobotShape(Shape):
-    """What an arm and a mobile robot have in common; an empty `mqtt` is the robot's own name."""
+    """What an arm and a mobile robot have in common; an empty `mqtt` is the robot's own name.
+
+    A `link` is the short form of a `driver` that comes with Arboleda.
+    """
 
     name: Name
     mqtt: Name = ""
     link: Reach
+    driver: Any = None
     evidence: Annotated[Evidence, Field(strict=False)]
     assume_homed: bool = False
     home_at_start: bool = False
@@ -204,12 +238,17 @@ class ModelShape(Shape):
     steps: Any = None
 
 
-class ArmDeviceShape(ArmShape):
+class DrivenArmShape(ArmShape):
+    """An arm that needs no link, as it has a driver."""
+
+    link: Reach = "mqtt"
+
+
+class ArmDeviceShape(DrivenArmShape):
     """An arm in a role; an empty `name` is the role."""
 
-    kind: Literal["arm"]
+    kind: str
     name: Name = ""
-    link: Reach = "mqtt"
     evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
 
 
@@ -222,19 +261,24 @@ class MobileShape(RobotShape):
     speed_mm_s: Speed = 0.0
 
 
-class MobileDeviceShape(MobileShape):
+class DrivenMobileShape(MobileShape):
+    """A mobile robot that needs no link, as it has a driver."""
+
+    link: Reach = "mqtt"
+
+
+class MobileDeviceShape(DrivenMobileShape):
     """A mobile robot in a role; an empty `name` is the role."""
 
-    kind: Literal["mobile"]
+    kind: str
     name: Name = ""
-    link: Reach = "mqtt"
     evidence: Annotated[Evidence, Field(strict=False)] = Evidence.IDS
 
 
 class PersonShape(Shape):
     """A person in a role; an empty `name` is the role."""
 
-    kind: Literal["person"]
+    kind: str
     name: Name = ""
 
 
@@ -242,6 +286,13 @@ class NodeShape(Shape):
     """Where a mobile robot stands at a target."""
 
     node: Annotated[int, Field(ge=0)]
+
+
+class ArrayShape(Shape):
+    """A group of targets by its corners, of each robot that goes there."""
+
+    grid: Annotated[list[Annotated[int, Field(ge=1, le=100)]], Field(min_length=2, max_length=2)]
+    corners: Annotated[dict[str, Any], Field(min_length=1)]
 
 
 class BaseShape(Shape):

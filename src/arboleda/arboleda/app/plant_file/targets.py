@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
-from arboleda.core.model import Pose, Robot, Workspace
-from arboleda.core.sentence import OWN
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Pose, Robot, Workspace
 
+from . import arrays
 from .document import Document, Place, choice, nearest, shown
-from .poses import PoseReader
-from .shapes import MAPPING, NAME_RULE, WORDS, NodeShape, is_name
-
-START = "home"  # the target where each robot waits
+from .shapes import MAPPING, NAME_RULE, WORDS, is_name
+from .spots import START, spot
 
 
 def workspaces(
@@ -24,7 +20,7 @@ def workspaces(
     `tools` are the devices that robots carry, by the role of the robot.
     """
     here = (*place, "targets")
-    movers = {role: robot for role, robot in roles.items() if isinstance(robot, (Arm, Mobile))}
+    movers = {role: robot for role, robot in roles.items() if robot.goes}
     if not document.has(here):
         for role in movers:
             document.problem(place, f'{role} goes nowhere: the key "targets" is missing')
@@ -37,9 +33,13 @@ def workspaces(
         document.read_plain(MAPPING, (*here, name))
         for role in document.keys((*here, name)):
             if role in movers:
-                spots[role].append(_spot(document, (*here, name, role), movers[role]))
+                spots[role].append(spot(document, (*here, name, role), movers[role], name))
             else:
                 _refuse_role(document, (*here, name, role), movers)
+    for array in arrays.arrays(document, place):
+        for role, poses in arrays.poses(document, place, array, movers).items():
+            spots[role] += poses
+        _check_names(document, (*place, "groups", array.group), array, document.keys(here))
     spaces = [
         _workspace(document, here, role, robot, spots[role], tools.get(role))
         for role, robot in movers.items()
@@ -58,10 +58,14 @@ def groups(
     document.read_plain(MAPPING, here)
     known = {pose.name for space in spaces for pose in space.poses}
     found = []
+    of_corners = {array.group: array.names for array in arrays.arrays(document, place)}
     for name in document.keys(here):
         if not is_name(name) or name in known:
             rule = f"a group must be {NAME_RULE}" if not is_name(name) else "a target has this name already"
             document.problem((*here, name), rule, at=(*here, name))
+        if arrays.is_array(document, (*here, name)):
+            found.append((name, of_corners.get(name, ())))
+            continue
         names = document.read_plain(WORDS, (*here, name)) or []
         for index, each in enumerate(names):
             if each not in known:
@@ -69,6 +73,13 @@ def groups(
                 document.problem((*here, name, index), f"{must}, is {shown(each)}{nearest(each, known)}")
         found.append((name, tuple(names)))
     return tuple(found)
+
+
+def _check_names(document: Document, place: Place, array: arrays.Array, targets: Collection[str]) -> None:
+    """Keeps a problem where an array makes a target that there is."""
+    taken = [name for name in array.names if name in targets]
+    if taken:
+        document.problem(place, f"it makes a target {shown(taken[0])}, and there is one already", at=place)
 
 
 def _workspace(
@@ -87,20 +98,6 @@ def _workspace(
         document.problem(place, f'{role} needs a target "{START}", where it waits')
         return None
     return Workspace(robot=robot, tool=tool, home=home, poses=poses)
-
-
-def _spot(document: Document, place: Place, robot: Robot) -> Pose | None:
-    """Where one robot stands at one target."""
-    name = str(place[-2])
-    if isinstance(robot, Mobile):
-        shape = document.read(NodeShape, place)
-        if shape is not None and shape.node >= robot.grid.size:
-            document.problem((*place, "node"), f"must be 0 to {robot.grid.size - 1}, is {shape.node}")
-            return None
-        return None if shape is None else Pose(name=name, title=OWN(text=name), q=shape.node)
-    assert isinstance(robot, Arm)
-    reader = PoseReader(document=document, cell=str(place[1]), model=robot.model, joints=robot.joints)
-    return reader.home(place) if name == START else reader.pose(place, OWN(text=name))
 
 
 def _refuse_role(document: Document, place: Place, movers: Mapping[str, Robot]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element, SubElement
 
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 
 from .document import choice, nearest, shown
 from .problems import Problems

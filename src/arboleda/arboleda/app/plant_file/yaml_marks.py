@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 
-from arboleda.core.outside import plain
+from arboleda.model.outside import plain
 
 LARGEST = 256 * 1024  # bytes of a file
 MOST_VALUES = 50_000  # values after aliases are followed

@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from arboleda.core.model import Cell, Crossing, Interlock, Pose, Workspace
-from arboleda.kinds.declared import Device, UseError
+from arboleda.kinds.declared import UseError
+from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Workspace
 from arboleda.recipes.storage import plan_problems
 from arboleda.recipes.storage_cell import StorageCell
 
@@ -158,7 +158,7 @@ def _zone(document: Document, name: str, cells: Sequence[Cell]) -> Zone:
 def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tuple[Interlock, ...]:
     """The devices of `free_while`, each with the facts that it says while it is not in the zone."""
     here = (*place, "free_while")
-    devices = {device.name: device for cell in cells for device in cell.robots if isinstance(device, Device)}
+    devices = {device.name: device for cell in cells for device in cell.robots if device.verb_names}
     found = []
     for name in document.keys(here):
         if name not in devices:
@@ -180,6 +180,7 @@ def _interlocks(document: Document, place: Place, cells: Sequence[Cell]) -> tupl
 def _named_devices(document: Document) -> list[str]:
     """The names of all devices that the file has, right or wrong."""
     cells: list[Place] = [("cells", name, "devices") for name in document.keys(("cells",))]
+    cells.append(("shared",))
     places = [(*cell, role) for cell in cells for role in document.keys(cell)]
     return [str(document.value((*place, "name")) or place[-1]) for place in places]
 
@@ -201,11 +202,11 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
     if cell is None:
         return None
     poses, pose = _poses(cell), " ".join(words)
-    if pose not in poses and not isinstance(cell, StorageCell):
+    if pose not in poses and not cell.is_storage:
         known = f"targets of {name} are {choice(poses)}" if poses else f"{name} has no targets"
         document.problem(place, f"{known}, is {shown(text)}{nearest(pose, poses)}")
         return None
-    if pose not in poses and isinstance(cell, StorageCell):
+    if pose not in poses and cell.is_storage:
         stations = f'"station 0" to "station {len(cell.stations) - 1}"'
         pickups = ", ".join(f'"{word}"' for word in pickup_names(cell.pickup, cell.pickups))
         known = f'poses of {name} are "home", {pickups} and {stations}'
@@ -216,7 +217,7 @@ def _spot(document: Document, place: Place, text: str, cells: Sequence[Cell]) ->
 
 def _poses(cell: Cell) -> dict[str, Pose]:
     """The poses of a cell by the names they have in a plant file."""
-    if not isinstance(cell, StorageCell):
+    if not cell.is_storage:
         return {pose.name: pose for space in cell.spaces for pose in space.poses}
     pickups = pickup_names(cell.pickup, cell.pickups)
     return {"home": cell.home} | pickups | {pose.name: pose for pose in cell.stations}

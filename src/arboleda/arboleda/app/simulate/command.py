@@ -8,13 +8,10 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from arboleda.simulator.climate import LEVELS
+from arboleda.simulator.levels import LEVELS
 
 from ..user_file import check_writable
-from . import one, screen
-from .many import Many
-from .request import CYCLES, LEVEL, SEED, SEEDS, Request
-from .workers import processors
+from .defaults import CYCLES, LEVEL, SEED, SEEDS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
 
@@ -93,6 +90,11 @@ def simulate(
     trace: Trace = False,
     jobs: Jobs = None,
 ) -> None:
+    from . import one, screen  # the simulator takes a while to load, and only this command needs it
+    from .many import Many
+    from .request import Request
+    from .workers import processors
+
     alone = trace or record is not None
     if alone and ((seeds or 1) > 1 or until_failure):
         raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 from arboleda.simulator import plants
 
 from .. import config

@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from arboleda.core.errors import ConfigError
+from arboleda.model.errors import ConfigError
 from arboleda.simulator.run import MINUTE_S
 
 from .. import user_file

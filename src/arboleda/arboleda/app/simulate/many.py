@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 from arboleda.simulator.run import Result
 
 from . import report, story, summary

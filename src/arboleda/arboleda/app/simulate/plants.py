@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
 
-from arboleda.core.model import Cell, Link, PlantModel
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Link, PlantModel
+
+ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # who has no board on MQTT, and gets a virtual one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,12 +25,8 @@ class Plant:
 
     @cached_property
     def model(self) -> PlantModel:
-        """As it is simulated, every robot on MQTT, where the simulator has boards for them.
-
-        ConfigError where it has cells that cannot be simulated.
-        """
-        cells = tuple(_on_boards(cell) for cell in self.declared.cells)
-        return replace(self.declared, cells=cells)
+        """As it is simulated: every robot on MQTT, where the simulator has boards for them."""
+        return self.declared.on_boards(*ELSEWHERE)
 
 
 class Plants(Protocol):
@@ -53,11 +50,5 @@ def notes(plants: Iterable[Plant]) -> list[str]:
     robots = [robot for plant in plants for robot in plant.declared.robots.values()]
     names = {link: ", ".join(robot.name for robot in robots if robot.link is link) for link in Link}
     instead = "simulated as if each had a virtual board on MQTT"
-    others = [link for link in (Link.ROS, Link.NONE) if names[link]]
+    others = [link for link in ELSEWHERE if names[link]]
     return [f"declared link: {link.value}, {instead}: {names[link]}" for link in others]
-
-
-def _on_boards(cell: Cell) -> StorageCell:
-    if not isinstance(cell, StorageCell):
-        return cell
-    return replace(cell, arm=replace(cell.arm, link=Link.MQTT), mobile=replace(cell.mobile, link=Link.MQTT))

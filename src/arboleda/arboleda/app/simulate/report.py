@@ -8,7 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 
 from .tally import Tally
 from .words import seeds, short

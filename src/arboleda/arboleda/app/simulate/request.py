@@ -11,17 +11,18 @@ from importlib.resources import as_file, files
 from itertools import count
 from pathlib import Path
 
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
-from arboleda.simulator.climate import LEVELS, BadFaults
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.simulator.climate import BadFaults
+from arboleda.simulator.levels import LEVELS
 
 from .. import config
+from .defaults import CYCLES, LEVEL, SEED, SEEDS
 from .drawn import Drawn, loaded
 from .faults_file import Told, read
 from .plants import InTurn, Plant, Plants, notes
 from .setting import Setting
 
-SEED, SEEDS, CYCLES, LEVEL = 1, 20, 50, "normal"
 OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"
 
 

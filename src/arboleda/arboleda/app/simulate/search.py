@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.errors import ConfigError
-from arboleda.core.model import PlantModel
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.plants import smaller
 from arboleda.simulator.run import MINUTE_S, Plan, Result

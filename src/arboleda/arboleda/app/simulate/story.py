@@ -7,7 +7,7 @@ import re
 from rich.console import Console
 from rich.text import Text
 
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 from arboleda.simulator.run import Result
 
 from .drawn import as_yaml

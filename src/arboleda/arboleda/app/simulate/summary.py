@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from arboleda import __version__
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 
 from .request import Request
 from .search import Shrunk

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from arboleda.core.counting import counted
+from arboleda.model.counting import counted
 from arboleda.simulator.faults import Fault
 
 

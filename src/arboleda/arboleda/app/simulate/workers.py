@@ -14,7 +14,7 @@ from threading import Thread
 from types import TracebackType
 from typing import Any
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 from arboleda.simulator.run import Result
 
 from .campaign import Campaign

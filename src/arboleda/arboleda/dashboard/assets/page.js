@@ -2,9 +2,12 @@
 
 import * as acts from "./acts.js";
 import * as form from "./form.js";
+import * as history from "./history.js";
 import { apply, drawList, onChange, setRowFilter, value } from "./live.js";
+import * as oee from "./oee.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
+import * as sound from "./sound.js";
 import * as task from "./task.js";
 import * as tree from "./tree.js";
 
@@ -41,6 +44,7 @@ function arrive({ tab, cell, task: named, lang }) {
   if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "");
   form.offer(cell);
   task.show(named);
+  if (tab === "tasks") history.show(), oee.show();
   tree.close();
   tree.refit();
 }
@@ -153,9 +157,13 @@ function begin() {
   acts.start();
   form.start();
   task.start();
+  history.start();
+  oee.start();
   tree.start();
   onChange(suggest);
   onChange(alarm);
+  sound.start();
+  onChange(sound.hear);
   document.addEventListener("click", clicked);
   chooseScope("");
   place.start(arrive);

@@ -5,12 +5,13 @@ import { apply, onChange } from "./live.js";
 const { words, language } = window.arboledaPage;
 let named = null; // its id
 let state = null; // that it had when its face came
+let heard = 0; // how many answers it had then
 let asked = 0;
 
 export function start() {
   onChange((patch) => {
     const row = named && patch[`row/tasks/${named}`];
-    if (row && row.state !== state) ask();
+    if (row && (row.state !== state || row.heard !== heard)) ask();
   });
 }
 
@@ -26,6 +27,7 @@ async function ask() {
   const told = await fetched(named).catch(() => null);
   if (number !== asked) return;
   state = told?.["text/task.state"][1] ?? null;
+  heard = told?.["rows/task.heard"].length ?? 0;
   apply(told ?? { "text/task.note": [words.task_unheard, ""] });
 }
 

@@ -4,30 +4,34 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.messages import Verb
+from arboleda.model.messages import Verb
+from arboleda.views.view import devices_once
 
 from ..wording import Words
 from . import Face
 from .moment import Moment, seconds
 
 Row = dict[str, Any]
-PERSON = "person"
 ASKED = "asked"
 
 
 def face(moment: Moment) -> Face:
     found: Face = {}
-    for robot in moment.snapshot["robots"]:
-        if robot["kind"] == PERSON:
-            found.update(_of(moment.words, robot["name"], robot["question"]))
+    robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
+    for _, device in devices_once(moment.snapshot["cells"]):
+        if device["asked"]:
+            found.update(_of(moment.words, device["name"], robots[device["name"]]["question"]))
     return found
 
 
 def waited_for(snapshot: Row) -> dict[str, list[str]]:
     """By its name each cell that waits for people, and for whom."""
-    asked = {robot["name"] for robot in snapshot["robots"] if robot["question"] is not None}
+    asked = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
     cells = {cell["name"]: [device["name"] for device in cell["devices"]] for cell in snapshot["cells"]}
-    waits = {cell: [name for name in names if name in asked] for cell, names in cells.items()}
+    waits = {
+        cell: [name for name in names if name in asked and asked[name] in (None, cell)]
+        for cell, names in cells.items()
+    }
     return {cell: names for cell, names in waits.items() if names}
 
 
@@ -39,7 +43,7 @@ def _of(words: Words, person: str, question: Row | None) -> Face:
             f"text/asked_left.{person}": ["", ""],
             f"rows/answers.{person}": [],
         }
-    offers = [_offer(words, person, question["text"], answer) for answer in question["answers"]]
+    offers = [_offer(words, person, question, answer) for answer in question["answers"]]
     return {
         f"text/asked_who.{person}": [words("asked.who", person=person), ASKED],
         f"text/asked.{person}": [question["text"], ASKED],
@@ -49,6 +53,8 @@ def _of(words: Words, person: str, question: Row | None) -> Face:
     }
 
 
-def _offer(words: Words, person: str, question: str, answer: str) -> Row:
-    does = words("asked.does", answer=answer, question=question)
-    return {"act": Verb.ANSWER.value, "of": f"{person} {answer}", "label": answer, "does": does}
+def _offer(words: Words, person: str, question: Row, answer: str) -> Row:
+    """The act of a button; a click on a page that is behind is for the question that stood there."""
+    does = words("asked.does", answer=answer, question=question["text"])
+    of = f"{person} #{question['id']} {answer}"
+    return {"act": Verb.ANSWER.value, "of": of, "label": answer, "does": does}

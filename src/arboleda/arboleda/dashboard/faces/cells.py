@@ -5,15 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.drawing.layout import parent
-from arboleda.views.view import standing
+from arboleda.views.view import devices_once, standing
 
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face, links
+from . import Face, heard, links
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
+SHOWN_ANSWERS = 4
 GIVEN_UP = ("command", "await")  # what ends by itself has no deadline
 Row = dict[str, Any]
 
@@ -21,6 +22,9 @@ Row = dict[str, Any]
 def face(moment: Moment) -> Face:
     found: Face = {}
     robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
+    devices: dict[str, list[Row]] = {cell["name"]: [] for cell in moment.snapshot["cells"]}
+    for name, device in devices_once(moment.snapshot["cells"]):
+        devices[name].append(device)
     for cell in moment.snapshot["cells"]:
         memory = moment.trees[cell["name"]]
         found.update(_card(moment, cell, memory))
@@ -28,7 +32,8 @@ def face(moment: Moment) -> Face:
         rests = cell["state"] == "held"
         found.update(tree_face(moment.words, cell["name"], memory, leaf=leaf, rests=rests))
         found.update(_changes(moment, cell["name"], memory))
-        found.update(_devices(moment, cell, robots))
+        found.update(_devices(moment, cell["name"], devices[cell["name"]], robots))
+        found.update(_heard(moment, cell, devices[cell["name"]]))
     return found
 
 
@@ -55,16 +60,23 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
     }
 
 
-def _devices(moment: Moment, cell: Row, robots: dict[str, Row]) -> Face:
-    """A row for each device that no drawing shows: what it says, and what it was told last."""
-    name = cell["name"]
-    shown = [each["name"] for each in cell["devices"] if each["position"] is None]
+def _devices(moment: Moment, name: str, devices: list[Row], robots: dict[str, Row]) -> Face:
+    """A row for each device of a cell that no drawing shows: what it says, and what it was told last."""
+    shown = [each["name"] for each in devices if each["position"] is None]
     found: Face = {f"rows/devices.{name}": shown} if shown else {}
     for device in shown:
         robot = robots[device]
         texts = [device, links.says(moment.words, robot), links.command(moment, robot)]
         found[f"row/devices.{name}/{device}"] = {"state": links.state(robot), "texts": texts}
     return found
+
+
+def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
+    """What was answered last to the task of a cell, where one of its devices can answer."""
+    if all(each["position"] for each in devices):
+        return {}
+    answers = cell["task"]["answers"] if cell["task"] else []
+    return heard.rows(moment.words, f"heard.{cell['name']}", answers, SHOWN_ANSWERS)
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:

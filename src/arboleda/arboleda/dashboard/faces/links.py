@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.core.facts import shown
+from arboleda.model.facts import shown
+from arboleda.views.view import devices_once
 
 from ..wording import Words
 from . import Face
@@ -23,10 +24,9 @@ def face(moment: Moment) -> Face:
         "rows/links": [robot["name"] for robot in moment.snapshot["robots"]],
     }
     robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
-    for cell in moment.snapshot["cells"]:
-        for device in cell["devices"]:
-            robot = robots[device["name"]]
-            found[f"row/links/{robot['name']}"] = _row(moment, robot, cell["name"], device["position"])
+    for cell, device in devices_once(moment.snapshot["cells"]):
+        robot = robots[device["name"]]
+        found[f"row/links/{robot['name']}"] = _row(moment, robot, cell, device["position"])
     return found
 
 
@@ -104,20 +104,25 @@ def _yes_or_no(moment: Moment, value: bool | None) -> str:
 
 
 def says(words: Words, robot: Row) -> str:
-    """Each of its facts by name, whether we have a word for it or not; and whether it may hold a part."""
+    """Each of its facts by name, whether we have a word for it or not; whether it may hold a part, and which
+    cell has it of those that share it.
+    """
     told = robot["facts"].items()
     facts = [f"{words.of('fact', name)} {_fact(words, name, value)}" for name, value in told]
-    return ", ".join([*facts, *([words("links.holding")] if robot["holding"] else [])])
+    holding = [words("links.holding")] if robot["holding"] else []
+    held = [words("links.held_by", cell=robot["holder"])] if robot["holder"] else []
+    return ", ".join([*facts, *holding, *held])
 
 
 def _fact(words: Words, name: str, value: Any) -> str:
     """A fact in words of its own where there are some: `on` of an effector."""
     if value is None:
         return words("links.unsaid")
-    return words.flat.get(f"fact_said.{name}.{shown(value)}") or _value(words, value)
+    return words.flat.get(f"fact_said.{name}.{shown(value)}") or value_said(words, value)
 
 
-def _value(words: Words, value: Any) -> str:
+def value_said(words: Words, value: Any) -> str:
+    """A fact or an answer for people."""
     if isinstance(value, bool):
         return words("links.yes" if value else "links.no")
     return shown(value)
@@ -130,7 +135,7 @@ def command(moment: Moment, robot: Row) -> str:
         return ""
     words = moment.words
     state = words.of("command_state", told["state"])
-    answer = "" if robot["answer"] is None else f" ({_value(words, robot['answer'])})"
+    answer = "" if robot["answer"] is None else f" ({value_said(words, robot['answer'])})"
     return f"{words.say(told['what'])}: {state}{answer}, {words('links.ago', time=seconds(told['age_s']))}"
 
 

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from typing import Any
 
+from arboleda.adapters.task_rows import TaskRow, answers_of, sentence_of
+
 from ..tree_memory import EndedTree
-from . import Face
+from . import Face, heard
 from .cells import failed_in, tree_face
-from .moment import Moment, clock, seconds
+from .moment import Moment, dated, seconds
 from .tasks import why
 
 TREE = "#task"  # no cell is called so
 Row = dict[str, Any]
 
 
-def face(moment: Moment, id: str, tree: EndedTree | None) -> Face:
-    """Of a task that the plant knows no more only its name."""
+def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None = None) -> Face:
+    """Of a task that no screen shows any more what was kept of it; of one that nobody knows only its name."""
     task = next((task for task in moment.snapshot["tasks"] if task["id"] == id), None)
+    is_past = task is None and kept is not None
+    if task is None and kept is not None:
+        task = _past(moment, kept)
     words = moment.words
     if task is None:
         title, state, when, cause = f"#{id}", ["", ""], "", ""
@@ -28,13 +33,35 @@ def face(moment: Moment, id: str, tree: EndedTree | None) -> Face:
         "text/task.state": state,
         "text/task.when": [when, ""],
         "text/task.cause": [cause, state[1]],
-        "text/task.note": [_note(moment, task, tree), ""],
+        "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
+        **heard.rows(words, "task.heard", task["answers"] if task else []),
         **tree_face(words, TREE, tree or EndedTree(task=id, rows=[], statuses={}), title=title),
     }
 
 
+def _past(moment: Moment, kept: TaskRow) -> Row:
+    """A task as it was kept, like one of the plant; its times are on the plant's clock."""
+    back_s = moment.snapshot["at"] - moment.unix_s
+    times = [None if at is None else at + back_s for at in (kept.started_s, kept.ended_s)]
+    started, ended = times
+    return {
+        "id": kept.id,
+        "text": kept.text,
+        "cell": kept.cell,
+        "state": kept.state,
+        "reason": kept.reason,
+        "sentence": sentence_of(kept),
+        "failed_in": None,
+        "elapsed_s": None if started is None or ended is None else ended - started,
+        "started_at": started,
+        "ended_at": ended,
+        "answers": [vars(each) for each in answers_of(kept)],
+    }
+
+
 def _when(moment: Moment, task: Row) -> str:
-    times = [clock(moment.unix(at)) for at in (task["started_at"], task["ended_at"]) if at is not None]
+    both = (task["started_at"], task["ended_at"])
+    times = [dated(moment.unix(at), moment.unix_s) for at in both if at is not None]
     took = seconds(task["elapsed_s"]) if task["ended_at"] is not None else ""
     return " · ".join(part for part in (task["cell"], " - ".join(times), took) if part)
 

@@ -48,6 +48,7 @@ def _row(moment: Moment, task: Row) -> Row:
         ],
         "link": {"column": 1, "to": {"tab": "tasks", "task": task["id"]}},
         "acts": _acts(words, task),
+        "heard": len(task["answers"]),
     }
 
 

@@ -25,7 +25,7 @@ WELL = ("execute", "idle")
 
 
 def face(moment: Moment) -> Face:
-    found: Face = {"text/sum": _sum(moment), "text/title": _title(moment)}
+    found: Face = {"text/sum": _sum(moment), "text/title": _title(moment), "text/needs": _needs(moment)}
     for part in PARTS:
         found.update(part(moment))
     return found
@@ -44,6 +44,12 @@ def _sum(moment: Moment) -> list[str]:
 
 def _waits(moment: Moment, people: list[str]) -> str:
     return moment.words("asked.waits", people=", ".join(people))
+
+
+def _needs(moment: Moment) -> list[str]:
+    """The names of the cells that wait for somebody, for the sound."""
+    bad = {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
+    return [" ".join(sorted(bad | asked.waited_for(moment.snapshot).keys())), ""]
 
 
 def _title(moment: Moment) -> list[str]:

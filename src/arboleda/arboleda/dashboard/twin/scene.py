@@ -22,7 +22,7 @@ def scene(places: Row, drawings: Mapping[str, Body]) -> Row:
     """`places` as `views.places` has them, and a body for each robot."""
     robots = {robot["name"]: robot for robot in places["robots"]}
     cells = [_cell(cell, robots, drawings) for cell in places["cells"]]
-    zones = [_zone(zone, robots, drawings) for zone in places["zones"]]
+    zones = [_zone(zone, robots, drawings) for zone in places["zones"] if zone["spots"]]
     return {
         "part": [PART_RADIUS_M, PART_HEIGHT_M],
         "robots": [_robot(robot, drawings[robot["name"]]) for robot in places["robots"]],
@@ -84,7 +84,9 @@ def _frame(arm: Row, drawings: Mapping[str, Body], q: Sequence[float]) -> list[f
 
 
 def _zone(zone: Row, robots: Mapping[str, Row], drawings: Mapping[str, Body]) -> Row:
-    """A prism around the tool at every pose of the zone, and on every move that crosses it."""
+    """A prism around the tool at every pose of the zone, on every move that crosses it, and around a mobile
+    robot that stands there.
+    """
     spots = [spot for given in zone["spots"] for spot in _spots(given, robots, drawings)]
     heights = [z for _, _, z in spots]
     return {

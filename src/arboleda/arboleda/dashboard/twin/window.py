@@ -10,7 +10,7 @@ from fastapi import FastAPI, Response
 from nicegui import Client, ui
 from nicegui.events import GenericEventArguments
 
-from arboleda.core.errors import ArboledaError
+from arboleda.model.errors import ArboledaError
 
 from ..plant_side import PlantSide
 from . import bodies

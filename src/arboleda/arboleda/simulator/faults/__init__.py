@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from . import (
     boards,
+    crashes,
+    devices,
     effectors,
     foreigners,
     links,
@@ -15,10 +17,29 @@ from . import (
 )
 from .kind import Fault, Kind
 
-__all__ = ["KINDS", "OF_DEVICES", "Fault", "Kind"]
+__all__ = ["GENERAL", "KINDS", "OF_CRASHES", "OF_DEVICES", "Fault", "Kind"]
 
-FAMILIES = (boards, telemetry, effectors, sensors, links, processes, orchestrators, operators, foreigners)
+FAMILIES = (
+    boards,
+    devices,
+    telemetry,
+    effectors,
+    sensors,
+    links,
+    processes,
+    orchestrators,
+    operators,
+    foreigners,
+    crashes,  # those at the end change nothing of what seeds draw of the others
+)
 KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in family.KINDS}
 
-OF_DEVICES = ("gives_up",)
+OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 """The kinds that befall devices of declared kinds alone: nobody in the packaged plants and in drawn ones."""
+
+OF_CRASHES = ("plant_crash", *(kind.name for kind in crashes.KINDS))
+"""The kinds in which the plant dies; they are drawn at a level of their own."""
+
+OF_STORAGE = frozenset({"bad_task", "flood_of_tasks"})
+GENERAL = tuple(name for name in KINDS if name not in OF_STORAGE)
+"""The kinds that befall plants of any devices: those that are left out are made of words of storage."""

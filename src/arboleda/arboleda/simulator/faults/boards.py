@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import PlantModel
-from arboleda.kinds.arm import Arm
+from arboleda.model.plant_model import PlantModel
 
 from ..network import keeps_its_place
 from ..world import World
@@ -58,19 +57,7 @@ def driver_alarm(world: World, fault: Fault) -> End:
 
 def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
     robot = whom.robot_of(model, target)
-    return tuple(f"q{number + 1}" for number in range(len(robot.joints))) if isinstance(robot, Arm) else ()
-
-
-@kind(targets=whom.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
-def gives_up(world: World, fault: Fault) -> End:
-    """A device ends every order that it has carried out as failed, with this word."""
-    body = whom.machine_body(world, fault.target)
-    body.fails = lambda goal: fault.word
-
-    def end() -> None:
-        body.fails = lambda goal: None
-
-    return hold(world, "gives up", fault.target, end)
+    return tuple(f"q{number + 1}" for number in range(len(robot.joints))) if robot.has_joints else ()
 
 
 @kind(targets=whom.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)
@@ -84,4 +71,4 @@ def _now_us(world: World) -> int:
     return round(world.now * 1e6)
 
 
-KINDS = (reboot, brown_out, mute, board_stall, driver_alarm, gives_up, lost_steps)
+KINDS = (reboot, brown_out, mute, board_stall, driver_alarm, lost_steps)

@@ -12,9 +12,8 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from arboleda.core.commands import StopMode
-from arboleda.core.model import PlantModel, Robot
-from arboleda.kinds.arm import Arm
+from arboleda.model.commands import StopMode
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.wire.goals import goal as goal_of
 from arboleda.wire.payloads import Goal, StopGoal, encode
 from arboleda.wire.topics import Channel, topic
@@ -28,7 +27,7 @@ from .kind import End, Fault, kind, words
 from .orchestrators import ORDERS
 
 OF_ALL = (Channel.STOP, Channel.HOME, Channel.BEAT, Channel.TELEMETRY, Channel.PRESENCE)
-OF_ARMS, OF_MOBILES = (Channel.JOINTS, Channel.EFFECTOR), (Channel.PATH,)
+OF_ARMS, OF_MOBILES, OF_DEVICES = (Channel.JOINTS, Channel.EFFECTOR), (Channel.PATH,), (Channel.ORDER,)
 GARBAGE = (
     b"",
     b"\xff\xfe\x00\x01",
@@ -52,7 +51,8 @@ GARBAGE = (
 
 
 def _channels(model: PlantModel, target: str) -> tuple[str, ...]:
-    own = OF_ARMS if isinstance(whom.robot_of(model, target), Arm) else OF_MOBILES
+    robot = whom.robot_of(model, target)
+    own = OF_ARMS if robot.has_joints else OF_MOBILES if robot.on_grid else OF_DEVICES
     return tuple(channel.value for channel in (*own, *OF_ALL))
 
 
@@ -70,15 +70,15 @@ NEWEST = 4_000_000_000  # a telemetry number above that of any board
 
 
 def _foreign(model: PlantModel, target: str) -> tuple[str, ...]:
-    is_arm = isinstance(whom.robot_of(model, target), Arm)
+    is_arm = whom.robot_of(model, target).has_joints
     return tuple(FOREIGN_TO_ARMS if is_arm else FOREIGN_TO_MOBILES)
 
 
-@kind(targets=whom.boards, words=_foreign, weight=0.5)
+@kind(targets=whom.goers, words=_foreign, weight=0.5)
 def foreign_report(world: World, fault: Fault) -> None:
     """A stranger publishes telemetry in which a board says what its kind of robot cannot."""
     robot = whom.robot_of(world.model, fault.target)
-    own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))} if isinstance(robot, Arm) else {}
+    own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))} if robot.has_joints else {}
     foreign = {**FOREIGN_TO_ARMS, **FOREIGN_TO_MOBILES}[fault.word]
     said = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
     payload = json.dumps(said, separators=(",", ":")).encode()
@@ -123,9 +123,10 @@ STRAYS: dict[str, Callable[[str], Publication]] = {
 
 def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
     """What can be ordered of a robot; a stop counts whoever says it and is a kind of its own."""
-    if isinstance(whom.robot_of(model, target), Arm):
+    robot = whom.robot_of(model, target)
+    if robot.has_joints:
         return ("move", "effector on", "effector off", "home", "clear")
-    return ("path", "home", "clear")
+    return ("path", "home", "clear") if robot.on_grid else ("order", "clear")
 
 
 @kind(targets=whom.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)
@@ -193,6 +194,7 @@ CHANNELS = {
     "EffectorGoal": Channel.EFFECTOR,
     "StopGoal": Channel.STOP,
     "HomeGoal": Channel.HOME,
+    "OrderGoal": Channel.ORDER,
 }
 
 KINDS = (

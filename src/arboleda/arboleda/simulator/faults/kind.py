@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import PlantModel
 
 from ..chance import Dice
 from ..world import World

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from arboleda.core.intake import HISTORY
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import PlantModel
-from arboleda.core.task import Task
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.task import Task
+from arboleda.recipes.storage import only_stores
 from arboleda.recipes.storage_cell import StorageCell
 
 from ..chance import Dice
+from ..people import any_text
 from ..world import World
 from . import whom
 from .kind import Fault, Kind, kind, no_words, words
@@ -87,6 +89,8 @@ def double_submit(world: World, fault: Fault) -> None:
 
 def _text(world: World, fault: Fault, dice: Dice) -> str:
     cell = world.model.cell(fault.target)
+    if not only_stores(cell):
+        return any_text(cell, dice)
     return f"{cell.name} {dice.pick(cell.paths).code} {dice.below(len(cell.stations))}"
 
 
@@ -99,9 +103,12 @@ def _same_id(world: World, fault: Fault) -> list[str]:
 
 
 def _other_text(world: World, fault: Fault) -> list[str]:
-    return [
-        f"{text} #lot{fault.seed}" for text in (_same_text(world, fault)[0], f"{fault.target} palletizing")
-    ]
+    return [f"{text} #lot{fault.seed}" for text in (_same_text(world, fault)[0], _another_text(world, fault))]
+
+
+def _another_text(world: World, fault: Fault) -> str:
+    cell = world.model.cell(fault.target)
+    return f"{cell.name} palletizing" if only_stores(cell) else any_text(cell, Dice(fault.seed, "another"))
 
 
 def _known_id(world: World, fault: Fault) -> list[str]:

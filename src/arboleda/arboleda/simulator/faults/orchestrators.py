@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.messages import Heartbeat
-from arboleda.core.model import PlantModel
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import PlantModel
 from arboleda.wire.bridge import PLANT_GONE_S
 from arboleda.wire.epochs import AHEAD_S
 from arboleda.wire.hop import FromPlant
@@ -21,13 +21,12 @@ from .kind import Fault, kind, words
 
 LATEST = 5  # how many epochs it may be behind
 OF_ALL = ("home", "home", "clear", "clear", "beat", "beat")
+ANY_VALUE: dict[type, tuple[object, ...]] = {bool: (False, True), int: (0, 1), float: (0.0, 1.5), str: ("a",)}
 RARE = ("halt", "stop")  # these count, whoever says them
 
 
 def _orders(model: PlantModel, target: str) -> tuple[str, ...]:
-    if isinstance(model.robots[target], Arm):
-        return (*("move", "effector on", "effector off") * 4, *OF_ALL, *RARE)
-    return (*("path",) * 8, *OF_ALL, *RARE)
+    return (*_own(model, target), *(word for word in OF_ALL if _knows(model, target, word)), *RARE)
 
 
 @kind(targets=whom.robots, words=_orders)
@@ -53,9 +52,20 @@ def foreign_beat(world: World, fault: Fault) -> None:
 
 
 def _strange(model: PlantModel, target: str) -> tuple[str, ...]:
-    if isinstance(model.robots[target], Arm):
-        return (*("move", "effector on", "effector off") * 4, "home", "clear", "clear", *RARE)
-    return (*("path",) * 8, "home", "clear", "clear", *RARE)
+    words = ("home", "clear", "clear")
+    return (*_own(model, target), *(word for word in words if _knows(model, target, word)), *RARE)
+
+
+def _own(model: PlantModel, target: str) -> tuple[str, ...]:
+    """What is ordered of a robot of its kind alone, as often as that is drawn."""
+    robot = model.robots[target]
+    if robot.has_joints:
+        return ("move", "effector on", "effector off") * 4
+    return ("path",) * 8 if robot.on_grid else ("order",) * 8
+
+
+def _knows(model: PlantModel, target: str, word: str) -> bool:
+    return word != "home" or model.robots[target].homes
 
 
 @kind(targets=whom.robots, words=_strange)
@@ -70,11 +80,26 @@ def foreign_command(world: World, fault: Fault) -> None:
 
 
 def _move(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
-    return MoveJoints(id=id, robot=robot, q=dice.pick(model.cell_of[robot].poses).q)
+    space = model.cell_of[robot].workspaces.get(robot)
+    q = dice.pick([pose.joints for pose in space.poses]) if space else model.robots[robot].reference
+    assert isinstance(q, tuple)
+    return MoveJoints(id=id, robot=robot, q=q)
 
 
 def _path(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
-    return FollowPath(id=id, robot=robot, nodes=dice.pick(model.cell_of[robot].paths).nodes)
+    cell = model.cell_of[robot]
+    if not cell.is_storage:
+        goals = [pose.q for pose in cell.workspaces[robot].poses] if robot in cell.workspaces else [0]
+        return model.robots[robot].go(id=id, way=(dice.pick(goals),))
+    return FollowPath(id=id, robot=robot, nodes=dice.pick(cell.paths).nodes)
+
+
+def _verb(model: PlantModel, robot: str, id: str, dice: Dice) -> Command:
+    """Any verb of a device, with any of the values that it takes."""
+    kind = model.robots[robot].kind
+    verb = kind.verbs[dice.pick(list(kind.verbs))]
+    values = {name: dice.pick(type.words or ANY_VALUE[type.type]) for name, type in verb.parameters}
+    return kind.command(id=id, robot=robot, verb=verb.name, values=values)
 
 
 def _switch(on: bool) -> Order:
@@ -89,6 +114,7 @@ Order = Callable[[PlantModel, str, str, Dice], Command]
 ORDERS: dict[str, Order] = {
     "move": _move,
     "path": _path,
+    "order": _verb,
     "effector on": _switch(True),
     "effector off": _switch(False),
     "home": lambda model, robot, id, dice: Home(id=id, robot=robot),

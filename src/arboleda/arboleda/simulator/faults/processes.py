@@ -52,12 +52,12 @@ def plant_stall(world: World, fault: Fault) -> End:
 
 @kind(targets=whom.plant, words=words("plant", "machine"), seconds=(1.0, 6.0), amount=(0.001, 86_400.0))
 def plant_freeze(world: World, fault: Fault) -> End:
-    """The plant is frozen, alone or with the bridge; once all robots stand, up to a day passes at once."""
+    """The plant is frozen, alone or with the bridge; up to a day passes at once then if no body changes."""
     frozen = (PLANT, BRIDGE) if fault.word == "machine" else (PLANT,)
     ends = [stall(world, process, fault.seconds) for process in frozen]
 
     def thaw() -> None:
-        if not any(board.body.moving for board in world.boards.values()):
+        if all(board.body.next_change_us is None for board in world.boards.values()):
             world.skip(fault.amount)
         for end in ends:
             end()
@@ -67,7 +67,7 @@ def plant_freeze(world: World, fault: Fault) -> End:
 
 @kind(targets=whom.plant, weight=0.0)
 def plant_crash(world: World, fault: Fault) -> None:
-    """The plant's process dies and starts anew; never drawn as long as tasks are not durable."""
+    """The plant's process dies between two steps, and starts anew at once."""
     world.crash(PLANT)
 
 

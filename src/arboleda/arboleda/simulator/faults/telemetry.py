@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from arboleda.core.model import Evidence, MotionState, PlantModel
 from arboleda.kinds.arm import Arm, Joint
-from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Evidence, MotionState, PlantModel
 from arboleda.wire.units import to_wire
 
 from ..chance import Dice
@@ -29,7 +28,7 @@ ABOUT = {
     "efector": ("effector",),
     "pieza": ("piece",),
 }
-NUMBERED = ("seq", "epoca_ack", "ack", "hecho", "arranque", "ref")
+NUMBERED = ("seq", "epoca_ack", "ack", "hecho", "arranque")
 HELD = ("efector", "pieza")
 CODES = tuple(state.value for state in MotionState if state is not MotionState.NO_LINK)
 Lie = Callable[[Fields], Any]  # the telemetry as it should be -> the value that is told instead
@@ -38,10 +37,11 @@ Lie = Callable[[Fields], Any]  # the telemetry as it should be -> the value that
 def fields_of(model: PlantModel, target: str) -> tuple[str, ...]:
     """The keys of a board's telemetry that are evidence, at its robot's level."""
     robot = whom.robot_of(model, target)
-    place = tuple(_keys(robot)) if isinstance(robot, Arm) else ("nodo",)
+    place = tuple(_keys(robot)) if robot.has_joints else ("nodo",) if robot.on_grid else ()
     if robot.evidence is not Evidence.IDS:
         return (*place, "estado")
-    return (*place, "estado", *NUMBERED, *(HELD if isinstance(robot, Arm) else ()))
+    homed = ("ref",) if robot.homes else ()
+    return (*place, "estado", *NUMBERED, *homed, *(HELD if robot.has_joints else ()))
 
 
 @kind(targets=whom.boards, words=fields_of, seconds=(0.5, 15.0))
@@ -100,7 +100,7 @@ def _keys(arm: Arm) -> dict[str, tuple[Joint, float]]:
 
 def _off(world: World, fault: Fault) -> Lie:
     arm = whom.robot_of(world.model, fault.target)
-    assert isinstance(arm, Arm)
+    assert arm.has_joints
     joint, tolerance = _keys(arm)[fault.word]
     sign = Dice(fault.seed, "sign").pick((-1.0, 1.0))
     off = sign * fault.amount * to_wire(joint, tolerance)
@@ -113,12 +113,14 @@ def _another(fault: Fault, now: int, choices: Sequence[int]) -> Lie:
 
 
 def _other_code(world: World, fault: Fault) -> Lie:
-    return _another(fault, world.boards[fault.target].state.value, CODES)
+    homes = whom.robot_of(world.model, fault.target).homes
+    codes = [code for code in CODES if homes or code != MotionState.NOT_HOMED.value]
+    return _another(fault, world.boards[fault.target].state.value, codes)
 
 
 def _other_node(world: World, fault: Fault) -> Lie:
     robot = whom.robot_of(world.model, fault.target)
-    assert isinstance(robot, Mobile)
+    assert robot.on_grid
     told = world.boards[fault.target].body.tell().node
     return _another(fault, -1 if told is None else told, range(robot.grid.size))
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
-from arboleda.core.model import Evidence, Link, PlantModel, Robot
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.declared import Device
+from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.machine import MachineBody
 
@@ -20,18 +18,41 @@ def boards(model: PlantModel) -> tuple[str, ...]:
 
 def arms(model: PlantModel) -> tuple[str, ...]:
     """The boards of arms."""
-    return tuple(robot.mqtt for robot in _reached(model) if isinstance(robot, Arm))
+    return tuple(robot.mqtt for robot in _reached(model) if robot.has_joints)
 
 
 def machines(model: PlantModel) -> tuple[str, ...]:
     """The boards of devices of declared kinds."""
-    return tuple(robot.mqtt for robot in _reached(model) if isinstance(robot, Device))
+    return tuple(robot.mqtt for robot in _reached(model) if robot.verb_names)
+
+
+def askable(model: PlantModel) -> tuple[str, ...]:
+    """The boards of devices that can be asked something."""
+    devices = (robot for robot in _reached(model) if robot.verb_names)
+    return tuple(robot.mqtt for robot in devices if robot.query_names)
+
+
+def tellers(model: PlantModel) -> tuple[str, ...]:
+    """The boards of devices that report facts."""
+    devices = (robot for robot in _reached(model) if robot.verb_names)
+    return tuple(robot.mqtt for robot in devices if robot.fact_names)
+
+
+def holders(model: PlantModel) -> tuple[str, ...]:
+    """The boards of devices that can hold a part."""
+    devices = (robot for robot in _reached(model) if robot.verb_names)
+    return tuple(robot.mqtt for robot in devices if robot.held_fact is not None)
+
+
+def goers(model: PlantModel) -> tuple[str, ...]:
+    """The boards of robots that go from place to place."""
+    return tuple(robot.mqtt for robot in _reached(model) if robot.goes)
 
 
 def feelers(model: PlantModel) -> tuple[str, ...]:
     """The boards of arms that tell what their piece sensor sees."""
     heard = (robot for robot in _reached(model) if robot.evidence is Evidence.IDS)
-    return tuple(robot.mqtt for robot in heard if isinstance(robot, Arm))
+    return tuple(robot.mqtt for robot in heard if robot.has_joints)
 
 
 def clients(model: PlantModel) -> tuple[str, ...]:

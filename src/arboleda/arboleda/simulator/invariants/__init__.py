@@ -14,6 +14,7 @@ from .memory import MEMORY
 from .motion import MOTION
 from .proofs import PROOFS
 from .screens import SCREENS
+from .starts import STARTS
 from .stop import STOP
 from .tasks import TASKS
 from .texts import TEXTS
@@ -43,4 +44,5 @@ INVARIANTS: tuple[Invariant, ...] = (
     *LIVENESS,
     *BOOKS,
     *SCREENS,
+    *STARTS,
 )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.model import Evidence, Link
+from arboleda.model.plant_model import Evidence
 
+from ..recorded.scopes import UNSENT
 from .invariant import Look, When, invariant
 
 NOTHING: tuple[str, ...] = ()
@@ -25,12 +26,14 @@ def believed_as_said(look: Look) -> Iterable[str]:
 def _unlike(look: Look, robots: set[str]) -> Iterator[str]:
     for name in robots & look.record.robots.keys():
         known, belief = look.record.robots[name], look.world.plant.dispatcher.beliefs[name]
-        if known.robot.link is Link.NONE:
+        if known.robot.link in UNSENT:
             continue
         for field in FIELDS:
             said = getattr(known, "boot" if field == "boot_id" else field)
             if getattr(belief, field) != said:
                 yield f"{name}: its {field} is taken for {getattr(belief, field)}, its word was {said}"
+        if belief.facts != known.facts:
+            yield f"{name}: its facts are taken for {belief.facts}, its word was {known.facts}"
         offline = known.offline(look.world.plant.now)
         if belief.online is offline:
             yield f"{name} is {'' if belief.online else 'not '}online by what the plant believes"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.intake import HISTORY
-from arboleda.core.ledger import Feed
+from arboleda.dispatch.ledger import Feed
 from arboleda.wire.labels import REMEMBERED
 
 from .invariant import Look, When, invariant
@@ -45,7 +45,9 @@ def _plant(look: Look) -> Iterator[Row]:
     yield "reached goals", len(dispatcher.reached), robots
     yield "latched robots", len(dispatcher.latched | dispatcher.cleared), robots
     yield "tasks", len(plant.intake.tasks), HISTORY + waiting
-    yield "waiting for zones", len(plant.zones.waiting), len(plant.cells)
+    cells = look.world.model.cells
+    users = sum(len(cell.zone_users) + len(cell.interlocked) + bool(cell.shared) for cell in cells)
+    yield "waiting for zones", len(plant.zones.waiting), users
     for name, cell in plant.cells.items():
         yield f"queue of {name}", len(cell.queue), cell.cell.queue_limit
         yield f"wakes of {name}", len(cell.context.wakes), WAKES

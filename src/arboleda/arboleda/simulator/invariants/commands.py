@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.commands import Home, Motion, Stop, StopMode
-from arboleda.core.leaves import Act
-from arboleda.core.ledger import TABLE, State
-from arboleda.core.messages import Reason, Verb
-from arboleda.core.model import MotionState, Robot, Timing
-from arboleda.kinds.arm import SetEffector
+from arboleda.dispatch.ledger import TABLE, State
+from arboleda.model.commands import Home, Motion, Query, Stop, StopMode, Switch
+from arboleda.model.messages import Reason, Verb
+from arboleda.model.plant_model import MotionState, Robot, Timing
+from arboleda.trees.leaves import Act
 
 from ..recorded.commands import Commands, SentCommand
 from ..recorded.robots import Obstacle
@@ -20,6 +19,8 @@ ROUNDING_S = 1e-6
 HOMING_S = 30.0
 # Homing is what makes an unhomed robot homed; an operator may have the effector opened during a stop.
 STOPPED = frozenset({Obstacle.LATCHED, Obstacle.STOPPED})
+# What only answers moves nothing.
+ANSWERS_ALL_THE_SAME = STOPPED | {Obstacle.FAULTED, Obstacle.UNHOMED}
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 GIVEN_UP = frozenset({State.CANCELLING, State.CANCELLED, State.FAILED})
 
@@ -51,7 +52,9 @@ def _excused(sent: SentCommand) -> frozenset[Obstacle]:
     command = sent.command
     if isinstance(command, Home):
         return frozenset({Obstacle.UNHOMED})
-    opens = isinstance(command, SetEffector) and not command.on
+    if isinstance(command, Query):
+        return ANSWERS_ALL_THE_SAME
+    opens = isinstance(command, Switch) and command.grips is False
     return STOPPED if opens and Verb.RELEASE in sent.verbs else frozenset()
 
 
@@ -67,16 +70,16 @@ def stops_are_cleared_by_operators(look: Look) -> Iterable[str]:
 
 @invariant(When.COMMANDED)
 def one_motion_per_robot(look: Look) -> Iterable[str]:
-    """At most one motion command of a robot is open."""
+    """At most one motion command, or other work, of a robot is open."""
     for sent in look.record.commands.new:
-        if sent.is_motion and (other := _open_before(sent, look.record.commands)):
+        if sent.is_work and (other := _open_before(sent, look.record.commands)):
             yield f"{sent} was sent while {other} was open"
 
 
 def _open_before(sent: SentCommand, commands: Commands) -> SentCommand | None:
     """An open motion of the robot, but none that left later in this step, when this one may have ended."""
     later = commands.new[commands.new.index(sent) + 1 :]
-    others = (each for each in commands.open.values() if each.robot == sent.robot and each.is_motion)
+    others = (each for each in commands.open.values() if each.robot == sent.robot and each.is_work)
     return next((each for each in others if each is not sent and each not in later), None)
 
 
@@ -134,7 +137,9 @@ def _too_long(look: Look, sent: SentCommand) -> str | None:
 
 def _longest_s(robot: Robot, sent: SentCommand, timing: Timing) -> float:
     command = sent.command
-    if isinstance(command, SetEffector):
+    if command.at_most_s is not None:
+        return command.at_most_s
+    if isinstance(command, Switch):
         return timing.effector_timeout_s
     way_s = robot.travel_s(None, command.way) if isinstance(command, Motion) and command.way else HOMING_S
     return max(robot.timeout_s, way_s * timing.deadline_factor + timing.deadline_floor_s)
@@ -174,7 +179,7 @@ def halted_moves_sent_halt(look: Look) -> Iterable[str]:
 
 def _given_up(look: Look) -> Iterator[str]:
     for sent, _ in look.record.commands.moved:
-        if sent.is_motion and sent.state in GIVEN_UP and not _needs_no_halt(look, sent):
+        if sent.can_be_halted and sent.state in GIVEN_UP and not _needs_no_halt(look, sent):
             yield f"{sent} was given up, and no halt was sent"
 
 
@@ -182,7 +187,7 @@ def _left(look: Look) -> Iterator[str]:
     """A command that no running step waits for any more must be ending; homing has no step."""
     record = look.record
     for sent in record.commands.open.values():
-        if not sent.is_motion or sent.state is State.CANCELLING or isinstance(sent.command, Home):
+        if not sent.can_be_halted or sent.state is State.CANCELLING or isinstance(sent.command, Home):
             continue
         cell = record.cells[sent.entry.cell] if sent.entry else None
         if cell is None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from arboleda.core.commands import Command, Home
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home
+from arboleda.model.plant_model import Evidence
 
 from ..truth import Truth
 from ..truth.arm import ArmTruth

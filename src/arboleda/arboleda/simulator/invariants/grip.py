@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.model import Evidence
+from arboleda.model.plant_model import Evidence
 
 from ..truth.arm import ArmTruth
 from ..truth.deeds import CellTruth, Switch, named
@@ -33,7 +33,8 @@ def no_part_dropped(look: Look) -> Iterator[str]:
     for passage in look.truth.parts.passages:
         taken = passage.cause == FELL and (world.faults_active > 0 or world.last_fault_at == world.now)
         excused = taken or passage.cause in (POWER, RELEASED)
-        if passage.place == FLOOR and not excused and not look.truth.unseen(look.truth.arms[passage.arm]):
+        arm = look.truth.arms[passage.arm]
+        if passage.place == FLOOR and not (excused or arm.taken_away or look.truth.unseen(arm)):
             yield f"{passage.arm} drops part {passage.part.number} ({passage.cause})"
 
 
@@ -83,7 +84,7 @@ def _grips(look: Look) -> Iterator[str]:
     for name in truth.stray_grips:
         yield f"{name} is told to grip while no task of its cell runs"
     for switch in _switches(look):
-        if not switch.on or truth.unseen(truth.arms[switch.arm]):
+        if not switch.on or switch.taken_away or truth.unseen(truth.arms[switch.arm]):
             continue
         if why := _grips_wrongly(truth.cells[switch.cell], switch):
             yield f"{switch.arm} grips at {named(switch.poses)}: {why}"
@@ -101,6 +102,7 @@ def _opened(look: Look) -> Iterator[str]:
             switch.lost_power
             or switch.by_others
             or switch.released
+            or switch.taken_away
             or look.truth.unseen(look.truth.arms[switch.arm])
         )
         if not switch.on and not switch.legal and not excused:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.model import Evidence, MotionState
-from arboleda.kinds.arm import Arm
+from arboleda.model.messages import Fact
+from arboleda.model.plant_model import Evidence, Link, MotionState, Workspace
 from arboleda.sim.board import Board
 
 from ..recorded.cells import KnownCell
@@ -14,6 +14,7 @@ from .invariant import Look, When, invariant
 
 NOTHING: tuple[str, ...] = ()
 SLACK_S = 0.001
+SURE_S = 1.5  # after a start, and some reports
 AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
 
 
@@ -21,6 +22,7 @@ AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.HELD)
 def running_tree_has_waker(look: Look) -> Iterable[str]:
     """A tree that runs has an open command or a time that will wake it."""
     awake = {sent.entry.cell for sent in look.record.commands.open.values() if sent.entry}
+    awake |= {entry.cell for entry in look.record.questions}
     asleep = [cell for cell in look.record.cells.values() if cell.name not in awake and _sleeps(cell)]
     return [f"{cell.name} sleeps with a running tree" for cell in asleep]
 
@@ -65,7 +67,11 @@ def ready(look: Look, cell: KnownCell) -> bool:
     if cell.stopped or plant.intake.closed:
         return False
     for robot in cell.cell.robots:
+        if robot.link is Link.SCREEN:
+            continue
         known = robots[robot.name]
+        if known.stop is not None and robot.name in cell.cell.shared:
+            return False  # another cell that was stopped is not reset
         if known.state is MotionState.MOVING or known.is_unfit(plant.now, plant.epoch):
             return False
         # whether a jump of its joints was a reboot is for the plant's evidence to judge
@@ -77,20 +83,29 @@ def ready(look: Look, cell: KnownCell) -> bool:
 def _is_busy(look: Look, cell: KnownCell) -> bool:
     """Whether one of its robots was told something by hand that it may not have done yet."""
     robots = {robot.name for robot in cell.cell.robots}
-    return any(sent.robot in robots for sent in look.record.commands.open.values())
+    asked = any(entry.command.robot in robots for entry in look.record.questions)
+    return asked or any(sent.robot in robots for sent in look.record.commands.open.values())
 
 
 def _outside(look: Look, cell: KnownCell) -> bool:
-    """Whether the arm of a cell with shared zones is seen at a pose outside of them, and stays there."""
-    arm, known = cell.cell.arm, look.record.robots[cell.cell.arm.name]
-    if not cell.cell.crossings and not any(pose.zones for pose in cell.cell.poses):
-        return True
+    """Whether each robot that shares zones is seen at a pose outside of them, and stays there.
+
+    What one said just after a start may be older than its last move.
+    """
+    if look.world.found.facts.get(Fact.QUARANTINE) and look.world.now < look.record.born_at + SURE_S:
+        return not cell.cell.zone_users
+    return all(_is_outside(look, cell.cell.workspaces[name]) for name in cell.cell.zone_users)
+
+
+def _is_outside(look: Look, space: Workspace) -> bool:
+    robot, known = space.robot, look.record.robots[space.robot.name]
     # until it names what it was told last, that may still be on its way and set it in motion
-    if arm.evidence is Evidence.IDS and arm.has_stop and known.unnamed is not None:
+    if robot.evidence is Evidence.IDS and robot.has_stop and known.unnamed is not None:
         return False
-    free = [pose for pose in cell.cell.poses if not pose.zones]
+    free = [pose for pose in space.poses if not pose.zones]
     points = [point for pose in free for point in (pose.q, pose.above) if point is not None]
-    return known.q is not None and any(arm.reached(known.q, arm.quantised(point)) for point in points)
+    here = known.node if known.q is None else known.q
+    return here is not None and any(robot.stands_at(here, robot.held_at(point)) for point in points)
 
 
 @invariant(When.WAITING)
@@ -119,17 +134,26 @@ def at_rest_at_end(look: Look) -> Iterable[str]:
     for sent in record.commands.open.values():
         yield f"{sent} is open"
     for zone in look.world.model.zones:
-        if (robot := zones.holder(zone)) is not None:
+        if (robot := zones.holder(zone)) is not None and not _is_in_the_way(look, robot, zone):
             yield f"{robot} holds {zone}{', quarantined' if zones.is_quarantined(zone) else ''}"
     for robot, _ in zones.waiting:
         yield f"{robot} waits for zones"
     yield from _restless(look)
 
 
+def _is_in_the_way(look: Look, device: str, zone: str) -> bool:
+    """Whether a machine that rests keeps a zone because it is in the way there: its door is shut."""
+    locked = any(device in cell.interlocked for cell in look.world.model.cells)
+    there = locked and zone in look.truth.robot(device).zones
+    return there and not look.world.plant.zones.is_quarantined(zone)
+
+
 def _restless(look: Look) -> Iterator[str]:
     """Robots by what the plant has heard, and by what is true of their boards."""
     plant, boards = look.world.plant, look.record.boards.of_robot
     for name, known in look.record.robots.items():
+        if known.robot.link is Link.SCREEN:
+            continue
         for obstacle in sorted(known.obstacles(plant.now, plant.epoch)):
             yield f"{name} is {obstacle.value}"
         if known.state is MotionState.MOVING:
@@ -158,8 +182,8 @@ def nothing_waits_at_end(look: Look) -> Iterable[str]:
             yield f"{len(cell.queue)} tasks wait in {name}: {cell.waiting_for()}"
         if cell.queue_paused:
             yield f"the queue of {name} is paused"
-        if isinstance(cell.cell.arm, Arm) and cell.context.holding:
-            yield f"{cell.cell.arm.name} may hold a part"
+        for robot in cell.context.holding:
+            yield f"{robot} may hold a part"
 
 
 LIVENESS = (

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.commands import Stop, StopMode
-from arboleda.core.messages import Fact, Remember
-from arboleda.kinds.arm import SetEffector
+from arboleda.model.commands import Stop, StopMode, Switch
+from arboleda.model.messages import Fact, Remember
 
 from ..recorded.robots import Stopped
+from ..recorded.scopes import UNSENT
 from .invariant import Look, When, invariant
 
 KEPT = {Stopped.LATCHED: "on", Stopped.CLEARED: "cleared", None: None}
@@ -25,7 +25,11 @@ def kept_before_it_leaves(look: Look) -> Iterator[str]:
             latched = kept.get((Fact.LATCH, message.robot)) == "on"
             if latched is not (message.mode is StopMode.LATCH):
                 yield f"{message} leaves, and a latch is {'' if latched else 'not '}kept"
-        elif isinstance(message, SetEffector) and kept.get((Fact.EFFECTOR, message.robot)) != "switching":
+        elif (
+            isinstance(message, Switch)
+            and message.grips is not None
+            and kept.get((Fact.EFFECTOR, message.robot)) != "switching"
+        ):
             yield f"{message} leaves, and nobody would know after a restart"
 
 
@@ -39,7 +43,7 @@ def _stops(look: Look) -> Iterator[str]:
     """A clear of a whole cell counts for a robot that was not stopped, too, until the cell is reset."""
     kept = look.world.memory.get(Fact.LATCH, {})
     for cell in look.record.cells.values():
-        for robot in cell.cell.robots:
+        for robot in (each for each in cell.cell.robots if each.link not in UNSENT):
             stop, word = look.record.robots[robot.name].stop, kept.get(robot.name)
             if word != KEPT[stop] and not (stop is None and cell.stopped and word == "cleared"):
                 yield f"{robot.name} is {stop.value if stop else 'not stopped'}, and {word} is kept"
@@ -48,9 +52,10 @@ def _stops(look: Look) -> Iterator[str]:
 def _effectors(look: Look) -> Iterator[str]:
     kept = look.world.memory.get(Fact.EFFECTOR, {})
     for cell in look.record.cells.values():
-        grip = cell.context.grip(cell.cell.arm.name).value
-        if kept.get(cell.cell.arm.name, "off") != grip:
-            yield f"the effector of {cell.cell.arm.name} is {grip}, kept is {kept.get(cell.cell.arm.name)}"
+        for name in cell.cell.holders:
+            grip = cell.context.grip(name).value
+            if kept.get(name, "off") != grip:
+                yield f"the effector of {name} is {grip}, kept is {kept.get(name)}"
 
 
 def _zones(look: Look) -> Iterator[str]:

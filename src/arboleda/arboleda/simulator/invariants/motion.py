@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
-from arboleda.wire.payloads import EffectorGoal, JointsGoal, PathGoal
+from arboleda.wire.payloads import JointsGoal, PathGoal, StopGoal
 
 from ..truth.arm import ArmTruth
 from ..truth.robot import RobotTruth
@@ -35,7 +35,7 @@ def no_move_after_a_boot_that_was_told(look: Look) -> Iterator[str]:
 
 @invariant(When.CHANGED)
 def nothing_moves_unasked(look: Look) -> Iterator[str]:
-    """A body moves, and an effector switches, only by a goal that our bridge published, or to a stop."""
+    """A body moves, and a fact of it changes, only by a goal that our bridge published, or to a stop."""
     for robot in look.truth.changed:
         yield from _moves_unasked(robot)
     for cell in look.truth.cells.values():
@@ -57,7 +57,7 @@ def arm_stays_within_limits(look: Look) -> Iterator[str]:
 def _moves_unasked(robot: RobotTruth) -> Iterator[str]:
     name = robot.robot.name
     for act in robot.acts:
-        if not act.ours and (act.moves or isinstance(act.goal, EffectorGoal)):
+        if not act.ours and not isinstance(act.goal, StopGoal):
             yield f"{name} carries out {act.goal}, which our bridge did not publish"
     if robot.started or robot.swerved:
         yield f"{name} {'begins to move' if robot.started else 'changes its way'} unasked"

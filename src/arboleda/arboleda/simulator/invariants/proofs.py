@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from arboleda.core.ledger import State
-from arboleda.core.messages import Reason
-from arboleda.core.model import Evidence
-from arboleda.kinds.arm import SetEffector
+from arboleda.dispatch.ledger import State
+from arboleda.model.commands import Query, Switch
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import Evidence
 
 from ..recorded.commands import SentCommand
 from ..recorded.proofs import Proof, told
@@ -45,10 +45,15 @@ def ends_are_proven(look: Look) -> Iterator[str]:
             yield f"{sent} is taken for accepted, which nobody has said"
         elif sent.state is State.DONE and not (proof.done or _settled(look, sent)):
             yield f"{sent} is taken for done, which nobody has said since it was sent"
-        elif sent.state is State.CANCELLED and not (proof.still or proof.must_end):
+        elif sent.state is State.CANCELLED and not (proof.still or proof.must_end or _is_forgotten(sent)):
             yield f"{sent} is taken for halted, and nobody has said that it stands still"
         elif sent.state is State.FAILED:
             yield from _wrong_cause(look, sent, proof)
+
+
+def _is_forgotten(sent: SentCommand) -> bool:
+    """Whether it can be given up without a word of its robot: a question is."""
+    return isinstance(sent.command, Query)
 
 
 def _said_since(look: Look, sent: SentCommand) -> bool:
@@ -66,7 +71,7 @@ def _settled(look: Look, sent: SentCommand) -> bool:
     """
     evidence, timing = look.world.model.robots[sent.robot].evidence, look.world.model.timing
     passed_s = look.record.stepped_at - sent.at + ROUNDING_S
-    if isinstance(sent.command, SetEffector):
+    if isinstance(sent.command, Switch):
         return evidence is not Evidence.IDS and passed_s >= timing.effector_settle_s
     return evidence is Evidence.STATE and passed_s >= min(timing.stop_timeout_s, sent.deadline - sent.at)
 
@@ -82,7 +87,8 @@ def _wrong_cause(look: Look, sent: SentCommand, proof: Proof) -> Iterator[str]:
 def _by_time(look: Look, sent: SentCommand) -> set[Reason]:
     """For what it may fail now though its robot says nothing."""
     record, known = look.record, look.record.robots[sent.robot]
-    found = {Reason.LINK_LOST} if known.stale_at <= record.stepped_at else set()
+    is_cut_off = known.stale_at <= record.stepped_at or sent.command.id in look.moment.undelivered
+    found = {Reason.LINK_LOST} if is_cut_off else set()
     if sent.entry is not None and sent.entry.deadline <= record.stepped_at + ROUNDING_S:
         found.add(Reason.STOP_UNCONFIRMED if sent.cancelled_at is not None else Reason.DEADLINE)
     return found

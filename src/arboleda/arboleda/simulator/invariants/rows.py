@@ -9,16 +9,16 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.core.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.core.cell import HELD, HELD_STRANDED
-from arboleda.core.ledger import OPEN, State
-from arboleda.core.messages import TaskChanged, TaskState
-from arboleda.core.model import MotionState, Robot
-from arboleda.core.sentence import Phrase, Sentence
-from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
+from arboleda.dispatch.ledger import OPEN, State
+from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.messages import ENDED, TaskChanged
+from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recipes.storage_cell import StorageCell
-from arboleda.views.tree_view import IN_RECOVERY
+from arboleda.trees.tree_run import IN_RECOVERY
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -27,7 +27,6 @@ from ..recorded.tasks import KnownTask
 
 Row = dict[str, Any]
 EXACT = 1e-6
-ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
 WORDS = {
     "Selector": "selector",
     "Sequence": "sequence",
@@ -190,7 +189,7 @@ def of_cell(row: Row) -> dict[str, str]:
 
 def ended_at(robot: Robot, last: SentCommand | None, q: tuple[float, ...] | None) -> Row | None:
     """Where the last motion of a robot ended, as far as that was proven; `q`: where an arm's did."""
-    if isinstance(robot, Arm):
+    if robot.has_joints:
         return None if q is None else {"q": list(q)}
     done = last is not None and last.state is State.DONE and isinstance(last.command, FollowPath)
     return {"node": last.command.nodes[-1]} if done else None  # type: ignore[union-attr]

@@ -9,10 +9,10 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.errors import PayloadError
-from arboleda.core.ledger import OPEN, State
+from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.errors import PayloadError
 from arboleda.views import diagnostics, places, twin_view, view
 from arboleda.wire import status
 
@@ -132,7 +132,8 @@ def _cell(look: Look, cell: KnownCell) -> Row:
 
 
 def _device(role: str, robot: Arm | Mobile, holds: str | None) -> Row:
-    return {"role": role, "name": robot.name, "kind": role, "position": robot.position_key, "holds": holds}
+    place = robot.position_key
+    return {"role": role, "name": robot.name, "kind": role, "position": place, "holds": holds, "asked": False}
 
 
 def _tasks(look: Look, shown: Row) -> Iterator[str]:
@@ -187,7 +188,7 @@ def _node(tree: Behaviour, path: str) -> Behaviour:
 def _robot(look: Look, known: KnownRobot) -> Row:
     now, robot = look.record.stepped_at, known.robot
     last = look.record.commands.last.get(robot.name)
-    is_arm = isinstance(robot, Arm)
+    is_arm = robot.has_joints
     kept = look.record.effector_of(robot.name)
     return {
         "mqtt": robot.mqtt,
@@ -204,7 +205,7 @@ def _robot(look: Look, known: KnownRobot) -> Row:
         "boot_id": known.boot,
         "bridge_epoch": known.epoch,
         "holding": kept != "off" if is_arm else None,
-        "units": [_unit(joint) for joint in robot.joints] if isinstance(robot, Arm) else None,
+        "units": [_unit(joint) for joint in robot.joints] if robot.has_joints else None,
         "goal": _goal(last),
     }
 
@@ -275,7 +276,7 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
         yield f"{name} is drawn going since {since}, at {row['reached']}; it came to {reached}"
     if goes and last is not None and last.cancelled_at is None and not (since and since >= last.at):
         yield f"{name} is drawn going since {since}, its command left at {last.at}"
-    known_place = known.q if isinstance(known.robot, Arm) else known.node
+    known_place = known.q if known.robot.has_joints else known.node
     if (row["position_at"] is None) is not (known_place is None):
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
 
@@ -322,7 +323,7 @@ def _broken(look: Look) -> Iterator[str]:
         return
     sent = status.to_status(robot, report)
     garbled = [replace(sent, values={**sent.values, key: value}) for key, value in GARBLED]
-    if isinstance(robot, Arm):
+    if robot.has_joints:
         endless = ",".join(["1e999"] * len(robot.joints))
         garbled.append(replace(sent, values={**sent.values, "q": endless}))
     alone = {key: value for key, value in sent.values.items() if key != "reason"} | {"rejected": "1-1"}

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterable, Iterator
 
 from arboleda.core.cell_states import TABLE, Cause, CellState
-from arboleda.core.messages import (
+from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.messages import (
+    ENDED,
     Fact,
     OperatorAnswer,
     OperatorRequest,
@@ -16,15 +18,16 @@ from arboleda.core.messages import (
     TaskState,
     Verb,
 )
-from arboleda.core.model import Evidence, Link
-from arboleda.core.sentence import Sentence
+from arboleda.model.plant_model import Evidence
+from arboleda.model.sentence import Sentence
 
 from ..recorded.cells import KnownCell
 from ..recorded.robots import Stopped
+from ..recorded.scopes import UNSENT
 from ..truth.mobile import MobileTruth
 from .invariant import Look, When, invariant
 
-ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
+LONGEST_WAIT_S = 1.5  # for the plant: robots have stopped themselves by then
 LEGAL: dict[TaskState | None, frozenset[TaskState]] = {
     None: frozenset({TaskState.QUEUED}),
     TaskState.QUEUED: frozenset({TaskState.RUNNING, TaskState.CANCELLED}),
@@ -103,11 +106,12 @@ def tasks_start_where_all_is_ready(look: Look) -> Iterable[str]:
         cell = record.cells[change.said.cell].cell
         for robot in cell.robots:
             known = record.robots[robot.name]
-            if robot.link is not Link.NONE and known.is_unfit(record.stepped_at, look.world.plant.epoch):
+            if robot.link not in UNSENT and known.is_unfit(record.stepped_at, look.world.plant.epoch):
                 yield f"task {change.said.task} starts, and {robot.name} takes no command"
-        kept = record.kept.get(Fact.EFFECTOR, {}).get(cell.arm.name, "off")
-        if "off" not in (kept, record.effector_of(cell.arm.name)):
-            yield f"task {change.said.task} starts, and the effector of {cell.arm.name} is {kept}"
+        for name in cell.holders:
+            kept = record.kept.get(Fact.EFFECTOR, {}).get(name, "off")
+            if "off" not in (kept, record.effector_of(name)):
+                yield f"task {change.said.task} starts, and the effector of {name} is {kept}"
 
 
 @invariant(When.TOLD)
@@ -134,7 +138,7 @@ def _asked_to_cancel(look: Look) -> bool:
 @invariant(When.NEWS)
 def accepted_tasks_are_kept(look: Look) -> Iterable[str]:
     """Each accepted task is in its cell's queue, runs there, or has ended."""
-    return _unkept(look)
+    return _unkept(look) if look.world.has_stepped else ()
 
 
 def _unkept(look: Look) -> Iterator[str]:
@@ -193,7 +197,8 @@ def _at_birth(look: Look) -> Iterator[str]:
     robots = look.record.robots
     for cell in look.record.cells.values():
         stops = {robots[robot.name].stop for robot in cell.cell.robots}
-        state = CellState.ABORTED if Stopped.LATCHED in stops else CellState.STOPPED if any(stops) else None
+        uncleared, unreset = Stopped.LATCHED in stops, cell.stopped or any(stops)
+        state = CellState.ABORTED if uncleared else CellState.STOPPED if unreset else None
         if state is not None and cell.run.state is not state:
             yield f"{cell.name} starts {cell.run.state.value}; its stop was not over"
         if state is None and cell.run.state not in (CellState.IDLE, CellState.HELD):
@@ -226,6 +231,17 @@ def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
     """
     for command in look.record.unasked:
         yield f"the plant was away, and by itself sends {command}"
+
+
+@invariant(When.LATE)
+def nothing_late_leaves(look: Look) -> Iterator[str]:
+    """What a plant decided before its disk kept it for longer than robots wait for it is not sent any more,
+    but for stops.
+    """
+    for message, late_s in look.moment.late:
+        is_stop = isinstance(message, Stop) and message.mode is not StopMode.CLEAR
+        if isinstance(message, Command) and not is_stop and late_s > LONGEST_WAIT_S:
+            yield f"{message} leaves {late_s:.1f} s after it was decided"
 
 
 @invariant(When.TOLD)
@@ -303,6 +319,7 @@ TASKS = (
     rejected_input_changes_nothing,
     every_request_is_answered,
     nothing_moves_after_an_absence,
+    nothing_late_leaves,
     no_internal_failure,
     no_task_fails_without_a_fault,
     sentences_are_for_people,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from arboleda.core.messages import TaskChanged, TaskRequest, TaskState
-from arboleda.core.model import PlantModel
-from arboleda.core.sentence import Value
 from arboleda.core.text import FORM, UNKNOWN_BUT_NEAR
+from arboleda.model.messages import TaskChanged, TaskRequest, TaskState
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Value
 
 from .invariant import Look, When, invariant
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.ledger import State
-from arboleda.core.messages import Journal, OperatorAnswer, OperatorRequest, TaskState, Verb
-from arboleda.core.model import Evidence, Link
-from arboleda.kinds.arm import Arm, SetEffector
+from arboleda.dispatch.ledger import State
+from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
+from arboleda.model.messages import Journal, OperatorAnswer, OperatorRequest, TaskState, Verb
+from arboleda.model.plant_model import Evidence, Link
 
 from ..recorded.cells import KnownCell
+from ..recorded.commands import SentCommand
 from ..recorded.robots import Stopped
 from ..recorded.verbs import Asked
 from .invariant import Look, When, invariant
@@ -24,7 +24,8 @@ S = CellState
 def _resumable(cell: Asked) -> bool:
     if cell.state is S.IDLE:
         return cell.paused
-    return cell.state is S.HELD and cell.has_task and not cell.troubled and not cell.stranded
+    held = cell.state is S.HELD and cell.has_task
+    return held and not (cell.troubled or cell.stranded or cell.waits)
 
 
 CAN: dict[Verb, Can] = {
@@ -34,7 +35,7 @@ CAN: dict[Verb, Can] = {
     Verb.RESUME: _resumable,
     Verb.CANCEL: lambda cell: cell.has_task and cell.state in (S.EXECUTE, S.HELD),
     Verb.RETRY: lambda cell: (
-        cell.state is S.HELD and not cell.stranded and (cell.troubled or not cell.has_task)
+        cell.state is S.HELD and not (cell.stranded or cell.waits) and (cell.troubled or not cell.has_task)
     ),
     Verb.ABANDON: lambda cell: cell.state is S.HELD and (cell.has_task or not cell.holding),
 }
@@ -61,8 +62,13 @@ def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
     """The one verb of a step, before which nothing else happened in it but that the plant had been away."""
     asked, answers = look.moment.asked, look.record.answers
     alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.born
-    if alone and isinstance(asked[0], OperatorRequest):
+    if alone and isinstance(asked[0], OperatorRequest) and not _is_shared(look, asked[0]):
         yield asked[0], answers[0]
+
+
+def _is_shared(look: Look, request: OperatorRequest) -> bool:
+    """Whether a verb is for a device that cells share: it goes to the one that holds it."""
+    return request.scope.strip().lower() in look.world.model.shared
 
 
 def _found(look: Look) -> list[Asked]:
@@ -80,7 +86,7 @@ def _held_after_absence(cell: Asked) -> Asked:
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
     """None where it cannot be said by what the record has."""
     record, verb, scope = look.record, request.verb, request.scope
-    if verb is Verb.UNLOAD:
+    if verb in (Verb.UNLOAD, Verb.ANSWER):
         return None
     if verb is Verb.OVERRIDE:
         quarantined = record.asked.quarantined.get(scope.strip().lower())
@@ -135,13 +141,26 @@ def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[Asked, 
     return [(cell, look.record.cells[cell.name]) for cell in asked]
 
 
+def _kept_stopped(look: Look, request: OperatorRequest) -> set[str]:
+    """The shared devices that a clear leaves stopped: another cell of theirs was, and is not cleared."""
+    scope, record = set(look.record.scopes.robots(request.scope)), look.record
+    kept = set()
+    for device in look.world.model.shared:
+        for cell in look.world.model.cells_of[device]:
+            others = [name for name in cell.own if record.robots[name].stop is Stopped.LATCHED]
+            aborted = record.cells[cell.name].state in (S.ABORTING, S.ABORTED)
+            if aborted and not scope.issuperset(others):
+                kept.add(device)
+    return kept
+
+
 def _stops(look: Look, mode: StopMode) -> set[str]:
     sent = (each for each in look.moment.sent if isinstance(each, Stop))
     return {each.robot for each in sent if each.mode is mode}
 
 
 def _stopped(look: Look, request: OperatorRequest) -> Iterator[str]:
-    scope = set(look.record.scopes.robots(request.scope))
+    scope = look.record.scopes.commanded(request.scope)
     if _stops(look, StopMode.LATCH) != scope:
         yield f"{sorted(scope)} had to be stopped, {sorted(_stops(look, StopMode.LATCH))} were"
     for _, cell in _cells(look, request, CAN[Verb.STOP]):
@@ -152,22 +171,30 @@ def _stopped(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 def _uncancelled(look: Look, cell: str, *, motions: bool = False) -> Iterator[str]:
     for sent in look.record.commands.open.values():
-        if sent.entry is None or sent.entry.cell != cell or (motions and not sent.is_motion):
+        if sent.entry is None or sent.entry.cell != cell or (motions and not sent.can_be_halted):
             continue
-        if sent.state is not State.CANCELLING:
+        if sent.state is not State.CANCELLING and not _finishes(sent):
             yield f"{sent} goes on"
+
+
+def _finishes(sent: SentCommand) -> bool:
+    """Whether it is work that goes on through a stop."""
+    return sent.is_work and not sent.can_be_halted
 
 
 def _cleared(look: Look, request: OperatorRequest) -> Iterator[str]:
     record = look.record
     could = _cells(look, request, lambda cell: not CANNOT[Verb.CLEAR](cell))
     names = {robot.name for _, cell in could for robot in cell.cell.robots}
-    wanted = names & set(record.scopes.robots(request.scope))
+    wanted = names & record.scopes.commanded(request.scope) - _kept_stopped(look, request)
     cleared = _stops(look, StopMode.CLEAR)
+    wanted -= {*look.world.model.shared} - cleared  # which is cleared only where it was stopped, too
     if not cleared <= wanted or (len(could) == 1 and cleared != wanted):
         yield f"{sorted(wanted)} could be cleared, {sorted(cleared)} were"
     for before, cell in could:
-        latched = [r.name for r in cell.cell.robots if record.robots[r.name].stop is Stopped.LATCHED]
+        kept = _kept_stopped(look, request)
+        mine = [r.name for r in cell.cell.robots if r.name not in kept]
+        latched = [name for name in mine if record.robots[name].stop is Stopped.LATCHED]
         if latched and before.state is S.ABORTED and cell.state is not S.ABORTED:
             yield f"{cell.name} is {cell.state.value}, and {latched} are still stopped"
         if not latched and cell.state is S.ABORTED and len(could) == 1:
@@ -202,7 +229,8 @@ def _given_up(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 
 def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
-    sent = [each for each in look.moment.sent if isinstance(each, SetEffector) and not each.on]
+    switches = (each for each in look.moment.sent if isinstance(each, Switch))
+    sent = [each for each in switches if each.grips is False]
     if not sent:
         yield "no effector was opened"
     yield from _outside(look, request, sent)
@@ -220,7 +248,7 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
 def _outside(look: Look, request: OperatorRequest, sent: Iterable[Command]) -> Iterator[str]:
     scope = look.record.scopes.robots(request.scope)
     for each in sent:
-        if each.robot not in scope or not isinstance(look.world.model.robots[each.robot], Arm):
+        if each.robot not in scope or look.world.model.robots[each.robot].held_fact is None:
             yield f"{each} is not in its scope"
 
 

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import Any
 
-from arboleda.core.commands import Command, Home, Stop, StopMode
-from arboleda.core.messages import Heartbeat
-from arboleda.core.model import Evidence
 from arboleda.kinds.arm import Arm, Joint, MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath, Grid, Mobile
+from arboleda.kinds.mobile import FollowPath, Grid
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import Evidence
 
+from ..record import SLOW_S
 from ..recorded.boards import fields, is_number, on_wire
 from ..world import BRIDGE
 from .invariant import Look, When, invariant
@@ -49,7 +50,7 @@ def wire_targets_legal(look: Look) -> Iterable[str]:
 def _joints(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     arm = board.robot
-    assert isinstance(arm, Arm)
+    assert arm.has_joints
     goal = [body.get(f"q{number}") for number in range(1, len(arm.joints) + 1)]
     if not all(is_number(value) for value in goal) or not _numbered(arm.evidence, body):
         yield f"{name}/juntas is {body}"
@@ -82,7 +83,7 @@ def _is_goal(arm: Arm, q: tuple[float, ...], goal: list[Any]) -> bool:
 def _path(look: Look, name: str, body: dict[str, Any]) -> Iterator[str]:
     board = look.record.boards.by_name[name]
     mobile = board.robot
-    assert isinstance(mobile, Mobile)
+    assert mobile.on_grid
     nodes = body.get("nodos")
     whole = isinstance(nodes, list) and nodes and all(type(node) is int for node in nodes)
     if not whole or not _numbered(mobile.evidence, body):
@@ -146,6 +147,8 @@ def _untold(look: Look) -> Iterator[str]:
         if where is None or report.robot not in record.shown:
             continue
         _, board, _ = record.shown[report.robot]
+        if not board.remembers(report.at - SLOW_S):
+            continue  # the plant waited for its disk for longer than this record reaches back
         if not board.said(report.q, report.node, record.told_since(report.at)):
             yield f"{report.robot} is reported at {where}, which its board has not told lately"
 
@@ -194,6 +197,8 @@ def _commanded(channel: str, body: dict[str, Any]) -> Callable[[Command], bool] 
         return lambda command: isinstance(command, Home)
     if channel == "efector":
         return lambda command: isinstance(command, SetEffector) and command.on == body.get("efector")
+    if channel == "orden":
+        return lambda command: command.given.get("verb") == body.get("verbo")
     if channel == "paro" and body.get("paro") == StopMode.CLEAR:
         return lambda command: isinstance(command, Stop) and command.mode is StopMode.CLEAR
     return None

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import dropwhile
 
-from arboleda.core.ledger import State
-from arboleda.core.model import Evidence, Pose
+from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import Arm, MoveJoints
+from arboleda.model.plant_model import Evidence, Pose
 from arboleda.recipes.storage_cell import StorageCell
 
 from ..recorded.cells import KnownCell

@@ -15,7 +15,16 @@ from .zones import draw_zones
 
 CELLS = (1, 1, 1, 1, 1, 2, 2, 2, 3, 4)  # how many; many are simulated slower and find little more
 # by section and key: what is of cells of devices, whose truth nobody judges yet
-NOT_DRAWN = (("", "uses"), ("", "kinds"), ("zones", "free_while"))
+NOT_DRAWN = (
+    ("", "uses"),
+    ("", "kinds"),
+    ("", "shared"),
+    ("", "history_days"),
+    ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
+    ("zones", "free_while"),
+    ("arm", "driver"),  # virtual boards play their devices
+    ("mobile", "driver"),
+)
 SHARED = 0.25  # how often cells share a section at the top of the file
 
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from arboleda.core.model import Evidence, Link
 from arboleda.kinds.arm import Joint
+from arboleda.model.plant_model import Evidence, Link
 
 from ..chance import Dice
 from .poses import Axis, Section, told_mm

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import OperatorRequest
-from arboleda.core.task import Task
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.task import Task
 
 from .cells import KnownCell
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
-from arboleda.core.model import Robot
-from arboleda.kinds.arm import Arm, Joint
+from arboleda.kinds.arm import Joint
+from arboleda.model.plant_model import Robot
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import Goal
 from arboleda.wire.topics import Channel, topic
@@ -38,8 +38,8 @@ class KnownBoard:
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
         self._written: tuple[tuple[float, ...] | int | None, bytes] | None = None
-        joints = robot.joints if isinstance(robot, Arm) else ()
-        self._axes = len(joints) or None
+        joints = robot.joints if robot.has_joints else ()
+        self._axes = board.body.axes
         self._degrees = tuple(on_wire(joint, 1.0) for joint in joints)
         self._keys = tuple(f"q{number}_mov" for number in range(1, len(joints) + 1)) or ("nodo",)
         self._form = "{" + "".join(f'"{key}":%s,' for key in self._keys)
@@ -68,6 +68,10 @@ class KnownBoard:
             return True
         there = dict(zip(self._keys, map(float, self._on_wire(q, node)), strict=True))
         return any(each.at >= since and _says(each.payload, there) for each in reversed(self.telemetry))
+
+    def remembers(self, at: float) -> bool:
+        """Whether all is known that was told from then on."""
+        return len(self.telemetry) < RECENT or self.telemetry[0].at <= at
 
     def _words(self, q: tuple[float, ...] | None, node: int | None) -> bytes:
         """How telemetry of our boards begins where it says this."""

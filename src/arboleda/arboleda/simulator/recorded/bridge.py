@@ -12,12 +12,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from arboleda.core.belief import Belief
-from arboleda.core.commands import Command, Home, Motion, Stop, StopMode
-from arboleda.core.messages import Heartbeat, Report
-from arboleda.core.model import Evidence, Link, MotionState, PlantModel, Robot
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.dispatch.belief import Belief
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Motion, Stop, StopMode
+from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Robot
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
@@ -77,7 +77,8 @@ class _Bridge:
     """One start of the bridge."""
 
     def __init__(self, model: PlantModel, wrong: defaultdict[str, list[str]]) -> None:
-        robots = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
+        reached = [robot for robot in model.robots.values() if robot.link is Link.MQTT]
+        robots = [robot for robot in reached if robot.goes]
         self._wrong = wrong
         self._boards = {robot.name: _Board(robot, model.timing.stale_after_s, wrong) for robot in robots}
         self._by_topic = {
@@ -104,10 +105,8 @@ class _Bridge:
                 reports[message.robot].append(message)
             elif isinstance(message, Publication):
                 published[message.topic.partition("/")[0]].append(message)
-            elif isinstance(message, Rejection):
-                self._boards[message.robot].reject(message)
-            elif isinstance(message, ForeignCommand):
-                self._boards[message.robot].obey_foreign()
+            elif isinstance(message, Rejection | ForeignCommand):
+                self._told(message, self._boards.get(message.robot))
         self.of_others.clear()
         for event in passed.events:
             self._event(event, passed.now)
@@ -116,6 +115,12 @@ class _Bridge:
             mqtt = board.robot.mqtt
             if board.touched or name in reports or mqtt in published or board.stale_at <= passed.now:
                 board.end_step(passed.now, reports[name], published[mqtt], late=late)
+
+    def _told(self, message: Rejection | ForeignCommand, board: _Board | None) -> None:
+        if board is not None and isinstance(message, Rejection):
+            board.reject(message)
+        elif board is not None:
+            board.obey_foreign()
 
     def _event(self, event: Any, now: float) -> None:
         if isinstance(event, Delivery):
@@ -127,13 +132,16 @@ class _Bridge:
                 board.connect(event.up)
         elif isinstance(event, FromPlant) and isinstance(event.message, Heartbeat):
             self._beat(event.at, event.message.epoch, event.unix_s)
-        elif isinstance(event, FromPlant) and event.message.robot in self._boards:
-            board = self._boards[event.message.robot]
-            if not event.message.id:
-                is_alone = event.at >= self._beat_at + PLANT_GONE_S and now - event.at <= self._patience_s
-                self.of_others += [event.message] if is_alone else []
+        elif isinstance(event, FromPlant):
+            self._command(event, now, self._boards.get(event.message.robot))
+
+    def _command(self, event: FromPlant, now: float, board: _Board | None) -> None:
+        if not event.message.id:
+            is_alone = event.at >= self._beat_at + PLANT_GONE_S and now - event.at <= self._patience_s
+            self.of_others += [event.message] if is_alone else []
+            if board is not None:
                 board.hear_others(event.at, event.message, is_alone=is_alone)
-                return
+        elif board is not None:
             if event.copied:
                 board.expect_copy(event.at, event.message)
             board.command(event.message, self._plant)
@@ -164,12 +172,13 @@ class _Board:
         self._plant_before: int | None = None  # after the step before: a beat may come between two reports
         self._latched = False
         self._ids: OrderedDict[tuple[int, int], str] = OrderedDict()  # (epoca, seq) -> command
+        self._given: dict[tuple[int, int], int] = {}  # of this step: the place of its command in `_orders`
         self._seq = 0
         self._seen: set[str] = set()
         self._refused: set[tuple[str, str]] = set()
         self._words: tuple[Any, ...] = ()  # of the last telemetry: its bytes without the number, the report
-        self._telling: list[Delivery] = []
-        self._maybe: list[Delivery] = []
+        self._telling: list[tuple[Delivery, int]] = []  # with how many orders of this step came before it
+        self._maybe: list[tuple[Delivery, int]] = []
         self._copies: list[tuple[float, Command]] = []  # that are to come of what the plant said
         self._early: list[tuple[float, Command]] = []  # without an id, whose original may still come
         self._orders: list[tuple[Command, str]] = []  # with the word that refuses it, or ""
@@ -186,6 +195,7 @@ class _Board:
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
         self._motion: int | None = None  # number of a motion that surely has not ended
         self._may_move = False  # whether a motion may be open
+        self._is_taken_over = False  # whether nobody followed what it said first
         self._had_ended = False  # whether none was open after the step before
         self._moved = False  # whether the board has said so since the last motion, or a stop followed that
         self._still_since: float | None = None  # since then
@@ -194,7 +204,7 @@ class _Board:
         self._connected, self._plant, self._boot = True, belief.plant, belief.boot_id
         self._plant_before = belief.plant
         self._up, self._heard_at = belief.heard_at is not None, now
-        self._was_down = not self._up
+        self._was_down, self._is_taken_over = not self._up, True
 
     @property
     def stale_at(self) -> float:
@@ -252,7 +262,8 @@ class _Board:
         if same and number is not None and self._number is not None and number <= self._number:
             if self._up:
                 return
-            self._maybe.append(delivery)  # a counter that began anew counts again after some time
+            # a counter that began anew counts again after some time
+            self._maybe.append((delivery, len(self._orders)))
             return
         self._rose |= not self._up or (boot is not None and self._boot is not None and boot != self._boot)
         self._take(delivery, said)
@@ -275,7 +286,7 @@ class _Board:
         self._up, self._heard_at = True, delivery.at
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
-        self._telling.append(delivery)
+        self._telling.append((delivery, len(self._orders)))
 
     def _follow_motion(self, at: float, said: dict[str, Any]) -> None:
         boot = said.get("arranque", self._boot)
@@ -337,7 +348,7 @@ class _Board:
 
     def _is_within(self, command: Command) -> bool:
         """Whether the robot can reach the goal: where an arm lies, a way up may lead beyond its limits."""
-        if not isinstance(command, MoveJoints) or not isinstance(self.robot, Arm):
+        if not isinstance(command, MoveJoints) or not self.robot.has_joints:
             return True
         rows = zip(self.robot.joints, command.q, strict=True)
         return all(joint.lower - SLACK <= value <= joint.upper + SLACK for joint, value in rows)
@@ -363,7 +374,9 @@ class _Board:
             self._compare_foreign(reports[-1])
         if self._heard_at + self._patience_s <= now:
             self._up = False  # what counted only in hindsight may be too old by now
-        self._telling, self._maybe, self._orders = [], [], []
+        if self._given and self._words:
+            self._words = (None, None, self._words[2])  # the same bytes may name a command by now
+        self._telling, self._maybe, self._orders, self._given = [], [], [], {}
         if self._rejections or self._is_foreign_new:
             self._rejections, self._is_foreign_new = [], False
         self._was_down = not self._up
@@ -396,7 +409,7 @@ class _Board:
     def _compare_orders(self, reports: list[Report], published: list[Publication]) -> None:
         orders = [each for each in published if not each.topic.endswith("/latido")]
         name = self.robot.name
-        for command, word in self._orders:
+        for place, (command, word) in enumerate(self._orders):
             if word:
                 self._refused.add((command.id, word))
                 if (command.id, word) not in [(each.rejected, each.refusal) for each in reports]:
@@ -411,15 +424,15 @@ class _Board:
             if publication is None or not is_it:
                 self._say(COMMANDS, f"{command} should have left; what left is {publication}")
                 return
-            self._check_body(command, publication)
+            self._check_body(command, publication, place)
         for publication in orders:
             again = publication.topic.endswith("/paro") and b'"paro":1' in publication.payload
             if again and self._latched and self._rose:
-                self._number_of("", publication)
+                self._number_of("", publication, len(self._orders))
             else:
                 self._say(COMMANDS, f"{name} is sent {publication.payload!r}, which nobody commanded")
 
-    def _check_body(self, command: Command, publication: Publication) -> None:
+    def _check_body(self, command: Command, publication: Publication, place: int) -> None:
         body = json.loads(publication.payload)
         if isinstance(command, SetEffector) and body.get("efector") != int(command.on):
             self._say(COMMANDS, f"{command} left as {body}")
@@ -427,7 +440,7 @@ class _Board:
             self._say(COMMANDS, f"{command} left as {body}")
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
-        self._number_of(command.id, publication)
+        self._number_of(command.id, publication, place)
         if isinstance(command, Motion):
             self._may_move, self._moved, self._still_since = True, False, None
             self._had_ended = False
@@ -447,7 +460,7 @@ class _Board:
                 return
         self._say(COMMANDS, f"{id} was refused as {word}, and people are told {self._rejections}")
 
-    def _number_of(self, id: str, publication: Publication) -> None:
+    def _number_of(self, id: str, publication: Publication, place: int) -> None:
         if not self._by_ids:
             return
         body = json.loads(publication.payload)
@@ -456,7 +469,7 @@ class _Board:
         if number[1] != self._seq:
             self._say(COMMANDS, f"{publication.topic} has the number {number[1]} after {self._seq - 1}")
             self._motion = None
-        self._ids[number] = id
+        self._ids[number], self._given[number] = id, place
         if len(self._ids) > KEPT:
             self._ids.popitem(last=False)
 
@@ -470,8 +483,8 @@ class _Board:
             self._say(REPORTS, f"{name} is reported lost, and is there")
         before = [self._words[2] if self._words else None, *told]
         rest = list(zip(before, told, strict=False))
-        for delivery in self._telling:
-            pair = next((each for each in rest if self._says(each[1], delivery)), None)
+        for delivery, place in self._telling:
+            pair = next((each for each in rest if self._says(each[1], delivery, place)), None)
             if pair is None:
                 self._say(REPORTS, f"{delivery.payload!r} of {name} is not reported as it is: {told}")
                 return
@@ -482,40 +495,44 @@ class _Board:
 
     def _is_known(self, report: Report, last: Report | None) -> bool:
         """Whether it repeats the one before, as for a plant that was not heard before, or what may count."""
-        counted = next((delivery for delivery in self._maybe if self._says(report, delivery)), None)
+        counted = next((each for each, place in self._maybe if self._says(report, each, place)), None)
         if counted is not None:
             self._take(counted, _read(counted.payload, self.robot) or {})
             self._telling = []
             return True
-        return self._is_new_plant and last is not None and _content(report) == _content(last)
+        if last is None:
+            return self._is_new_plant and self._is_taken_over
+        return self._is_new_plant and _content(report) == _content(last)
 
-    def _says(self, report: Report, delivery: Delivery) -> bool:
-        """Whether a report says what telemetry says, of our commands too."""
+    def _says(self, report: Report, delivery: Delivery, place: int) -> bool:
+        """Whether a report says what telemetry says that came after `place` orders of this step."""
         if report.at != delivery.at or report.plant not in (self._plant, self._plant_before):
             return False
         before, _, after = _parts(delivery.payload)
-        if self._words and (before, after) == self._words[:2] and report.words == self._words[2].words:
+        alike = self._words and not self._given and (before, after) == self._words[:2]
+        if alike and report.words == self._words[2].words:
             self._words = (before, after, report)
             return True
         said = _read(delivery.payload, self.robot)
-        if said is None or not _agree(report, said, self.robot) or not self._names(report, said):
+        if said is None or not _agree(report, said, self.robot) or not self._names(report, said, place):
             return False
         self._words = (before, after, report)
         return True
 
-    def _names(self, report: Report, said: dict[str, Any]) -> bool:
-        """Whether it names the commands by the numbers that the board tells."""
+    def _names(self, report: Report, said: dict[str, Any], place: int) -> bool:
+        """Whether it names the commands by the numbers that the board tells, none before it had one."""
         if not self._by_ids:
             return report.accepted is None and report.done is None
         epoch = said.get("epoca_ack")
-        numbers = {key: (epoch, said.get(key)) for key in ("ack", "hecho", "rechazo_seq")}
-        if report.accepted != (self._ids.get(numbers["ack"]) or None):
-            return False
-        if report.done != (self._ids.get(numbers["hecho"]) or None):
+        accepted, done, rejected = (
+            self._ids.get(number) if self._given.get(number, -1) < place else None
+            for number in ((epoch, said.get(key)) for key in ("ack", "hecho", "rechazo_seq"))
+        )
+        if report.accepted != (accepted or None) or report.done != (done or None):
             return False
         if report.rejected is None:
             return True
-        by_board = self._ids.get(numbers["rechazo_seq"]) == report.rejected
+        by_board = rejected == report.rejected
         by_board = by_board and said.get("rechazo") == report.refusal
         if by_board or said.get("rechazo") == "viejo":
             self._refused.add((report.rejected, report.refusal or ""))
@@ -542,14 +559,12 @@ def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:
         said = json.loads(payload)
     except ValueError:
         return None
-    place = (
-        [f"q{number + 1}_mov" for number in range(len(robot.joints))] if isinstance(robot, Arm) else ["nodo"]
-    )
+    place = [f"q{number + 1}_mov" for number in range(len(robot.joints))] if robot.has_joints else ["nodo"]
     if not isinstance(said, dict) or len(payload) > 512 or not all(key in said for key in place):
         return None
-    if any(key in said for key in (FOREIGN_TO_ARMS if isinstance(robot, Arm) else FOREIGN_TO_MOBILES)):
+    if any(key in said for key in (FOREIGN_TO_ARMS if robot.has_joints else FOREIGN_TO_MOBILES)):
         return None
-    if isinstance(robot, Mobile) and not 0 <= said["nodo"] < robot.grid.size:
+    if robot.on_grid and not 0 <= said["nodo"] < robot.grid.size:
         return None
     if not all(type(said[key]) in (int, float) and math.isfinite(said[key]) for key in place):
         return None
@@ -562,7 +577,7 @@ def _agree(report: Report, said: dict[str, Any], robot: Robot) -> bool:
         return False
     if report.state is None or report.state.value != said["estado"]:
         return False
-    if not isinstance(robot, Arm):
+    if not robot.has_joints:
         return report.node == said["nodo"] and report.q is None
     if report.q is None or report.node is not None:
         return False

@@ -11,8 +11,8 @@ from py_trees.common import Status
 
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.leaves import Act, TakeZones
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.trees.leaves import Act, TakeZones
 
 from .commands import SentCommand
 
@@ -24,7 +24,8 @@ class KnownCell:
     """A cell as it was after the last step; `stopped` outlives the plant: from stop to reset.
 
     `leaves` are those that run, `looked` whether they were looked up in this step; `sends` counts the
-    commands of each leaf of the tree, `again` how often an operator had an interrupted step given anew;
+    commands of each leaf of the tree, `again` how often an operator had an interrupted step given anew,
+    `retries` how often one had a step tried again, over all starts;
     `waited_s` is how long its arm has waited for its zones, in the cell's own time, a recovery since all
     before it were at work, `behind_work` whether those were when it last waited; `frozen_s` how much of that
     time did not pass since the last news although it was not held.
@@ -34,6 +35,7 @@ class KnownCell:
         self.cell = cell
         self.name = cell.name
         self.stopped = False
+        self.retries = 0
 
     def begin(self, run: CellRun) -> None:
         """A plant starts."""

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from arboleda.core.commands import Command, Motion, Stop, StopMode
-from arboleda.core.ledger import OPEN, Entry, Ledger, State
-from arboleda.core.messages import Report, Verb
-from arboleda.kinds.arm import SetEffector
+from arboleda.dispatch.ledger import OPEN, Entry, Ledger, State
+from arboleda.model.commands import Command, Motion, OnStop, Stop, StopMode, Switch, Work
+from arboleda.model.messages import Report, Verb
 
 from .robots import KnownRobot, Obstacle
 
@@ -30,7 +29,9 @@ class SentCommand:
         self.obstacles = obstacles
         self.verbs = verbs
         self.halts = halts
-        self.is_motion = isinstance(command, Motion)
+        self.is_work = isinstance(command, Work)
+        self.can_be_halted = isinstance(command, Work) and command.on_stop is OnStop.HALT
+        self.way = command.way if isinstance(command, Motion) else ()
         self.rejected = False
         self.entry: Entry | None = None
         self.state: State | None = None
@@ -62,12 +63,14 @@ class Commands:
         self.lost: list[SentCommand] = []
         self.goals: dict[str, deque[Command]] = {}
         self.last: dict[str, SentCommand] = {}  # of each robot, a stop or halt left out
+        self.last_work: dict[str, SentCommand] = {}
         self.soonest = math.inf
 
     def forget(self) -> None:
         """The plant that sent them is gone."""
         self.open.clear()
         self.last.clear()
+        self.last_work.clear()
         self.soonest = math.inf
 
     def clear_news(self) -> None:
@@ -82,9 +85,11 @@ class Commands:
         known.unnamed = command.id
         if not isinstance(command, Stop):
             self.last[command.robot] = sent
+        if sent.is_work:
+            self.last_work[command.robot] = sent
         if isinstance(command, Stop):
             known.halts += command.mode is not StopMode.CLEAR
-        elif not isinstance(command, SetEffector):
+        elif not isinstance(command, Switch):
             self.goals.setdefault(command.robot, deque(maxlen=RECENT)).append(command)
 
     def hear(self, report: Report, known: KnownRobot) -> None:

@@ -9,17 +9,22 @@ import math
 from dataclasses import dataclass, field
 from itertools import starmap
 
-from arboleda.core.commands import Home
-from arboleda.core.messages import Failure, Reason, Report
-from arboleda.core.model import Evidence, MotionState, Robot
-from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
+from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home, Query, Switch
+from arboleda.model.messages import Failure, Reason, Report
+from arboleda.model.plant_model import Evidence, MotionState, Robot
 
 from .commands import SentCommand
 from .robots import KnownRobot
 
 FLOAT_SLACK = 1e-9
-REFUSED = {"no_link": Reason.LINK_LOST, "paro": Reason.STOPPED, "sin_ref": Reason.NOT_HOMED}
+REFUSED = {
+    "no_link": Reason.LINK_LOST,
+    "paro": Reason.STOPPED,
+    "sin_ref": Reason.NOT_HOMED,
+    "condicion": Reason.PRECONDITION,
+}
 
 
 @dataclass
@@ -84,7 +89,8 @@ class Proofs:
                 shown = self._shown.setdefault(sent.command.id, Shown())
                 _see(shown, report)
                 _said(proof, sent, report, known.robot)
-                _moved(proof, sent, shown, report, known.robot, _off(sent, known.robot, q, node))
+                off = _off(sent, known.robot, q, node) if sent.way else _off_facts(sent, report, known)
+                _moved(proof, sent, shown, report, known.robot, off)
 
 
 def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) -> None:
@@ -101,6 +107,8 @@ def _broken(proof: Proof, sent: SentCommand, report: Report, known: KnownRobot) 
         proof.causes.add(Reason.REBOOTED)  # a jump; how far is too far is for the tests of evidence
     if report.rejected == sent.command.id:
         _must(proof, REFUSED.get(report.refusal or "", Reason.REJECTED), "it was refused")
+    if report.failed == sent.command.id:
+        _must(proof, Reason.DEVICE_FAULT, "its device gave it up")
 
 
 def _booted(report: Report, known: KnownRobot) -> bool:
@@ -127,7 +135,7 @@ def _said(proof: Proof, sent: SentCommand, report: Report, robot: Robot) -> None
     """Codes that speak for themselves."""
     if report.state is MotionState.FAULT:
         _must(proof, Reason.DEVICE_FAULT, "its board reports a fault")
-    if not sent.is_motion:
+    if not sent.is_work:
         return
     if report.state is MotionState.NOT_HOMED and not isinstance(sent.command, Home):
         _must(proof, Reason.NOT_HOMED, "its robot is not homed")
@@ -142,8 +150,13 @@ def _moved(
 ) -> None:
     """Whether it is under way or done; `off` is how far beyond its tolerance the robot stands."""
     command, stopped = sent.command, report.state is MotionState.STOPPED
-    if isinstance(command, SetEffector):
-        proof.done |= report.effector is command.on
+    if isinstance(command, Switch):
+        told = all(report.fact(name) == value for name, value in command.sets)
+        proof.done |= told if command.sets else report.done == command.id
+        return
+    if isinstance(command, Query):
+        proof.named |= report.accepted == command.id
+        proof.done |= report.answered == command.id and report.answer is not None
         return
     if isinstance(command, Home):
         proof.named |= shown.unhomed
@@ -180,7 +193,7 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
     command = sent.command
     if isinstance(command, FollowPath):
         return None if node is None else _off_path(command.nodes, node)
-    if not isinstance(command, MoveJoints) or not isinstance(robot, Arm) or q is None:
+    if not isinstance(command, MoveJoints) or not robot.has_joints or q is None:
         return None
 
     def beyond(at: float, goal: float, step: float, tolerance: float) -> float:
@@ -190,6 +203,13 @@ def _off(sent: SentCommand, robot: Robot, q: tuple[float, ...] | None, node: int
     tolerances = robot.tolerance or [joint.step / 2 + 1e-5 for joint in robot.joints]
     steps = [joint.step for joint in robot.joints]
     return max(starmap(beyond, zip(q, command.q, steps, tolerances, strict=True)))
+
+
+def _off_facts(sent: SentCommand, report: Report, known: KnownRobot) -> float:
+    """-1 where its robot says, or said last, all that a command sets; else 1."""
+    said = {name: report.fact(name) for name, _ in sent.command.sets}
+    told = {name: known.fact(name) if value is None else value for name, value in said.items()}
+    return -1.0 if all(told[name] == value for name, value in sent.command.sets) else 1.0
 
 
 def _off_path(nodes: tuple[int, ...], node: int) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from arboleda.core.messages import Fact, Heartbeat, OperatorAnswer, Remember, TaskChanged
+from arboleda.model.messages import Fact, Heartbeat, OperatorAnswer, Remember, TaskChanged
 
 if TYPE_CHECKING:
     from ..record import Record

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from enum import Enum
 
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, Link, MotionState, Robot
+from arboleda.model.facts import Value
+from arboleda.model.messages import BUILT_IN, Report
+from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
 
 LOOK_S = 0.5  # what stays the same is looked at this often
 
@@ -55,9 +57,16 @@ class KnownRobot:
         self.node: int | None = None
         self.effector: bool | None = None
         self.piece: bool | None = None
+        self.facts: dict[str, Value] = {}
         self.displaced = False  # it cannot report its homing, and has booted
         self.barred = False  # it has no stop, and its bridge refused a command because of one
         self.unnamed: str | None = None  # the last command that it was sent, until a report names it
+
+    def as_it_is(self) -> KnownRobot:
+        """What is known of it now, whatever it says later."""
+        known = copy(self)
+        known.facts = dict(self.facts)
+        return known
 
     def hear(self, report: Report) -> bool:
         """Take over what it says now; whether that is something else than before, or the same for LOOK_S."""
@@ -87,8 +96,15 @@ class KnownRobot:
             self.effector = report.effector
         if report.piece is not None:
             self.piece = report.piece
+        if report.facts:
+            self.facts.update(report.facts)
         if report.state is not None:
             self.state = report.state
+
+    def fact(self, name: str) -> Value | None:
+        """Its last word on a fact, which may have a field of its own."""
+        value: Value | None = getattr(self, name) if name in BUILT_IN else self.facts.get(name)
+        return value
 
     def _hear_boot(self, report: Report) -> None:
         changed = self.boot is not None and self.boot != report.boot_id

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from arboleda.core.model import PlantModel
+from arboleda.model.plant_model import Link, PlantModel
 
+UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 NOBODY: tuple[str, ...] = ()
 
 
@@ -14,13 +15,22 @@ class Scopes:
         cells = {cell.name: tuple(robot.name for robot in cell.robots) for cell in model.cells}
         everybody = tuple(model.robots)
         self._robots = {name: (name,) for name in everybody} | cells | {"": everybody, "plant": everybody}
-        self._cell_of = {robot: cell.name for robot, cell in model.cell_of.items()}
+        self._unsent = {name for name, robot in model.robots.items() if robot.link in UNSENT}
+        self._cells = {cell.name: (cell.name,) for cell in model.cells}
+        self._cells |= {robot: tuple(cell.name for cell in cells) for robot, cells in model.cells_of.items()}
 
     def robots(self, scope: str) -> tuple[str, ...]:
         return self._robots.get(scope.strip().lower(), NOBODY)
 
+    def commanded(self, scope: str) -> set[str]:
+        """The robots of a scope to whom commands are sent."""
+        return set(self.robots(scope)) - self._unsent
+
     def cells(self, scope: str) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(self._cell_of[robot] for robot in self.robots(scope)))
+        """The cells of a scope; of a device that cells share all of these."""
+        name = scope.strip().lower()
+        names = [name] if name in self._cells else self.robots(scope)
+        return tuple(dict.fromkeys(cell for each in names for cell in self._cells[each]))
 
     def __contains__(self, word: str) -> bool:
         return word.strip().lower() in self._robots

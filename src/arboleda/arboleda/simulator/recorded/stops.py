@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.core.commands import Motion
+from arboleda.model.commands import Motion
 from arboleda.wire.hop import FromPlant, is_stop
 
 Number = tuple[int, int]  # the plant's start, and the how-manieth command of it

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from arboleda.core.intake import HISTORY
-from arboleda.core.messages import TaskChanged, TaskState
+from arboleda.model.messages import KeptTask, TaskChanged, TaskState
+from arboleda.model.sentence import NOTHING
 
 SURE = 500  # accepted tasks back to which the plant remembers every one
 KEPT = HISTORY  # ended tasks that are remembered: the plant may remember as many
@@ -58,13 +59,35 @@ class Tasks:
         self.refused = 0  # in this step
         self._accepted = 0
 
-    def forget(self) -> None:
-        """The plant that knew them is gone, and tasks do not outlive it yet."""
-        self.open.clear()
-        self.ended.clear()
+    def restart(self, kept: Iterable[KeptTask], now: float) -> None:
+        """A plant starts with these tasks; of some of them nobody may have been told."""
+        told = self.open
+        self.open = {}
         self.running.clear()
         for queue in self.queues.values():
             queue.clear()
+        for row in kept:
+            if row.id not in self.ended:
+                self._take_back(row, told.get(row.id), now)
+
+    def _take_back(self, row: KeptTask, task: KnownTask | None, now: float) -> None:
+        if task is None:
+            self._accepted += 1
+            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _said(row))
+        if task.state is not row.state:
+            task.said = _said(row)
+        task.state, task.began = row.state, row.started_at
+        if row.state is TaskState.RUNNING and task.cancelled:
+            task.cancelled = None  # the plant that was to halt it is gone
+        task.since = row.ended_at or row.started_at or task.since
+        if row.ended_at is not None:
+            self._keep(task)
+            return
+        self.open[task.id] = task
+        if row.state is TaskState.QUEUED:
+            self.queues[task.cell][task.id] = task
+        else:
+            self.running[task.cell] = task.id
 
     def clear_news(self) -> None:
         self.changes.clear()
@@ -117,3 +140,15 @@ class Tasks:
         self.ended[task.id] = task
         if len(self.ended) > KEPT:
             self.ended.popitem(last=False)
+
+
+def _said(row: KeptTask) -> TaskChanged:
+    """What would have been told of a task last."""
+    return TaskChanged(
+        task=row.id,
+        text=row.text,
+        cell=row.cell,
+        state=row.state,
+        reason=row.failure.reason if row.failure else None,
+        sentence=row.failure.sentence if row.failure else NOTHING,
+    )

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from arboleda.core.cell_states import CellState
-from arboleda.core.messages import OperatorRequest, TaskState
+from arboleda.model.messages import OperatorRequest, TaskState
 
 from ..world import World
 from .cells import KnownCell
@@ -15,7 +15,9 @@ from .tasks import Tasks
 
 @dataclass(slots=True)
 class Asked:
-    """A cell after the last step: what may speak for or against a verb."""
+    """A cell after the last step: what may speak for or against a verb; `waits`: nobody can tell yet what
+    became of the step at which an earlier start ended.
+    """
 
     name: str
     state: CellState
@@ -24,6 +26,7 @@ class Asked:
     has_task: bool
     troubled: bool
     stranded: bool
+    waits: bool
     holding: bool
 
 
@@ -54,6 +57,7 @@ class Before:
                 run.task is not None,
                 run.trouble is not None,
                 run.stranded is not None,
+                run.awaits is not None,
                 bool(cell.context.holding),
             )
             for cell in cells

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.commands import Command
-from arboleda.core.ledger import State
-from arboleda.core.messages import TaskState, Verb
-from arboleda.core.model import Pose
+from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.plant_model import Pose
 from arboleda.recipes.storage_cell import StorageCell
 
 from .commands import SentCommand
@@ -26,7 +26,11 @@ Step = tuple[str, Any]
 
 @dataclass
 class Work:
-    """A task that runs: its steps, and how many of them have been commanded; `last` is the newest command."""
+    """A task that runs: its steps, and how many of them have been commanded; `last` is the newest command.
+
+    `walked_back`: an earlier start gave that, and the plant judges what became of it; `undone`: a power cut
+    may have undone where the task stood, of which `retries` counts how often an operator had tried again.
+    """
 
     task: str
     steps: list[Step]
@@ -34,6 +38,9 @@ class Work:
     at: int = 0
     last: SentCommand | None = None
     recovering: bool = False
+    walked_back: bool = False
+    undone: bool = False
+    retries: int = 0
 
 
 class Works:
@@ -46,9 +53,15 @@ class Works:
         self._dwell_s = dwell_s
         self._works: dict[str, Work] = {}
 
-    def forget(self) -> None:
-        """The plant is gone, and with it what it did."""
-        self._works.clear()
+    def restart(self, running: Mapping[str, str], *, undone: bool) -> None:
+        """A plant starts, and these tasks of cells stand at their step; nobody goes on with the others.
+
+        `undone`: what was kept last may be gone.
+        """
+        self._works = {name: work for name, work in self._works.items() if running.get(name) == work.task}
+        for name, work in self._works.items():
+            work.walked_back, work.undone = True, work.undone or undone
+            work.retries = self._cells[name].retries
 
     def clear_news(self) -> None:
         self.wrong.clear()
@@ -57,7 +70,7 @@ class Works:
         """Take over what this step began, commanded and ended."""
         for change in tasks.changes:
             said = change.said
-            if said.state is TaskState.RUNNING and not change.answer and said.cell is not None:
+            if said.state is TaskState.RUNNING and not change.answer and said.cell in self._cells:
                 cell = self._cells[said.cell].cell
                 steps = list(_steps(cell, said.text.split(), self._robots[cell.mobile.name], now))
                 self._works[said.cell] = Work(said.task, steps, now)
@@ -70,7 +83,7 @@ class Works:
                 work = self._works.get(said.cell)
                 if work is not None and work.task == said.task:
                     del self._works[said.cell]
-                    if said.state is TaskState.DONE:
+                    if said.state is TaskState.DONE and not self._is_anywhere(said.cell, work):
                         self._finished(said.cell, work)
 
     def _take(self, name: str, sent: SentCommand) -> None:
@@ -78,13 +91,18 @@ class Works:
         work.recovering |= cell.run.run.recovering
         if work.recovering:
             return
+        if self._is_anywhere(name, work):
+            del self._works[name]
+            return
         step = _step_of(sent.command)
-        last = work.last
-        again = last is not None and last.state is not State.DONE
+        last, walked_back = work.last, work.walked_back
+        work.walked_back = False
+        work.undone = False
+        again = last is not None and (walked_back or last.state is not State.DONE)
         if again and _is_again(step, work.steps[work.at - 1]):
             work.last = sent
             return
-        if again:
+        if again and not walked_back:
             self.wrong.append(f"{name}: {sent} leaves, and {last} before it was not done")
         while work.at < len(work.steps) and not _fits(step, work.steps[work.at]):
             if work.steps[work.at][0] != OPTIONAL:
@@ -99,6 +117,10 @@ class Works:
         work.at += 1
         work.last = sent
 
+    def _is_anywhere(self, name: str, work: Work) -> bool:
+        """Whether a person had a task tried again whose robots prove nothing, which may stand too early."""
+        return work.undone and self._cells[name].retries > work.retries
+
     def _in_time(self, name: str, work: Work, sent: SentCommand) -> None:
         since = work.began_at if work.last is None else -1.0
         if work.last is not None and isinstance(work.last.command, SetEffector):
@@ -110,7 +132,7 @@ class Works:
         left = [step for step in work.steps[work.at :] if step[0] != OPTIONAL]
         if left:
             self.wrong.append(f"{name}: {work.task} is done, and {left} were never commanded")
-        if work.last is not None and work.last.state is not State.DONE:
+        if work.last is not None and work.last.state is not State.DONE and not work.walked_back:
             self.wrong.append(f"{name}: {work.task} is done, and {work.last} is not")
 
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from operator import add, sub
 
-from arboleda.core.model import Pose
 from arboleda.kinds.arm import Arm
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell, Pose
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal
 
 from ..network import Client
-from .robot import RobotTruth
+from .robot import NOWHERE, RobotTruth
 
-NOWHERE: frozenset[str] = frozenset()
 JITTER_STEPS = 2  # a ramp that slows down may speed up again by that much (D. Austin, 2005)
 RAMP_SLACK = 1.1  # a stepper's ramp is a little longer than the formula's
 Steps = tuple[int, ...]
@@ -33,9 +31,10 @@ class ArmTruth(RobotTruth):
     """
 
     SIGNS = ("next_change_us", "effector", "holding")
+    PLACE = "q"
     body: ArmBody
 
-    def __init__(self, robot: Arm, cell: StorageCell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Arm, cell: Cell, board: Board, client: Client) -> None:
         assert isinstance(board.body, ArmBody)
         self.on, self.holding = board.body.effector, board.body.holding
         self.opened = False
@@ -50,15 +49,18 @@ class ArmTruth(RobotTruth):
         self._told: dict[tuple[float, ...], Steps] = {}  # of the poses
         self._names: dict[Steps, frozenset[str]] = {}
         self._spots: dict[Steps, frozenset[str]] = {}  # with the points above poses
-        for pose in cell.poses:
+        space = cell.workspaces.get(robot.name)
+        self._poses = space.poses if space else ()
+        self._crossings = space.crossings if space else ()
+        for pose in self._poses:
             self._enter(pose)
         reference = (0,) * len(robot.joints)  # where homing leads; like home it lies outside all zones
-        self._spots.setdefault(reference, frozenset({cell.home.name}))
+        self._spots.setdefault(reference, frozenset({space.home.name}) if space else NOWHERE)
         self._is_coarse = any(
             within >= joint.step for joint, within in zip(robot.joints, robot.tolerances, strict=True)
         )
         self._between = NOWHERE
-        self._free = frozenset(pose.name for pose in cell.poses if not pose.zones)
+        self._free = frozenset(pose.name for pose in self._poses if not pose.zones)
         self._zones_between: dict[frozenset[str], frozenset[str]] = {}
         self._ramp_us = 1e6 * RAMP_SLACK * max(j.speed / j.acceleration for j in robot.joints) + 1e5
         self._speeds: tuple[float, ...] | None = None
@@ -83,6 +85,11 @@ class ArmTruth(RobotTruth):
     def stands_at(self, q: tuple[float, ...]) -> bool:
         """Whether it stands within its tolerance of the motor step nearest to `q`."""
         return self.stands and self._is_near(self.intended, self._steps(q))
+
+    @property
+    def let_go(self) -> bool:
+        """Whether its effector went off in this step, with its power on, and nobody else opened it."""
+        return self.was_on and not self.on and not self.lost_power and not self.opened
 
     @property
     def stands(self) -> bool:
@@ -177,8 +184,8 @@ class ArmTruth(RobotTruth):
     def _zones_of(self, poses: frozenset[str]) -> frozenset[str]:
         """The zones of these poses and of the moves between them."""
         if poses not in self._zones_between:
-            inside = [pose.zones for pose in self.cell.poses if pose.name in poses]
-            crossed = [each.zones for each in self.cell.crossings if {each.a, each.b} <= poses]
+            inside = [pose.zones for pose in self._poses if pose.name in poses]
+            crossed = [each.zones for each in self._crossings if {each.a, each.b} <= poses]
             self._zones_between[poses] = NOWHERE.union(*inside, *crossed)
         return self._zones_between[poses]
 

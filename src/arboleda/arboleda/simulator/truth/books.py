@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.commands import Command
-from arboleda.core.ledger import Entry, State
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.commands import Command
 
 from ..world import BRIDGE, World
 
@@ -60,14 +60,14 @@ class Books:
         """The plant has sent a command; one that it keeps no book of is passed over."""
         entry = self._world.plant.dispatcher.ledger.entries.get(command.id)
         if entry is not None:
-            late = self._is_late(command.robot)
+            late = self.is_late(command.robot)
             if late:
                 self.late.add(command.robot)
             else:
                 self._in_time.add(command.robot)
             self._open[command.id] = Booked(entry=entry, sent_at=self._world.now, late=late)
 
-    def _is_late(self, robot: str) -> bool:
+    def is_late(self, robot: str) -> bool:
         """Whether anything between the plant and this robot's board, either way, takes its time now."""
         world, name = self._world, self._world.model.robots[robot].mqtt
         clients = [world.broker.clients[each] for each in (BRIDGE, name) if each in world.broker.clients]
@@ -77,7 +77,7 @@ class Books:
             *(line for each in clients for line in (each.up, each.down)),
         ]
         late = any(line.busy_until > world.now or line.troubles for line in lines)
-        return late or world.is_stalled(BRIDGE) or world.is_stalled(name)
+        return late or world.writes or world.is_stalled(BRIDGE) or world.is_stalled(name)
 
     def calm_since(self, at: float) -> bool:
         """Whether nothing that a fault did can have touched what happened since then."""

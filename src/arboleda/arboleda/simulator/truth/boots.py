@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from arboleda.core.messages import Report
-from arboleda.core.model import Evidence, Robot
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence, Robot
 
 from .robot import RobotTruth
 
@@ -39,6 +39,12 @@ class Boots:
             put_right = report.at < self.mute[report.robot].put_right_at  # before a boot that nobody saw
             if not put_right and (said[0] == last[0] or (known and said[1] != last[1])):
                 self._told.add(report.robot)
+
+    def restart(self) -> None:
+        """A plant starts: what an earlier one has heard of the counts of a bridge is nothing to it."""
+        for name, each in self.mute.items():
+            if each.robot.evidence is Evidence.JOINTS:
+                self._last.pop(name, None)
 
     def told(self, robot: str) -> bool:
         """Whether the plant knows that it booted, and nobody has put it right since."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from arboleda.core.model import Evidence, Pose
-from arboleda.core.task import Order
+from arboleda.model.plant_model import Evidence, Pose
+from arboleda.model.task import Order
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.payloads import EffectorGoal, PathGoal
 
@@ -20,8 +20,9 @@ class Switch:
     """An effector that changed, at the named poses where its arm stood still.
 
     `by_others`: somebody else than the plant opened it; `asked`: the board carried out a command for it;
-    `released`: an operator had it opened; `legal`: at the pick-up or palletizing pick or, opened, where the
-    part of the cell's last task belongs or at the palletizing place.
+    `released`: an operator had it opened; `taken_away`: somebody had put the arm elsewhere by hand; `legal`:
+    at the pick-up or palletizing pick or, opened, where the part of the cell's last task belongs or at the
+    palletizing place.
     """
 
     cell: str
@@ -32,6 +33,7 @@ class Switch:
     by_others: bool
     asked: bool
     released: bool
+    taken_away: bool
     legal: bool
 
 
@@ -74,6 +76,8 @@ class CellTruth:
         self.released = False  # an operator has the effector opened
         self.switch: Switch | None = None  # of this step
         self.picks = self.places = 0
+        self.earlier = (0, 0)  # picks and places of its task in earlier starts of the plant
+        self._over: dict[str, tuple[int, int]] = {}  # the same of tasks that have not ended
         self.robbed = False  # somebody else opened the effector on the way
         self.puts_down = False
         self.let_go = False  # the effector was opened where the part belongs
@@ -105,10 +109,18 @@ class CellTruth:
     def begin(self, task: str, order: Order, now: float) -> None:
         """A task begins."""
         self.task, self.order, self.began_at = task, order, now
+        self.earlier = self._over.pop(task, (0, 0))
         self.robbed = self.released = self.let_go = self.blind = False
         self._heading = self._arrived = False
         self.picks = self.places = 0
         self._switches = []
+
+    def cut_off(self) -> None:
+        """The plant died, and the next one does not go on with its task; a later one may."""
+        if self.task is not None:
+            picks, places = self.earlier
+            self._over[self.task] = (picks + self.picks, places + self.places)
+        self.end()
 
     def end(self, text: str = "", *, done: bool = False) -> Ended:
         """The running task has ended, or nobody knows of it any more."""
@@ -157,13 +169,14 @@ class CellTruth:
     def _missing_of_arm(self) -> str | None:
         assert self.arm is not None and self.place is not None and self.order is not None
         due = [self.arm.poses_like(self._due(each).q) for each in self._switches]
-        done = [(each.on, bool(each.poses & poses)) for each, poses in zip(self._switches, due, strict=True)]
+        rows = zip(self._switches, due, strict=True)
+        done = [(each.on, each.taken_away or bool(each.poses & poses)) for each, poses in rows]
         last = self.cell.home if "station" in self.order.values else self.place
         if not done or done != [(True, True), (False, True)] * (len(done) // 2):
             told = ", ".join(f"{'on' if s.on else 'off'} at {named(s.poses)}" for s in self._switches)
             return f"the effector was switched {told or 'not at all'}"
         ends = [q for q in (last.q, last.above) if q is not None]
-        if not any(self.arm.stands_at(q) for q in ends):
+        if not (self.arm.taken_away or any(self.arm.stands_at(q) for q in ends)):
             return f"the arm does not stand at {last.name}"
         return None
 
@@ -189,6 +202,7 @@ class CellTruth:
             by_others=arm.opened,
             asked=any(isinstance(goal, EffectorGoal) and goal.on == arm.on for goal in goals),
             released=self.released,
+            taken_away=arm.taken_away,
             legal=at_pick if arm.on else self.legal_to_open(arm),
         )
 

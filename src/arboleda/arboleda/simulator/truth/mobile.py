@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from arboleda.kinds.mobile import Mobile
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.plant_model import Cell
 from arboleda.sim.board import Board
 from arboleda.sim.mobile import MobileBody
 from arboleda.wire.payloads import PathGoal
 
 from ..network import Client
-from .robot import RobotTruth
+from .robot import NOWHERE, RobotTruth
 
 
 class MobileTruth(RobotTruth):
@@ -20,12 +20,17 @@ class MobileTruth(RobotTruth):
     """
 
     SIGNS = ("next_change_us", "true_node")
+    PLACE = "node"
     body: MobileBody
 
-    def __init__(self, robot: Mobile, cell: StorageCell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Mobile, cell: Cell, board: Board, client: Client) -> None:
         super().__init__(robot, cell, board, client)
         self.node, self.counted = self.body.true_node, self.body.node
         self.goal: int | None = None
+        space = cell.workspaces.get(robot.name)
+        self._poses = space.poses if space else ()
+        self.here, self.zones = self._located()
+        self._reference = cell.start_of(robot.name) or 0  # where homing ends
 
     @property
     def strayed(self) -> bool:
@@ -41,15 +46,23 @@ class MobileTruth(RobotTruth):
 
     @property
     def _came_home(self) -> bool:
-        return self.body.true_node == self.cell.paths[0].nodes[0]
+        return self.body.true_node == self._reference
 
     def _follow(self, was_moving: bool) -> None:
         still = not (was_moving or self.moving or self.lost_power)
         self.jumped = still and self.body.node != self.counted
         self.node, self.counted = self.body.true_node, self.body.node
+        self.stood = self.here
+        self.here, self.zones = self._located()
         for act in self.acts:
             if isinstance(act.goal, PathGoal):
                 self.goal = act.goal.nodes[-1]
+
+    def _located(self) -> tuple[frozenset[str], frozenset[str]]:
+        """The targets at which it stands, and the zones of those that it stands at or comes by."""
+        there = [pose for pose in self._poses if pose.q == self.node]
+        here = NOWHERE if self.body.moving else frozenset(pose.name for pose in there)
+        return here, NOWHERE.union(*(pose.zones for pose in there))
 
     def _ends_soon(self, now_us: int) -> bool:
         return True  # it always has an edge to finish

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from arboleda.core.commands import StopMode
-from arboleda.core.model import Evidence, Robot
-from arboleda.recipes.storage_cell import StorageCell
+from arboleda.model.commands import Command, StopMode
+from arboleda.model.plant_model import Cell, Evidence, Interlock, Robot
 from arboleda.sim.board import Board
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, PathGoal, StopGoal
 from arboleda.wire.topics import Channel
@@ -19,6 +19,7 @@ from arboleda.wire.transport import Delivery, Publication
 from ..commands import goal as goal_of
 from ..network import Client
 
+NOWHERE: frozenset[str] = frozenset()
 MOTIONS = (JointsGoal, PathGoal, HomeGoal)
 BEATS = f"/{Channel.BEAT.value}"
 UNDER_WAY = 64  # publications of the bridge that may still reach the board
@@ -29,23 +30,15 @@ class Act:
     """A goal that a board carried out, and what held just before.
 
     `ours`: our bridge published it; `latched`: the board had obeyed a latching stop that was not cleared;
-    `homed`: its counters were right.
+    `homed`: its counters were right; `moves`: it sets the robot in motion; `starts`: a stop forbids it.
     """
 
     goal: Goal
     ours: bool
     latched: bool
     homed: bool
-
-    @property
-    def moves(self) -> bool:
-        """Whether it sets the robot in motion."""
-        return isinstance(self.goal, MOTIONS)
-
-    @property
-    def starts(self) -> bool:
-        """Whether a stop forbids it: it moves, or grips."""
-        return self.moves or (isinstance(self.goal, EffectorGoal) and self.goal.on)
+    moves: bool
+    starts: bool
 
 
 class RobotTruth:
@@ -58,8 +51,17 @@ class RobotTruth:
     """
 
     SIGNS: tuple[str, ...]  # of a body: what changes with whatever happens
+    PLACE: str  # what a board that lies about it deceives of
+    zones = NOWHERE  # where it is, or may have swept
+    here = NOWHERE  # the targets at which it stands still
+    stood = NOWHERE  # the same, in this step, if it has moved on
+    unmet: Sequence[tuple[Command, str]] = ()  # what it carries out although what that needs is not so
+    cut_short = False  # it ended work that goes on through a stop, and nothing explains that
+    falls_open = False  # in this step it got into the way because its power was lost
+    let_go = False  # in this step it let go of what it held, by itself and with its power on
+    worked_from: float | None = None  # when a machine whose place nothing but its end tells began to move, s
 
-    def __init__(self, robot: Robot, cell: StorageCell, board: Board, client: Client) -> None:
+    def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
         self.robot = robot
         self.cell = cell
         self.board = board
@@ -79,10 +81,12 @@ class RobotTruth:
         self._left = 0  # how many of `_ahead` were there before this step
         self._ours: deque[tuple[str, bytes]] = deque(maxlen=UNDER_WAY)
         self._homing = self._put_right = False
+        self.taken_away = False  # somebody has moved it by hand since it was last told to move
         self.put_right_at = -math.inf  # when somebody last did, s
         self._arrived = not self.moving  # whether it stood still at some time in this step
         self._seen: tuple[Any, ...] = ()
         self._due: int | None = None  # when its motion was to end
+        self._was_due: int | None = None  # the same, before this step
         self.forget()
 
     def forget(self) -> None:
@@ -98,8 +102,14 @@ class RobotTruth:
 
     def put_right(self, now: float) -> None:
         """Somebody has put it by hand to its reference, where its counters are right."""
-        self.homed = self.again = self._put_right = True
+        self.homed = self.again = self._put_right = self.taken_away = True
         self.put_right_at = now
+
+    def be_locked(self, locks: tuple[Interlock, ...]) -> None:
+        """It occupies zones whenever it is not as these say, in whichever cell."""
+
+    def be_opened(self, at: float) -> None:
+        """Somebody else than the plant has it let go of what it holds."""
 
     def reach(self, delivery: Delivery) -> None:
         """A message is at its board, which has not heard it yet."""
@@ -122,6 +132,7 @@ class RobotTruth:
 
     def _take_in(self, seen: tuple[Any, ...], now_us: int) -> None:
         due, self._due, self._seen = self._due, self.body.next_change_us, seen
+        self._was_due = due
         turned = due != self._due
         if self.board.boot_id != self._boot:
             self._boot_up(now_us)
@@ -209,13 +220,24 @@ class RobotTruth:
             self.stopping = True
 
     def _did(self, goal: Goal, *, ours: bool) -> None:
-        self.acts.append(Act(goal=goal, ours=ours, latched=self.latched, homed=self.homed))
-        if isinstance(goal, MOTIONS):
-            self.stopping = False
+        moves = self._moves(goal)
+        starts = moves or self._grips(goal)
+        act = Act(goal=goal, ours=ours, latched=self.latched, homed=self.homed, moves=moves, starts=starts)
+        self.acts.append(act)
+        if moves:
+            self.stopping = self.taken_away = False
         if isinstance(goal, HomeGoal):
             self.homed, self._homing = False, True
         if isinstance(goal, StopGoal) and goal.mode is not StopMode.HALT:
             self.latched = goal.mode is StopMode.LATCH
+
+    def _moves(self, goal: Goal) -> bool:
+        """Whether a goal sets it in motion."""
+        return isinstance(goal, MOTIONS)
+
+    def _grips(self, goal: Goal) -> bool:
+        """Whether a goal that does not move it is forbidden by a stop all the same."""
+        return isinstance(goal, EffectorGoal) and goal.on
 
     def _end_homing(self) -> None:
         """It may have come home before a board that did nothing for long finds a stop in its inbox."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 
-from arboleda.core.commands import Command, Motion
-from arboleda.core.messages import Fact, OperatorAnswer, Remember, Verb
-from arboleda.core.model import PlantModel, Robot
-from arboleda.kinds.arm import SetEffector
+from arboleda.model.commands import Command, needs_clear
+from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
+from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.wire import goals
 from arboleda.wire.payloads import Goal, JointsGoal
 
@@ -36,14 +36,14 @@ class Stops:
 
     def sent(self, command: Command, now: float) -> None:
         """The plant sends a command."""
-        if not self.holds(command.robot) and starts(command):
+        if not self.holds(command.robot) and needs_clear(command):
             self._sent[command.robot].append((now, command))
 
     def breaks(self, robot: Robot, act: Act, now: float) -> bool:
         """Whether what a board does was sent by nobody before the stop that holds."""
         under_way = self._sent[robot.name]
         for at, command in under_way:
-            if at > now - UNDER_WAY_S and _is(act.goal, robot, command):
+            if at > now - UNDER_WAY_S and is_order_of(act.goal, robot, command):
                 under_way.remove((at, command))
                 return False
         return self.holds(robot.name)
@@ -56,7 +56,7 @@ class Stops:
         elif answer.verb is Verb.CLEAR:
             self._cleared.update({name: True for name in robots if name in self._cleared})
         elif answer.verb is Verb.RESET:
-            cells = {self._model.cell_of[name].name for name in robots}
+            cells = {cell.name for name in robots for cell in self._model.cells_of[name]}
             self._resets.update(
                 robot.name for cell in self._model.cells if cell.name in cells for robot in cell.robots
             )
@@ -66,6 +66,10 @@ class Stops:
         if fact.fact is Fact.LATCH and fact.value is None:
             self._forgotten.add(fact.name)
 
+    def restart(self, kept: Mapping[str, str]) -> None:
+        """Of stops that were being said when the plant died, those that were kept hold."""
+        self._cleared = {name: word == "cleared" for name, word in kept.items()}
+
     def settle(self) -> None:
         """The step is over: stops that were cleared and then reset are no more."""
         if self._resets:
@@ -74,13 +78,6 @@ class Stops:
                     del self._cleared[name]
         if self._resets or self._forgotten:
             self._resets, self._forgotten = set(), set()
-
-
-def starts(command: Command) -> bool:
-    """Whether a stop forbids it: motions, and effector on."""
-    if isinstance(command, SetEffector):
-        return command.on
-    return isinstance(command, Motion)
 
 
 def robots_of(model: PlantModel, scope: str) -> list[str]:
@@ -93,7 +90,7 @@ def robots_of(model: PlantModel, scope: str) -> list[str]:
     return [robot.name for cell in model.cells if cell.name == scope for robot in cell.robots]
 
 
-def _is(goal: Goal, robot: Robot, command: Command) -> bool:
+def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
     """Whether a goal on the wire is this command."""
     _, expected = goals.goal(robot, command, seq=goal.seq, epoch=goal.epoch)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):

@@ -1,12 +1,12 @@
-"""Which arms are truly in which shared zone, and which zones the plant has just freed."""
+"""Which robots and devices are truly in which shared zone, and which zones the plant has just freed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ..world import World
-from .arm import ArmTruth
+from .robot import RobotTruth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,23 +42,25 @@ class Entry:
 class ZonesTruth:
     """What happened in this step: `freed`, `meetings`, `entries`."""
 
-    def __init__(self, world: World, arms: dict[str, ArmTruth], mistaken: Callable[[ArmTruth], bool]) -> None:
+    def __init__(
+        self, world: World, robots: Mapping[str, RobotTruth], mistaken: Callable[[RobotTruth], bool]
+    ) -> None:
         self.meetings: list[Meeting] = []
         self.freed: list[Freed] = []
         self.entries: list[Entry] = []
         self._world = world
-        self._arms = arms
+        self._robots = robots
         self._mistaken = mistaken
         self._names = world.model.zones
         self._holders = {zone: world.plant.zones.holder(zone) for zone in self._names}
-        self._inside = {zone: self._arms_in(zone) for zone in self._names}
+        self._inside = {zone: self._who_is_in(zone) for zone in self._names}
         self._overridden: set[str] = set()  # zones, in this step
         self._answered_for: set[tuple[str, str]] = set()  # (zone, arm) until the arm is truly outside
 
     def overridden(self, zone: str) -> None:
         """An operator has answered for a zone being empty."""
         self._overridden.add(zone)
-        self._answered_for.update((zone, name) for name in self._arms_in(zone))
+        self._answered_for.update((zone, name) for name in self._who_is_in(zone))
 
     def look(self, moved: bool) -> None:
         """Take in where the arms are, if they `moved`, and who holds what by the plant's books."""
@@ -77,23 +79,24 @@ class ZonesTruth:
 
     def _freed(self, zone: str, name: str) -> None:
         self.freed.append(Freed(zone=zone, arm=name, by_hand=zone in self._overridden))
-        arm = self._arms.get(name)
+        arm = self._robots.get(name)
         if arm is not None and zone in arm.zones and self._mistaken(arm):
             self._answered_for.add((zone, name))
 
-    def _arms_in(self, zone: str) -> list[str]:
-        return [name for name, arm in self._arms.items() if zone in arm.zones]
+    def _who_is_in(self, zone: str) -> list[str]:
+        return [name for name, arm in self._robots.items() if zone in arm.zones]
 
     def _look_inside(self) -> None:
         for zone, before in self._inside.items():
-            inside = self._arms_in(zone)
+            inside = self._who_is_in(zone)
             if inside == before:
                 continue
             self._inside[zone] = inside
             holder = self._holders[zone]  # before this step: the boards step before the plant
-            self.entries += [
-                Entry(zone=zone, arm=name, holder=holder) for name in inside if name not in before
-            ]
+            new = [name for name in inside if name not in before]
+            fallen = [name for name in new if self._robots[name].falls_open]
+            self._answered_for.update((zone, name) for name in fallen)
+            self.entries += [Entry(zone=zone, arm=name, holder=holder) for name in new if name not in fallen]
             self._answered_for = {
                 (where, name) for where, name in self._answered_for if where != zone or name in inside
             }

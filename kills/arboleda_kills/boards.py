@@ -1,0 +1,179 @@
+"""The virtual boards in a process of their own: it outlives the plant, and tells what its arms truly did.
+
+`python -m arboleda_kills.boards RATE`. It reads a line of JSON for each thing that somebody does,
+`{"broker": [HOST, PORT]}` or null, `{"reference": ROBOT}`, `{"repair": ROBOT}`, and ends with its input. It
+prints a line for each deed.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from itertools import count
+from typing import Any
+
+from arboleda.adapters import clock
+from arboleda.adapters.broker_login import Address
+from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.app import config
+from arboleda.app.loop import Loop
+from arboleda.app.rate import at_rate
+from arboleda.model.plant_model import PlantModel
+from arboleda.recipes.storage_cell import StorageCell
+from arboleda.sim.arm import ArmBody
+from arboleda.sim.board import Board
+from arboleda.sim.devices import Devices, FromBoard, ToBoard
+from arboleda.wire.payloads import Goal, Presence, StopGoal, encode
+from arboleda.wire.topics import Channel, topic
+from arboleda.wire.transport import Publication
+
+from .deeds import ALONE, PICK_UP, Deed, Did
+
+NOWHERE = "no pose"
+
+
+class WatchedDevices:
+    """The boards, and what each arm took up, let go, or was told to do in a step."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self.devices = Devices(model, now=clock.seconds(), boot_ids=count(int(time.time())).__next__)
+        self.deeds: list[Deed] = []
+        self._model = model
+        self._arms: dict[str, ArmBody] = {}
+        self._holding: set[str] = set()
+        for robot in model.robots.values():
+            board = self.devices.boards[robot.mqtt]
+            board.watch = lambda goal, name=robot.name: self._told(name, goal)
+            if isinstance(board.body, ArmBody):
+                self._arms[robot.name] = board.body
+
+    @property
+    def next_deadline(self) -> float | None:
+        return self.devices.next_deadline
+
+    def step(self, now: float, events: Sequence[Any]) -> list[FromBoard]:
+        out = self.devices.step(now, events)
+        for robot, body in self._arms.items():
+            if body.holding != (robot in self._holding):
+                self._holding ^= {robot}
+                self._add(robot, Did.PICKED if body.holding else Did.LET_GO, self._place(robot, body))
+        return out
+
+    def take(self) -> list[Deed]:
+        """The deeds since the last call."""
+        deeds, self.deeds = self.deeds, []
+        return deeds
+
+    def _told(self, robot: str, goal: Goal) -> None:
+        if not isinstance(goal, StopGoal):
+            self._add(robot, Did.WAS_TOLD, type(goal).__name__)
+
+    def _add(self, robot: str, did: Did, what: str) -> None:
+        cell = self._model.cell_of[robot].name
+        self.deeds.append(Deed(at=time.time(), cell=cell, robot=robot, did=did, what=what))
+
+    def _place(self, robot: str, body: ArmBody) -> str:
+        """The pose at which the arm truly stands, to the step of its motors."""
+        cell = self._model.cell_of[robot]
+        assert isinstance(cell, StorageCell)
+        for pose in cell.workspaces[robot].poses:
+            assert isinstance(pose.q, tuple)
+            rows = zip(cell.arm.joints, body.true_place, pose.q, strict=True)
+            if all(abs(here - there) <= joint.step for joint, here, there in rows):
+                alone = pose.name.startswith(PICK_UP) and pose.name != self._offered(cell)
+                return f"{pose.name}{ALONE}" if alone else pose.name
+        return NOWHERE
+
+    def _offered(self, cell: StorageCell) -> str | None:
+        """The pick-up of the exit at which the mobile robot stands."""
+        node = self.devices.boards[cell.mobile.mqtt].body.true_place
+        exits = {path.nodes[-1] for path in cell.paths}
+        return cell.pickup_over(node).name if node in exits else None
+
+
+class Boards:
+    """The boards on whichever broker the plant has now."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self._watched = WatchedDevices(model)
+        self._model = model
+        self._clients: dict[str, MqttClient] = {}
+        self.loop: Loop[Any, Any] = Loop(
+            "boards", self._watched, self._send, on_send_error=_lost, on_step=lambda *_: self._tell()
+        )
+
+    def act(self, line: dict[str, Any]) -> None:
+        """Carry out one line of the input."""
+        if "broker" in line:
+            self._leave()
+            if broker := line["broker"]:
+                self._join(Address(host=broker[0], port=broker[1]))
+        if robot := line.get("reference"):
+            self._at_board(robot, Board.put_at_reference)
+        if robot := line.get("repair"):
+            self._at_board(robot, lambda board: board.repair(round(clock.seconds() * 1e6)))
+
+    def _at_board(self, robot: str, act: Callable[[Board], None]) -> None:
+        board = self._watched.devices.boards[self._model.robots[robot].mqtt]
+        self.loop.read(lambda _: act(board))
+
+    def _join(self, broker: Address) -> None:
+        """Go to a broker at once, as a board does that happens to try just then."""
+        self._clients = {name: self._client(name, broker) for name in self._watched.devices.boards}
+        for client in self._clients.values():
+            client.start()
+
+    def _leave(self) -> None:
+        """Try no more: where one broker was, that of another plant may be next."""
+        for client in self._clients.values():
+            client.close()
+        self._clients = {}
+
+    def _client(self, board: str, broker: Address) -> MqttClient:
+        gone = Publication(
+            topic=topic(board, Channel.PRESENCE), payload=encode(Presence(online=False)), retain=True
+        )
+        return MqttClient(
+            board,
+            broker,
+            subscriptions=self._watched.devices.subscriptions(board),
+            on_event=lambda event: self.loop.post(ToBoard(board=board, event=event)),
+            will=gone,
+            announce=False,
+        )
+
+    def _send(self, message: FromBoard) -> None:
+        client = self._clients.get(message.board)
+        if client is not None:
+            client.publish(message.publication)
+
+    def _tell(self) -> None:
+        tell(self._watched.take())
+
+
+def tell(deeds: Iterable[Deed]) -> None:
+    """A line for each."""
+    for deed in deeds:
+        print(json.dumps(deed.data()), flush=True)
+
+
+def _lost(message: FromBoard, error: Exception) -> None:
+    """What a board says while there is no broker is lost, as with a real one."""
+    if not isinstance(error, NotConnected):
+        raise error
+
+
+def main() -> None:
+    boards = Boards(at_rate(config.load(None), float(sys.argv[1])))
+    boards.loop.start()
+    with suppress(KeyboardInterrupt):
+        for line in sys.stdin:
+            boards.act(json.loads(line))
+    boards.loop.stop()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,209 @@
+"""Start, kill, start again: the rounds, and what they left to judge."""
+
+from __future__ import annotations
+
+import json
+import random
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery, TaskRow
+from arboleda.app import config
+from arboleda.app.state import STORE
+from arboleda.recipes.storage_cell import StorageCell
+
+from .judge import Kill, Verdict, judge
+from .people import Attendant, Customers
+from .processes import PATIENCE_S, Boards, Ended, Plant
+
+ROUND_S = 0.05  # between two looks of the people
+AT_START = 0.1  # of the kills: while the plant starts
+LATEST_S = 3.0  # of the others: so long after a task is at work
+QUIET_S = 60.0  # without an end of any task, nobody here knows what else to do
+
+
+@dataclass(kw_only=True)
+class Outcome:
+    """What is known at the end.
+
+    `api_s`, `boards_s`: how long each start took until its API answered, and until every robot was heard.
+    `trouble`: why it came to no good end.
+    """
+
+    kills: list[Kill] = field(default_factory=list)
+    at_start: int = 0
+    api_s: list[float] = field(default_factory=list)
+    boards_s: list[float] = field(default_factory=list)
+    seconds: float = 0.0
+    tasks: dict[str, int] = field(default_factory=dict)
+    accepted: int = 0
+    verbs: dict[str, int] = field(default_factory=dict)
+    refused: list[str] = field(default_factory=list)
+    verdict: Verdict = field(default_factory=Verdict)
+    trouble: list[str] = field(default_factory=list)
+
+    @property
+    def ok(self) -> bool:
+        return self.verdict.ok and not self.trouble
+
+
+class Campaign:
+    """`kills` kills of a plant in `folder`, at instants that the seed draws."""
+
+    def __init__(
+        self, folder: Path, *, kills: int, seed: int, rate: float, say: Callable[[str], None]
+    ) -> None:
+        self._state, self._log = folder / "state", folder / "plant.log"
+        self._deeds = folder / "deeds.jsonl"
+        self._wanted, self._say = kills, say
+        self._dice = random.Random(seed)
+        self._boards = Boards(rate, folder / "boards.log")
+        cells = [cell for cell in config.load(None).cells if isinstance(cell, StorageCell)]
+        self._customers = Customers(cells, self._dice, f"s{seed}")
+        self._attendant = Attendant(self._boards)
+        self._outcome = Outcome()
+
+    def run(self) -> Outcome:
+        """All of it; Ctrl-C ends it, and what was done so far is judged."""
+        began, last = time.time(), Kill(started_at=0.0, joined_at=float("inf"))
+        try:
+            try:
+                while len(self._outcome.kills) < self._wanted:
+                    self._round()
+            except KeyboardInterrupt:
+                self._say("interrupted: what is open comes to its end")
+            last = self._last_round()
+        except (Ended, TimeoutError, httpx.HTTPError, KeyboardInterrupt) as error:
+            self._outcome.trouble.append(str(error) or type(error).__name__)
+        finally:
+            self._boards.end()
+        self._outcome.seconds = time.time() - began
+        self._judge(last)
+        return self._outcome
+
+    def _round(self) -> None:
+        """One start and its kill."""
+        plant = self._start()
+        at_start = self._dice.random() < AT_START and bool(self._outcome.api_s)
+        share = self._dice.random()
+        try:
+            if at_start:
+                longest = 1.5 * sorted(self._outcome.api_s)[len(self._outcome.api_s) // 2]
+                _sleep_until(plant.started_at + share * longest)
+                plant.check()
+            else:
+                self._until_ready(plant)
+                self._until(plant, lambda snapshot: any(cell["task"] for cell in snapshot["cells"]))
+                end = time.time() + share * LATEST_S
+                self._until(plant, lambda _: time.time() >= end - ROUND_S)
+                _sleep_until(end)
+                plant.check()
+        finally:
+            killed_at = time.time()
+            plant.kill()
+            self._boards.leave()
+        rows = self._rows(is_open=True)
+        running = frozenset(row.id for row in rows if row.state == "running")
+        kill = Kill(
+            started_at=plant.started_at, joined_at=plant.joined_at, killed_at=killed_at, running=running
+        )
+        self._outcome.kills.append(kill)
+        self._outcome.at_start += at_start
+        when = "while it started" if at_start else f"{share * LATEST_S:.2f} s into work"
+        self._say(f"kill {len(self._outcome.kills)} of {self._wanted}, {when}: {len(running)} at work")
+
+    def _last_round(self) -> Kill:
+        """Start once more and let all that is open end."""
+        self._customers.bring = False
+        plant = self._start()
+        try:
+            self._until_ready(plant)
+            self._until(plant, lambda _: not self._customers.waiting)
+            if status := plant.interrupt():
+                self._outcome.trouble.append(f"the plant ended on Ctrl-C with status {status}")
+        finally:
+            plant.kill()
+            self._boards.leave()
+        return Kill(started_at=plant.started_at, joined_at=plant.joined_at)
+
+    def _start(self) -> Plant:
+        return Plant(self._state, self._log, self._boards.broker)
+
+    def _until_ready(self, plant: Plant) -> None:
+        """Customers come back as soon as somebody answers; ready it is with all its robots."""
+        if not plant.await_api(time.time() + PATIENCE_S):
+            raise TimeoutError(f"the plant did not answer within {PATIENCE_S:g} s")
+        self._outcome.api_s.append(time.time() - plant.started_at)
+        self._customers.come_back(plant)
+        self._until(plant, lambda snapshot: all(robot["online"] for robot in snapshot["robots"]))
+        self._outcome.boards_s.append(time.time() - plant.started_at)
+
+    def _until(self, plant: Plant, over: Callable[[dict[str, Any]], bool]) -> None:
+        """Let the people do their part until it is over; TimeoutError where nothing happens any more."""
+        seen = (-1, 0)
+        patience = time.time() + QUIET_S
+        while True:
+            plant.check()
+            _, snapshot = plant.ask("GET", "/api/plant")
+            if over(snapshot):
+                return
+            self._customers.look(plant, snapshot)
+            self._attendant.look(plant, snapshot)
+            now = (len(self._customers.told), len(self._attendant.said))
+            if now != seen:
+                seen, patience = now, time.time() + QUIET_S
+            if time.time() > patience:
+                raise TimeoutError(f"nothing happened for {QUIET_S:g} s: {_standing(snapshot)}")
+            time.sleep(ROUND_S)
+
+    def _rows(self, *, is_open: bool | None = None) -> list[TaskRow]:
+        history = TaskHistory(self._state / STORE)
+        try:
+            return history.select(TaskQuery(is_open=is_open, limit=-1))
+        finally:
+            history.close()
+
+    def _judge(self, last: Kill) -> None:
+        outcome, customers, said = self._outcome, self._customers, self._attendant.said
+        self._deeds.write_text("".join(f"{json.dumps(deed.data())}\n" for deed in self._boards.deeds))
+        rows = self._rows()
+        outcome.verdict = judge(
+            rows,
+            self._boards.deeds,
+            outcome.kills,
+            said,
+            accepted=customers.accepted,
+            told=customers.told,
+            last=last,
+        )
+        outcome.verdict.lost += customers.contradictions
+        outcome.accepted = len(customers.accepted)
+        outcome.tasks = _counted(
+            row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows
+        )
+        outcome.verbs = _counted(each.verb for each in said)
+        outcome.refused = self._attendant.refused
+        outcome.trouble += [f"nobody here can {each}" for each in sorted(self._attendant.stuck)]
+
+
+def _counted(words: Any) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for word in words:
+        found[word] = found.get(word, 0) + 1
+    return dict(sorted(found.items()))
+
+
+def _standing(snapshot: dict[str, Any]) -> str:
+    return "; ".join(
+        f"{cell['name']} is {cell['state']}, advised is {[each['said'] for each in cell['advice']]}"
+        for cell in snapshot["cells"]
+    )
+
+
+def _sleep_until(at: float) -> None:
+    time.sleep(max(0.0, at - time.time()))

@@ -1,0 +1,141 @@
+"""Who stands around the plant: customers who come back for their ids, an attendant who follows advice."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.core.advice import Hand
+from arboleda.recipes.storage_cell import StorageCell
+
+from .processes import Boards, Plant
+
+WAITING = 2  # tasks of each cell that have not ended
+AGAIN = 3  # ended tasks that are asked for once more after each start
+OVER = frozenset({"done", "failed", "cancelled"})
+BY_THEMSELVES = frozenset({Hand.BRING_BACK.value})
+AT_THE_BOARD = {Hand.REFERENCE.value: "reference", Hand.REPAIR.value: "repair"}
+ACCEPTED = 202
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """A verb that the attendant said, and what it was for."""
+
+    at: float
+    cell: str
+    verb: str
+    scope: str
+    drops: bool
+
+
+class Customers:
+    """Each cell gets the next task as soon as one of its tasks has ended, until they `bring` no more.
+
+    `accepted`: id to text of what the plant said it has. `told`: id to the end that it said, which may never
+    change; `contradictions` says where it did.
+    """
+
+    def __init__(self, cells: Sequence[StorageCell], dice: random.Random, name: str) -> None:
+        self._cells = cells
+        self._dice = dice
+        self._name = name
+        self._count = 0
+        self._asked: dict[str, str] = {}  # by id, whether or not an answer came
+        self._of_cell: dict[str, set[str]] = {cell.name: set() for cell in cells}  # those that have not ended
+        self.bring = True
+        self.accepted: dict[str, str] = {}
+        self.told: dict[str, str] = {}
+        self.contradictions: list[str] = []
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a task of theirs has not ended."""
+        return any(self._of_cell.values())
+
+    def come_back(self, plant: Plant) -> None:
+        """Ask again for all that has not ended, also where no answer came, and for some that has."""
+        some = self._dice.sample(sorted(self.told), min(AGAIN, len(self.told)))
+        for id in [*sorted(set().union(*self._of_cell.values())), *some]:
+            self._ask(plant, id)
+
+    def look(self, plant: Plant, snapshot: dict[str, Any]) -> None:
+        """Take in what ended, and bring what is next."""
+        for task in snapshot["tasks"]:
+            if task["id"] in self._asked:
+                self._heard(task["id"], task["state"])
+        for cell in self._cells if self.bring else ():
+            while len(self._of_cell[cell.name]) < WAITING:
+                self._ask(plant, self._next(cell))
+
+    def _next(self, cell: StorageCell) -> str:
+        self._count += 1
+        id = f"{self._name}-{self._count}"
+        path, station = self._dice.choice(cell.paths).code, self._count % len(cell.stations)
+        self._asked[id] = f"{cell.name} {path} {station}"
+        self._of_cell[cell.name].add(id)
+        return id
+
+    def _ask(self, plant: Plant, id: str) -> None:
+        status, answer = plant.ask("POST", "/api/tasks", {"text": f"{self._asked[id]} #{id}"})
+        if status != ACCEPTED:
+            self.contradictions.append(f"{id} ({self._asked[id]}) was not accepted: {answer['sentence']}")
+            self._forget(id)
+            return
+        self.accepted[id] = self._asked[id]
+        self._heard(id, answer["state"])
+
+    def _heard(self, id: str, state: str) -> None:
+        if state in OVER:
+            self._forget(id)
+        if self.told.get(id, state) != state:
+            self.contradictions.append(f"{id} was {self.told[id]} and then {state}")
+        elif state in OVER:
+            self.told[id] = state
+
+    def _forget(self, id: str) -> None:
+        for ids in self._of_cell.values():
+            ids.discard(id)
+
+
+class Attendant:
+    """Does, cell by cell, the first thing that is advised; `stuck`: what nobody here can do."""
+
+    def __init__(self, boards: Boards) -> None:
+        self._boards = boards
+        self.said: list[Said] = []
+        self.stuck: set[str] = set()
+        self.refused: list[str] = []
+
+    def look(self, plant: Plant, snapshot: dict[str, Any]) -> None:
+        for cell in snapshot["cells"]:
+            self._see_to(plant, cell)
+
+    def _see_to(self, plant: Plant, cell: dict[str, Any]) -> None:
+        """The first; who has looked into a zone also says so, as the plant cannot know."""
+        for advice in cell["advice"]:
+            if advice["refusal"] is not None or advice["do"] in BY_THEMSELVES:
+                return
+            if advice["do"] in AT_THE_BOARD:
+                self._boards.act({AT_THE_BOARD[advice["do"]]: advice["scope"]})
+            elif advice["hand"] and advice["do"] != Hand.CHECK.value:
+                self.stuck.add(advice["said"])
+            elif not advice["hand"]:
+                self._say(plant, cell["name"], advice)
+            if advice["do"] != Hand.CHECK.value:
+                return
+
+    def _say(self, plant: Plant, cell: str, advice: dict[str, Any]) -> None:
+        """Say a verb; who says that a robot is homed by hand has put it at its reference before."""
+        if advice["by_hand"]:
+            self._boards.act({"reference": advice["scope"]})
+        verb, scope = advice["do"], advice["scope"]
+        self.said.append(Said(at=time.time(), cell=cell, verb=verb, scope=scope, drops=bool(advice["drops"])))
+        status, answer = plant.ask(
+            "POST", f"/api/cells/{scope}/{verb}", {"by_hand": True} if advice["by_hand"] else None
+        )
+        if status >= 400:
+            self.refused.append(f"{verb} {scope}: {answer['sentence']}")

@@ -1,0 +1,116 @@
+"""The file of a plant's memory: which one may be used, and one sentence for each that may not."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.outside import quoted
+
+VERSION = 7
+BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
+OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
+MOVE_AWAY = (
+    "move it away, together with its -wal and -shm files, and start again; lost with it are stop latches,"
+    " what the effectors hold, quarantined zones, the tasks and the operators' journal"
+)
+ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
+    "not a database": MOVE_AWAY,
+    "malformed": MOVE_AWAY,
+    "full": "make room on the disk and start again; what was kept before is not lost",
+    "readonly": "let this user write the file and its directory",
+    "unable to open": "make its directory, and let this user read and write both",
+    "locked": "close the other program that uses it, and start again",
+    "I/O error": "look at the disk, which may be full",
+}
+
+
+UNMADE = ("unable to open", "I/O error", "readonly")  # what SQLite says where it can make no log
+
+
+@contextmanager
+def explained(path: Path, kind: type[ArboledaError], cannot: str = "cannot be used") -> Iterator[None]:
+    """Turn what SQLite or the system raises into one sentence on the plant's memory."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        what = in_words(error)
+        raise kind(f"The plant's memory {path} {cannot} ({what}): {advice(what)}.") from error
+    except OSError as error:
+        what = error.strerror or str(error)
+        raise kind(f"The plant's memory {path} {cannot} ({what}).") from error
+
+
+def in_words(error: sqlite3.Error) -> str:
+    """What SQLite says, on one line: it quotes what it could not decode."""
+    return "not UTF-8 text" if "decode to UTF-8" in str(error) else str(error)
+
+
+def advice(what: str) -> str:
+    """What to do about it."""
+    return next((ADVICE[words] for words in ADVICE if words in what), MOVE_AWAY)
+
+
+def read_only(path: Path) -> sqlite3.Connection:
+    """A connection that writes nothing, for one thread at a time; sqlite3.Error where there is no file."""
+    address = f"{path.resolve().as_uri()}?mode=ro"
+    db = _connected(address)
+    try:
+        version(db)
+    except sqlite3.Error as error:
+        db.close()
+        log, unmade = Path(f"{path}-wal"), any(words in str(error) for words in UNMADE)
+        if not unmade or not path.exists() or (log.exists() and log.stat().st_size):
+            raise
+        # Where nobody may write, or the disk is full, no log can be made; where none is, nothing is missing.
+        db = _connected(f"{address}&immutable=1")
+    return db
+
+
+def _connected(address: str) -> sqlite3.Connection:
+    return sqlite3.connect(address, uri=True, timeout=BUSY_S, isolation_level=None, check_same_thread=False)
+
+
+def version(db: sqlite3.Connection) -> int:
+    """Of the format; 0 for what was not made here."""
+    return int(db.execute("PRAGMA user_version").fetchone()[0])
+
+
+def refuse_version(db: sqlite3.Connection, path: Path) -> None:
+    """StartError where the memory is of a newer Arboleda, or none."""
+    found = version(db)
+    if found > VERSION:
+        raise StartError(
+            f"The plant's memory {path} is of a newer Arboleda (format {found}, known: {VERSION}):"
+            f" use that one, or {MOVE_AWAY}."
+        )
+    if found == 0:
+        raise StartError(
+            f"The plant's memory {path} has lost its content, or is another program's: "
+            f"put a copy of it in its place, or {MOVE_AWAY}."
+        )
+
+
+def refuse_damage(db: sqlite3.Connection) -> None:
+    """sqlite3.DatabaseError where the file is not as it was written."""
+    if db.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
+        raise sqlite3.DatabaseError("database disk image is malformed")
+
+
+def owner(db: sqlite3.Connection) -> str | None:
+    """The name of the plant whose memory it is; None where it is older than that."""
+    found = db.execute("SELECT value FROM fact WHERE fact = ? AND name = ?", OWNER).fetchone()
+    return None if found is None else str(found[0])
+
+
+def refuse_other(db: sqlite3.Connection, path: Path, plant: str) -> None:
+    """StartError where it is the memory of another plant."""
+    found = owner(db)
+    if found not in (None, plant):
+        raise StartError(
+            f"The plant's memory {path} is of the plant {quoted(found or '')}, and this is {quoted(plant)}:"
+            " give this one its own --state directory, or its old name."
+        )

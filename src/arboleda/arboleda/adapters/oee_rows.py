@@ -1,0 +1,59 @@
+"""What a plant's memory has for the OEE of its cells."""
+
+from __future__ import annotations
+
+import sqlite3
+from dataclasses import dataclass
+
+from arboleda.model.errors import ArboledaError
+from arboleda.views.oee import Down, Kept, Run, Shortest, Work
+
+DAY_S = 86_400.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class OeeQuery:
+    """Of which cell, "" for all, and of which time, Unix times; of the last day where nothing is said."""
+
+    cell: str = ""
+    since_s: float | None = None
+    until_s: float | None = None
+
+    def span(self, now_s: float) -> tuple[float, float]:
+        """From when until when, nothing of it later than now."""
+        until_s = now_s if self.until_s is None else min(self.until_s, now_s)
+        return (until_s - DAY_S if self.since_s is None else self.since_s), until_s
+
+
+def kept(db: sqlite3.Connection, since_s: float, until_s: float) -> Kept:
+    """What there is of that time."""
+    begun = "started_s IS NOT NULL AND ended_s > started_s"
+    works = db.execute(
+        "SELECT cell, text, state, accepted_s, started_s, ended_s FROM task WHERE ended_s IS NULL"
+        " UNION ALL SELECT cell, text, state, accepted_s, started_s, ended_s FROM task WHERE ended_s >= ?",
+        (since_s,),
+    )
+    runs = db.execute("SELECT since_s, seen_s, ended FROM run")
+    downs = db.execute(
+        "SELECT cell, since_s, until_s FROM down WHERE since_s < ? AND (until_s IS NULL OR until_s > ?)",
+        (until_s, since_s),
+    )
+    shortest = db.execute(
+        "SELECT cell, text, count(*), min(ended_s - started_s) FROM task"
+        f" WHERE state = 'done' AND attempts <= 1 AND {begun} GROUP BY cell, text"
+    )
+    try:
+        return Kept(
+            works=[
+                Work(cell=cell, order=text, state=state, accepted_s=0.0 + at, started_s=begin, ended_s=end)
+                for cell, text, state, at, begin, end in works
+            ],
+            runs=[Run(since_s=0.0 + since, seen_s=0.0 + seen, ended=bool(end)) for since, seen, end in runs],
+            downs=[Down(cell=cell, since_s=0.0 + since, until_s=until) for cell, since, until in downs],
+            shortest={
+                (cell, text): Shortest(times=times, seconds=best) for cell, text, times, best in shortest
+            },
+        )
+    except TypeError as error:
+        what = "of times what is of another type than it wrote"
+        raise ArboledaError(f"The plant's memory says {what}: put a backup in its place.") from error

@@ -1,0 +1,205 @@
+"""The tasks that a plant's memory has, and how they are asked for; for whoever only reads, too."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import sqlite3
+import threading
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple, dataclass, fields
+from io import StringIO
+from pathlib import Path
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Reason, TaskAnswer, TaskState
+from arboleda.model.outside import quoted
+from arboleda.model.sentence import OWN, Sentence, retold
+from arboleda.views.oee import Kept, Oee, oee
+
+from .memory_file import VERSION, explained, read_only, refuse_other, refuse_version, version
+from .oee_rows import OeeQuery, kept
+
+COMMAND, PAGE, HTTP, ROS = "command", "page", "http", "ros2"  # the ways by which a task comes
+STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value for reason in Reason)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskRow:
+    """One task as it was kept; times are Unix times, `ended_s` is None while it waits or runs.
+
+    `sentence` is why it failed, in English; `said` is JSON of the same sentence. `number` grows by one with
+    each task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
+    `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
+    `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
+    """
+
+    number: int
+    id: str
+    text: str
+    cell: str
+    recipe: str
+    state: str
+    reason: str | None
+    sentence: str | None
+    said: str | None
+    accepted_s: float
+    started_s: float | None
+    ended_s: float | None
+    asked_by: str | None = None
+    attempts: int = 0
+    answers: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskQuery:
+    """Which tasks; "" and None ask for no such thing.
+
+    `words`: part of the task text or of its id. `since_s`, `until_s`: accepted then, Unix time. `before`:
+    with a lower number, as the next page begins.
+    """
+
+    id: str = ""
+    cell: str = ""
+    state: str = ""
+    recipe: str = ""
+    words: str = ""
+    since_s: float | None = None
+    until_s: float | None = None
+    before: int | None = None
+    is_open: bool | None = None
+    limit: int = 100
+
+
+WILD = re.compile("[!%_]")  # what LIKE takes for more than itself
+COLUMNS = tuple(each.name for each in fields(TaskRow))
+KINDS: dict[str, tuple[type, ...]] = {
+    "int": (int,),
+    "str": (str,),
+    "str | None": (str, type(None)),
+    "float": (float,),
+    "float | None": (float, type(None)),
+}
+KINDS_OF = {each.name: KINDS[str(each.type)] for each in fields(TaskRow)}
+ASKED = {
+    "id": "id = ?",
+    "cell": "cell = ?",
+    "state": "state = ?",
+    "recipe": "recipe = ?",
+    "since_s": "accepted_s >= ?",
+    "until_s": "accepted_s < ?",
+    "before": "number < ?",
+}
+
+
+def selected(db: sqlite3.Connection, query: TaskQuery) -> list[TaskRow]:
+    """The rows of a query, the last accepted first; ArboledaError for a row that is damaged."""
+    asked = {column: getattr(query, column) for column in ASKED}
+    wanted = {column: value for column, value in asked.items() if value not in ("", None)}
+    where, values = [ASKED[column] for column in wanted], list(wanted.values())
+    if query.is_open is not None:
+        where.append("ended_s IS NULL" if query.is_open else "ended_s IS NOT NULL")
+    if query.words:  # LIKE is three times as fast as instr(lower())
+        where.append("(text LIKE ? ESCAPE '!' OR id LIKE ? ESCAPE '!')")
+        values += ["%" + WILD.sub(r"!\g<0>", query.words) + "%"] * 2
+    clause = f" WHERE {' AND '.join(where)}" if where else ""
+    select = f"SELECT {', '.join(COLUMNS)} FROM task{clause} ORDER BY number DESC LIMIT ?"
+    return [_row(row) for row in db.execute(select, (*values, query.limit))]
+
+
+def _row(row: tuple[object, ...]) -> TaskRow:
+    known = dict(zip(COLUMNS, row, strict=True))
+    if not all(isinstance(known[name], kinds) for name, kinds in KINDS_OF.items()):
+        raise ArboledaError(
+            f"The plant's memory says of the task {quoted(known['id'])} what is of another type than it"
+            " wrote: put a backup in its place."
+        )
+    if known["state"] not in STATES or known["reason"] not in REASONS:
+        what = f"{quoted(known['id'])} what means nothing"
+        raise ArboledaError(f"The plant's memory says of the task {what}: put a backup in its place.")
+    return TaskRow(**known)  # type: ignore[arg-type]
+
+
+def sentence_of(row: TaskRow) -> Sentence:
+    """Why a task failed; as it was kept, where its data is not as it was written."""
+    try:
+        return retold(row.sentence or "", json.loads(row.said or ""))
+    except ValueError:
+        return OWN(text=row.sentence or "")
+
+
+def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:
+    """What was answered while a task ran; nothing where that is not as it was written."""
+    try:
+        return tuple(TaskAnswer(**each) for each in json.loads(row.answers or "[]"))
+    except (TypeError, ValueError):
+        return ()
+
+
+def table(rows: Iterable[TaskRow], *, names: bool = True) -> str:
+    """Rows as comma-separated values, after a line of their names where wanted."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    if names:
+        writer.writerow(COLUMNS)
+    writer.writerows(astuple(row) for row in rows)
+    return text.getvalue()
+
+
+class TaskHistory:
+    """Reads the tasks of a plant, from any thread, while it runs or not; opened when it is first asked.
+
+    `plant` is its name, where that is known: then the memory of another one is refused.
+    """
+
+    def __init__(self, path: Path, plant: str = "") -> None:
+        self._path = path
+        self._plant = plant
+        self._lock = threading.Lock()
+        self._opened: sqlite3.Connection | None = None
+
+    def select(self, query: TaskQuery) -> list[TaskRow]:
+        """The tasks that a query asks for, the last accepted first; none where nothing was kept yet."""
+        if not self._path.exists():
+            return []
+        with self._lock, explained(self._path, ArboledaError, "cannot be read"):
+            return selected(self._db(), query)
+
+    def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
+        """The figures of these cells, or of all that had a task, up to now at the latest."""
+        since_s, until_s = query.span(time.time())
+        found = Kept(works=[], runs=[], downs=[], shortest={})
+        if self._path.exists():
+            with self._lock, explained(self._path, ArboledaError, "cannot be read"):
+                found = kept(self._db(), since_s, until_s)
+        if cells is None:
+            cells = sorted({work.cell for work in found.works})
+        wanted = [cell for cell in cells if query.cell in ("", cell)]
+        return [oee(cell, found, since_s, until_s) for cell in wanted]
+
+    def close(self) -> None:
+        """Give the file back; idempotent."""
+        with self._lock:
+            if self._opened is not None:
+                self._opened.close()
+                self._opened = None
+
+    def _db(self) -> sqlite3.Connection:
+        if self._opened is None:
+            db = read_only(self._path)
+            try:
+                refuse_version(db, self._path)
+                if self._plant:
+                    refuse_other(db, self._path, self._plant)
+                if version(db) < VERSION:
+                    raise ArboledaError(
+                        f"The plant's memory {self._path} is of an older Arboleda:"
+                        " start the plant once, which brings it up to date."
+                    )
+            except BaseException:  # whatever it is, the file is not left open
+                db.close()
+                raise
+            self._opened = db
+        return self._opened

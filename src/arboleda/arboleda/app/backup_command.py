@@ -1,0 +1,54 @@
+"""`arboleda backup` and `arboleda restore`: the plant's memory in a file, and back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from arboleda.adapters import backups
+from arboleda.model.errors import StartError
+
+from . import config
+from .state import STORE, StateDir, find_running, holder
+from .where import PlantFile, StateFolder, folder, located, name_of
+
+MEMORY = "Tasks, stop latches, what effectors hold, quarantined zones and the operators' journal are in it."
+COPY = "Copy the plant's memory to a file, while the plant runs or not."
+PUT_BACK = "Put a backup in the place of the plant's memory; the plant must not run."
+CAUTION = (
+    "What was there is kept beside it. Latches, grips and zones are then those of the time of the "
+    "backup: look at the robots before you start the plant."
+)
+EXIT = "Exit status: 0 done, 1 it could not be, 2 bad input."
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the commands."""
+    cli.command(help=f"{COPY}\n\n{MEMORY}\n\n{EXIT}", short_help=COPY)(backup)
+    cli.command(help=f"{PUT_BACK}\n\n{CAUTION}\n\n{EXIT}", short_help=PUT_BACK)(restore)
+
+
+def backup(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The file to make.")],
+    plant: PlantFile = None,
+    state: StateFolder = None,
+) -> None:
+    memory = located(plant, state) / STORE
+    backups.back_up(memory, file, name_of(plant))
+    print(f"{memory} is copied to {file}")
+
+
+def restore(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="What `arboleda backup` made.")],
+    plant: PlantFile = None,
+    state: StateFolder = None,
+) -> None:
+    where = folder(plant, state)
+    if find_running(where) is not None:
+        raise StartError(f"{holder(where)} End it first.")
+    name = config.load(plant, recipes=False).name if plant or not state else ""
+    with backups.opened(file) as source, StateDir(where):
+        backups.restore(source, file, where / STORE, name)
+    print(f"{where / STORE} is now {file}; what was there is {where / STORE}.before-restore")

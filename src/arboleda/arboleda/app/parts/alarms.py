@@ -1,0 +1,138 @@
+"""Alarms of a plant: to a webhook, to a topic on its MQTT broker, or to both."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Sequence
+from datetime import datetime, timezone
+from typing import Any
+from uuid import uuid4
+
+from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.adapters.webhook import NotTaken, Webhook
+from arboleda.core.cell_states import CellState
+from arboleda.core.plant import Plant
+from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.plant_model import PlantModel
+from arboleda.views import alarms
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+from ..alarm_options import AlarmOptions
+from .outbox import Outbox, Receiver
+from .part import BrokerAddress
+
+TAKES_S = 5.0  # a broker has so long to say that it has an alarm
+Page = Callable[[str, "str | None"], "str | None"]  # where a browser sees a cell, or a task of it
+
+
+class AlarmsPart:
+    """Notices what people should hear of, in the plant's thread, and has it delivered by others."""
+
+    def __init__(self, receivers: Sequence[Receiver], page: Page) -> None:
+        self._outboxes = [Outbox(each) for each in receivers]
+        self._page = page
+        self._number = 0
+        self._failed: list[TaskChanged] = []
+        self._seen = -1
+        self._open: dict[str, tuple[str, CellState]] = {}  # by cell: the alarm that stands, and its state
+        self.notes = [f"Alarms: to {each}" for each in receivers]
+
+    def start(self) -> None:
+        for outbox in self._outboxes:
+            outbox.start()
+
+    def stop(self) -> None:
+        for outbox in self._outboxes:
+            outbox.end()
+        for outbox in self._outboxes:
+            outbox.stop()
+
+    def changed(self, task: TaskChanged) -> None:
+        """Note a task that failed; who asks for it again is told of it again, which is no news."""
+        if task.state is TaskState.FAILED and task.request is None:
+            self._failed.append(task)
+
+    def stepped(self, plant: Plant) -> None:
+        """Tell what came of a step, after its commands have left."""
+        failed, self._failed = self._failed, []
+        for task in failed:
+            self._tell(plant, alarms.of_task(plant, task), None)
+        if plant.version == self._seen or plant.intake.closed:  # who ends a plant knows that it stands
+            return
+        self._seen = plant.version
+        for name, run in plant.cells.items():
+            known = self._open.get(name)
+            if run.state in alarms.NEEDS_SOMEBODY and (known is None or known[1] is not run.state):
+                told = self._tell(plant, alarms.of_cell(plant, name), known and known[0])
+                self._open[name] = (told, run.state)
+            elif known is not None and run.state in alarms.AT_WORK_AGAIN:
+                del self._open[name]
+                self._tell(plant, alarms.of_cell(plant, name), known[0])
+
+    def _tell(self, plant: Plant, alarm: alarms.Alarm, first: str | None) -> str:
+        """Have it delivered; the id of what stands with it: its own, or that of the `first` of a hold."""
+        self._number += 1
+        id = f"{plant.model.name}-{plant.epoch}-{self._number}"
+        task = alarm["task"]["id"] if alarm["kind"] == alarms.TASK_FAILED else None
+        about = {
+            "id": id,
+            "alarm": first or id,
+            **alarm,
+            "time": datetime.fromtimestamp(time.time(), timezone.utc).isoformat(timespec="milliseconds"),
+            "page": self._page(alarm["cell"], task),
+        }
+        for outbox in self._outboxes:
+            outbox.put(about)
+        return first or id
+
+
+class OnTopic:
+    """Publishes on the plant's own MQTT broker or the one that it uses, QoS 1."""
+
+    def __init__(self, model: PlantModel, broker: BrokerAddress, topic: str) -> None:
+        self._model = model
+        self._broker = broker
+        self._topic = topic
+        self._up = threading.Event()
+        self._client: MqttClient | None = None
+
+    def __str__(self) -> str:
+        return f"the MQTT topic {self._topic}"
+
+    def post(self, what: dict[str, Any]) -> None:
+        """Return once the broker has it; else NotTaken."""
+        if self._client is None:  # its address is known once the broker has started
+            self._client = MqttClient(
+                f"arboleda_alarms_{uuid4().hex[:8]}",
+                self._broker.address,
+                on_event=self._heard,
+                credentials=self._broker.credentials,
+                version=self._model.mqtt_version,
+                announce=False,
+            )
+            self._client.start()
+        self._up.wait(TAKES_S)
+        payload = json.dumps(what, ensure_ascii=False).encode()
+        try:
+            self._client.deliver(Publication(topic=self._topic, payload=payload), TAKES_S)
+        except NotConnected as error:
+            raise NotTaken(str(error)) from error
+
+    def close(self) -> None:
+        if self._client is not None:
+            self._client.close()
+
+    def _heard(self, event: Delivery | Connection) -> None:
+        if isinstance(event, Connection):
+            (self._up.set if event.up else self._up.clear)()
+
+
+def alarms_part(
+    model: PlantModel, options: AlarmOptions, broker: BrokerAddress, page: Page
+) -> AlarmsPart | None:
+    """The part, where anybody wants alarms."""
+    hooks: list[Receiver] = [Webhook(options.hook)] if options.hook else []
+    topics: list[Receiver] = [OnTopic(model, broker, options.topic)] if options.topic else []
+    return AlarmsPart([*hooks, *topics], page) if hooks or topics else None

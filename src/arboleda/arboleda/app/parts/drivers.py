@@ -1,0 +1,249 @@
+"""Drivers of one's own in a plant: a thread for each, and the machine that supervises them in a loop."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from queue import SimpleQueue
+from traceback import walk_tb
+from typing import Any
+
+from arboleda.adapters import clock
+from arboleda.adapters.seldom import Seldom
+from arboleda.drivers import supervisor
+from arboleda.drivers.port import Driver, NotSent
+from arboleda.drivers.supervisor import (
+    Begin,
+    Broken,
+    End,
+    Give,
+    Leaving,
+    Life,
+    Refused,
+    Said,
+    Supervisor,
+    Taken,
+)
+from arboleda.model.commands import Command
+from arboleda.model.messages import Notice, Report, Undelivered
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import DriverUse, PlantModel, Robot
+from arboleda.model.sentence import OWN
+
+from ..loop import Loop
+from .part import Crash
+
+LOG = logging.getLogger("arboleda.drivers")
+PATIENCE_S = 3.0  # for drivers to end
+
+
+class DriversPart:
+    """The drivers of a plant; `connect` the plant before `start`. It is the plant's port to their devices."""
+
+    def __init__(self, model: PlantModel, epoch: int, crash: Crash) -> None:
+        groups = list(_groups(model))
+        self._workers = [Worker(use, robots, self._post) for use, robots in groups]
+        self._hear: Callable[[Report | Undelivered], None] = lambda event: None
+        self._seldom = Seldom()
+        named = [(use.name, robots) for use, robots in groups]
+        machine = Supervisor(named, epoch=epoch, stale_after_s=model.timing.stale_after_s)
+        self.loop: Loop[Any, Any] = Loop("drivers", machine, self._send, on_crash=crash)
+        self._threads = DeadThreads(self._died)
+
+    def connect(self, hear: Callable[[Report | Undelivered], None]) -> None:
+        """Who gets the reports, and is told of what could not leave."""
+        self._hear = hear
+
+    def send(self, message: Command | Notice) -> None:
+        """The plant's port to the devices behind drivers; notices are not for them."""
+        if isinstance(message, Command):
+            self.loop.post(supervisor.Asked(at=clock.seconds(), command=message))
+
+    def start(self) -> None:
+        self._threads.watch()
+        for worker in self._workers:
+            worker.start()
+        self.loop.start()
+
+    def stop(self) -> None:
+        """Halt what may still move, then end every driver; one that does not end is left behind."""
+        self.loop.post(Leaving(at=clock.seconds()))
+        self.loop.stop()
+        until = time.monotonic() + PATIENCE_S
+        for worker in self._workers:
+            worker.end(until)
+        self._threads.forget()
+
+    def _post(self, event: supervisor.Event) -> None:
+        self.loop.post(event)
+
+    def _send(self, message: supervisor.Message) -> None:
+        if isinstance(message, Report | Undelivered):
+            self._hear(message)
+        elif isinstance(message, Refused):
+            if self._seldom.is_due(message.sentence, message.at):
+                LOG.warning("%s", message.sentence)
+        else:
+            self._workers[message.life.driver].do(message)
+
+    def _died(self, error: BaseException) -> bool:
+        """A thread ended with this error; whether it was one of a driver of this plant."""
+        at_work = [worker for worker in self._workers if worker.is_at_work_in(error)]
+        owners = at_work or [worker for worker in self._workers if worker.wrote(error)]
+        for worker in owners:
+            worker.lost_thread(error)
+        return bool(owners)
+
+
+class Worker:
+    """One driver in a thread of its own: whatever it raises becomes an event, whatever it does takes its
+    own time."""
+
+    def __init__(
+        self, use: DriverUse, robots: tuple[Robot, ...], post: Callable[[supervisor.Event], None]
+    ) -> None:
+        self._use = use
+        self._robots = robots
+        self._post = post
+        self._jobs: SimpleQueue[Begin | Give | End | None] = SimpleQueue()
+        self._driver: Driver | None = None
+        self._life: Life | None = None
+        self._thread = threading.Thread(target=self._run, name=f"driver {use.name}", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def do(self, job: Begin | Give | End) -> None:
+        """Have something done after what it was given before; from any thread, never blocks."""
+        self._jobs.put(job)
+
+    def end(self, until: float) -> None:
+        """End after what it was given, at that monotonic time at the latest."""
+        self._jobs.put(None)
+        if self._thread.ident is not None:
+            self._thread.join(max(0.0, until - time.monotonic()))
+        if self._thread.is_alive():
+            LOG.warning("the driver %s does not end and is left behind", self._use.name)
+
+    def is_at_work_in(self, error: BaseException) -> bool:
+        """Whether its driver is in one of the calls that an error came by."""
+        return any(
+            value is self._driver
+            for frame, _ in walk_tb(error.__traceback__)
+            for value in frame.f_locals.values()
+            if self._driver is not None
+        )
+
+    def wrote(self, error: BaseException) -> bool:
+        """Whether one of those calls is of the file that its driver is written in."""
+        if self._driver is None:
+            return False
+        file = type(self._driver).start.__code__.co_filename
+        return any(frame.f_code.co_filename == file for frame, _ in walk_tb(error.__traceback__))
+
+    def lost_thread(self, error: BaseException) -> None:
+        """A thread of the driver died with this error; while it ends, that is nothing."""
+        if self._life is not None:
+            self._broke(self._life, f"a thread of it died: {in_words(error)}", error)
+
+    def _run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            if isinstance(job, Begin):
+                self._begin(job.life)
+            elif isinstance(job, Give):
+                self._give(job)
+            else:
+                self._end()
+
+    def _begin(self, life: Life) -> None:
+        self._life = life
+        try:
+            self._driver = self._use.make()
+            self._driver.start(self._robots, partial(self._hear, life), clock.seconds)
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            self._broke(life, in_words(error), error, started=False)
+
+    def _give(self, job: Give) -> None:
+        life, command = job.life, job.command
+        back: dict[str, Any] = {}
+        try:
+            if self._driver is not None and life == self._life:
+                self._driver.send(command)
+        except NotSent as error:
+            back = {"error": error.sentence}
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            self._log(in_words(error), error)
+            back = {"error": OWN(text=in_words(error)), "broken": True}
+        self._post(Taken(at=clock.seconds(), life=life, command=command, **back))
+
+    def _end(self) -> None:
+        self._life = None
+        try:
+            if self._driver is not None:
+                self._driver.stop()
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+            self._log(in_words(error), error)
+        self._driver = None
+
+    def _hear(self, life: Life, report: object) -> None:
+        """What the driver of this life was given as `hear`."""
+        self._post(Said(at=clock.seconds(), life=life, report=report))
+
+    def _broke(self, life: Life, why: str, error: BaseException, *, started: bool = True) -> None:
+        self._log(why, error)
+        self._post(Broken(at=clock.seconds(), life=life, error=why, started=started))
+
+    def _log(self, why: str, error: BaseException) -> None:
+        LOG.warning("the driver %s: %s", self._use.name, why)
+        LOG.debug("the error of the driver %s, whole", self._use.name, exc_info=error)
+
+
+class DeadThreads:
+    """Hears of threads of this process that end with an error, while it watches.
+
+    `died(error)` says whether the thread was its own; of any other one Python tells as ever.
+    """
+
+    def __init__(self, died: Callable[[BaseException], bool]) -> None:
+        self._died = died
+        self._before: Callable[[Any], Any] | None = None
+
+    def watch(self) -> None:
+        self._before, threading.excepthook = threading.excepthook, self._hear
+
+    def forget(self) -> None:
+        """Stop watching; idempotent."""
+        if self._before is not None and threading.excepthook == self._hear:
+            threading.excepthook = self._before
+        self._before = None
+
+    def _hear(self, args: Any) -> None:
+        before = self._before or threading.__excepthook__
+        if args.exc_value is None or not self._died(args.exc_value):
+            before(args)
+
+
+def in_words(error: BaseException) -> str:
+    """An error as a sentence goes on: its class, and what it says."""
+    try:
+        text = str(error)
+    except Exception:  # noqa: BLE001 - an error of the user's may have no words
+        text = ""
+    kind = type(error).__name__
+    return plain(f"{kind}: {text}" if text else kind)
+
+
+def _groups(model: PlantModel) -> Iterator[tuple[DriverUse, tuple[Robot, ...]]]:
+    """The robots behind each driver: those of one name and equal settings share one."""
+    uses: list[tuple[DriverUse, list[Robot]]] = []
+    for robot in model.driven:
+        assert robot.driver is not None
+        there = next((robots for use, robots in uses if use == robot.driver), None)
+        if there is None:
+            uses.append((robot.driver, [robot]))
+        else:
+            there.append(robot)
+    return ((use, tuple(robots)) for use, robots in uses)

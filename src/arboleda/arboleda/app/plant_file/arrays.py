@@ -1,0 +1,148 @@
+"""Arrays of targets: a group that says how many there are and where its corners are.
+
+Between the corners the joints of an arm are interpolated, which is exact only for joints that slide: how
+far that is beside an even grid in space says `layout_check`. A mobile robot stands on nodes, so its array
+must meet them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from arboleda.model.commands import Position
+from arboleda.model.plant_model import Pose, Robot
+from arboleda.model.sentence import OWN
+
+from .document import Document, Place, choice, nearest, shown
+from .shapes import ArrayShape
+from .spots import spot
+
+CORNER = "corner"
+ROUNDING = 1e-9
+MOST = 400  # targets of one array
+ORDER = "the first and the last of the first row, then the first and the last of the last row"
+NODE_OFF = "{name} would be between nodes; the corners must lie so that each target is on one"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Array:
+    """A group of `rows` times `columns` targets, `pallet_1` and so on, row by row."""
+
+    group: str
+    rows: int
+    columns: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(f"{self.group}_{number}" for number in range(1, self.rows * self.columns + 1))
+
+    @property
+    def corners(self) -> tuple[int, ...]:
+        """Which of the targets are the corners, without what a single row or column would repeat."""
+        last = self.rows * self.columns - 1
+        return tuple(dict.fromkeys((0, self.columns - 1, last - self.columns + 1, last)))
+
+    def weights(self, index: int) -> tuple[float, ...]:
+        """How much of each of the `corners` a target has."""
+        row, column = divmod(index, self.columns)
+        down, along = row / max(self.rows - 1, 1), column / max(self.columns - 1, 1)
+        found: dict[int, float] = {}
+        last = self.rows * self.columns - 1
+        four = (0, self.columns - 1, last - self.columns + 1, last)
+        shares = ((1 - down) * (1 - along), (1 - down) * along, down * (1 - along), down * along)
+        for corner, share in zip(four, shares, strict=True):
+            found[corner] = found.get(corner, 0.0) + share
+        return tuple(found.values())
+
+    def even(self, index: int, corners: Sequence[Sequence[float]]) -> tuple[float, ...]:
+        """Where a target would be between the corners, were the rows and columns even in space."""
+        return _sums(corners, self.weights(index))
+
+
+def is_array(document: Document, place: Place) -> bool:
+    """Whether a group is an array, going by what it is: a list is one of names."""
+    return isinstance(document.value(place), dict)
+
+
+def arrays(document: Document, cell: Place) -> tuple[Array, ...]:
+    """The arrays of a cell; what is wrong with the others is kept."""
+    here = (*cell, "groups")
+    found = []
+    for name in document.keys(here):
+        place = (*here, name)
+        shape = document.read(ArrayShape, place) if is_array(document, place) else None
+        if shape is None:
+            continue
+        rows, columns = shape.grid
+        if not 2 <= rows * columns <= MOST:
+            number = f"is {rows} x {columns}"
+            document.problem((*place, "grid"), f"an array has 2 to {MOST} targets; this one {number}")
+            continue
+        found.append(Array(group=name, rows=rows, columns=columns))
+    return tuple(found)
+
+
+def poses(
+    document: Document, cell: Place, array: Array, robots: Mapping[str, Robot]
+) -> dict[str, list[Pose | None]]:
+    """Where each robot that has corners stands at each target; None for what is wrong, which is kept."""
+    here = (*cell, "groups", array.group, "corners")
+    found: dict[str, list[Pose | None]] = {}
+    for role in document.keys(here):
+        place = (*here, role)
+        if role not in robots:
+            there = f"must be {choice(robots)}" if robots else "no device of this cell goes anywhere"
+            document.problem(place, f"{there}, is {shown(role)}{nearest(role, robots)}", at=place)
+            continue
+        given = document.value(place)
+        if not isinstance(given, list) or len(given) != len(array.corners):
+            which = ORDER if len(array.corners) > 2 else "the first and the last"
+            document.problem(place, f"must be a list of {len(array.corners)} corners: {which}", at=place)
+            found[role] = [None]
+            continue
+        corners = [spot(document, (*place, index), robots[role], CORNER) for index in range(len(given))]
+        whole = [pose for pose in corners if pose is not None]
+        if len(whole) < len(corners):
+            found[role] = [None]
+        else:
+            found[role] = _between(document, place, array, whole, robots[role])
+    return found
+
+
+def _between(
+    document: Document, place: Place, array: Array, corners: Sequence[Pose], robot: Robot
+) -> list[Pose | None]:
+    """All the targets of an array for one robot."""
+    lifted = [pose.above is not None for pose in corners]
+    if any(lifted) and not all(lifted):
+        document.problem(place, "either every corner has an approach_mm or none", at=place)
+        return [None]
+    made: list[Pose | None] = []
+    for index, name in enumerate(array.names):
+        weights = array.weights(index)
+        q = _mixed([pose.q for pose in corners], weights, robot)
+        if q is None:
+            document.problem(place, NODE_OFF.format(name=name), at=place)
+            return [None]
+        above = _mixed([pose.above or pose.q for pose in corners], weights, robot) if all(lifted) else None
+        made.append(Pose(name=name, title=OWN(text=name), q=q, above=above))
+    return made
+
+
+def _mixed(corners: Sequence[Position], weights: Sequence[float], robot: Robot) -> Position | None:
+    """The position with so much of each corner; None where that is no node."""
+    if robot.on_grid:
+        columns = robot.grid.columns
+        rows = _sums([divmod(node, columns) for node in corners if isinstance(node, int)], weights)
+        row, column = map(round, rows)
+        on_nodes = math.dist(rows, (row, column)) < ROUNDING
+        return row * columns + column if on_nodes else None
+    return _sums([q for q in corners if isinstance(q, tuple)], weights)
+
+
+def _sums(points: Sequence[Sequence[float]], weights: Sequence[float]) -> tuple[float, ...]:
+    """The weighted sum of some points."""
+    pairs = [*zip(weights, points, strict=True)]
+    return tuple(sum(weight * point[axis] for weight, point in pairs) for axis in range(len(points[0])))

@@ -1,0 +1,161 @@
+"""Which driver reaches a device, and with which settings: those of Arboleda, of `uses`, or installed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from importlib.metadata import entry_points
+from typing import Any
+
+from pydantic import create_model
+from pydantic.errors import PydanticSchemaGenerationError
+
+from arboleda.drivers.port import DriverSpec, spec_of
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import DriverUse, Link, PlantModel
+from arboleda.recipes.storage_cell import StorageCell
+
+from .document import Document, Place, choice, nearest, shown
+from .robot_models import Shape
+from .settings import TYPES, keys
+from .shared import SECTION as SHARED
+from .used import LONGEST, Spot, Used, said
+
+KEY, SHORT = "driver", "link"
+GROUP = "arboleda.drivers"
+HOW = 'one of your own is a class with @driver("its name") before it, in a file that "uses" names'
+
+
+def link(document: Document, place: Place, written: str, known: Sequence[str]) -> Link:
+    """How a device is reached, by its key `driver` or, as it was `written`, by the short form `link`."""
+    here = (*place, KEY)
+    if not document.has(here):
+        return Link(written)
+    if document.has((*place, SHORT)):
+        document.problem(here, f'"{SHORT}: X" is the short form of "{KEY}: X"; keep one of them')
+    value = document.value(here)
+    if not _comes_with_it(value):
+        return Link.DRIVER
+    if value not in known:
+        document.problem(here, f"must be {choice(known)} or a driver of your own, is {shown(value)}")
+    return Link(value)
+
+
+def found(document: Document, used: Used) -> dict[str, DriverUse]:
+    """The driver of each place that names one of somebody's own, by the device's name; problems are kept."""
+    uses: dict[str, DriverUse] = {}
+    for name, place in named(document):
+        use = _use(document, place, used)
+        if use is not None:
+            uses[name] = use
+    return uses
+
+
+def with_drivers(document: Document, plant: PlantModel | None, used: Used) -> PlantModel | None:
+    """The plant whose devices know their drivers, where nothing else is wrong with it."""
+    if plant is None or any(document.kept):
+        return plant
+    uses = found(document, used)
+    if not uses:
+        return plant
+    cells = tuple(
+        cell.with_robots(lambda robot: replace(robot, driver=uses.get(robot.name))) for cell in plant.cells
+    )
+    return replace(plant, cells=cells)
+
+
+def named(document: Document) -> Iterator[tuple[str, Place]]:
+    """The devices with a key `driver` that names none of Arboleda's, with the place of that."""
+    cells: list[Place] = [("cells", cell) for cell in document.keys(("cells",))]
+    places: list[Place] = [(*cell, role) for cell in cells for role in StorageCell.keyed_roles]
+    for devices in [*((*cell, "devices") for cell in cells), (SHARED,)]:
+        places += [(*devices, role) for role in document.keys(devices)]
+    for place in places:
+        if document.has((*place, KEY)) and not _comes_with_it(document.value((*place, KEY))):
+            yield str(document.value((*place, "name")) or place[-1]), (*place, KEY)
+
+
+def _comes_with_it(value: object) -> bool:
+    return isinstance(value, str) and value in COME_WITH_IT
+
+
+def _use(document: Document, place: Place, used: Used) -> DriverUse | None:
+    value = document.value(place)
+    if isinstance(value, dict) and len(value) == 1:
+        name = str(next(iter(value)))
+        settings: Place = (*place, name)
+    elif isinstance(value, str):
+        name, settings = value, place
+    else:
+        form = "or one name with its settings, {my_plc: {host: 10.0.0.7}}"
+        document.problem(place, f"must be the name of a driver, {form}; is {shown(value)}")
+        return None
+    spec = used.drivers.get(name) or _installed(document, place, name, used)
+    if spec is None:
+        return None
+    read = _settings(document, settings, spec, used)
+    if read is FAULTY:
+        return None
+    return DriverUse(name=name, settings=read, make=partial(spec.make, read))
+
+
+def _installed(document: Document, place: Place, name: str, used: Used) -> DriverSpec | None:
+    """The driver of that name that an installed package brings; None, with the problem kept."""
+    points = {point.name: point for point in entry_points(group=GROUP)}
+    point = points.get(name)
+    if point is None and not used.is_whole:
+        return None
+    if point is None:
+        known = [*COME_WITH_IT, *used.drivers, *points]
+        document.problem(place, f"must be {choice(known)}, is {shown(name)}{nearest(name, known)}; {HOW}")
+        return None
+    used.watch(Spot(file=point.value), "importing this")
+    try:
+        loaded = point.load()
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        document.problem(place, plain(f"{point.value} cannot be imported: {said(error)}", LONGEST))
+        return None
+    spec = spec_of(loaded)
+    if spec is None:
+        document.problem(place, f"{point.value} is installed as a driver and is none; {HOW}")
+    return spec
+
+
+def _settings(document: Document, place: Place, spec: DriverSpec, used: Used) -> Any:
+    """The settings as the driver is given them; FAULTY, with the problems kept, where they are wrong."""
+    has = document.has(place) and not isinstance(document.value(place), str)
+    if spec.settings is None:
+        if has and document.value(place):
+            document.problem(place, f"the driver {spec.name} has no settings")
+            return FAULTY
+        return None
+    try:
+        shape = create_model(f"Driver_{spec.name}", __base__=Shape, **keys(spec.settings))
+    except PydanticSchemaGenerationError:
+        what = f"the settings of {spec.name} have a type that no plant file can give"
+        used.keep(document, used.spot(spec).problem(f"{what}; it can {TYPES}"))
+        return FAULTY
+    except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
+        used.keep(document, used.spot(spec).problem(f"the settings of {spec.name}: {said(error)}"))
+        return FAULTY
+    if not has:
+        missing = [name for name, field in shape.model_fields.items() if field.is_required()]
+        if missing:
+            form = f"{KEY}: {{{spec.name}: {{{missing[0]}: ...}}}}"
+            document.problem(place, f"the driver {spec.name} needs {', '.join(missing)}; write {form}")
+            return FAULTY
+    read = document.read(shape, place) if has else shape()
+    if read is None:
+        return FAULTY
+    try:
+        return spec.settings(**dict(read))
+    except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        document.problem(place, plain(said(error), LONGEST))
+        return FAULTY
+
+
+FAULTY = object()
+OF_DEVICES = (Link.MQTT.value, Link.ROS.value)
+COME_WITH_IT = (*OF_DEVICES, Link.NONE.value)
+"""The drivers that come with Arboleda, by their names in a plant file."""

@@ -1,0 +1,196 @@
+"""Kinds of devices in Python: of files that the plant file uses, or of installed packages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+from pydantic import create_model
+from pydantic.errors import PydanticSchemaGenerationError
+
+from arboleda.kinds import KindError, WrittenKind
+from arboleda.kinds.declared import DeviceKind
+from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import plain, quoted
+from arboleda.model.plant_model import Robot
+
+from .document import Document, Place, shown
+from .kinds import OF_FACTS, OF_STEPS, name_objection
+from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
+from .robot_kind import RobotKind
+from .settings import TYPES, keys
+from .shapes import DeviceShape
+from .shared import SECTION
+from .used import LONGEST, KindInPython, Spot, Used, said
+
+GROUP = "arboleda.kinds"
+
+
+def registered() -> dict[str, list[EntryPoint]]:
+    """What installed packages register as kinds, by name."""
+    found: dict[str, list[EntryPoint]] = {}
+    for each in entry_points(group=GROUP):
+        found.setdefault(each.name, []).append(each)
+    return found
+
+
+def needs_python(document: Document) -> bool:
+    """Whether a device may be of a kind of a file that is used, or of an installed package."""
+    names = {name for name, _ in _named(document)}
+    uses = document.has(("uses",)) and not names <= COME_WITH_IT.keys()
+    return uses or (bool(names) and not names.isdisjoint(registered()))
+
+
+def complete(document: Document, used: Used) -> None:
+    """Adds the kinds that devices name and that come with Arboleda, or from an installed package."""
+    entries = registered() if any(name not in used.kinds for name, _ in _named(document)) else {}
+    for name, place in _named(document):
+        rows = entries.get(name, [])
+        if name in used.kinds or not (rows or name in COME_WITH_IT):
+            continue
+        if name in COME_WITH_IT and not rows:
+            used.kinds[name] = COME_WITH_IT[name]
+        elif used.may_import and (kind := _installed(document, place, rows, used)):
+            used.kinds[name] = kind
+        else:
+            used.broken.add(name)
+    used.installed = tuple(entries)
+
+
+def robot(document: Document, place: Place, kind: RobotKind, used: Used) -> Robot | None:
+    """The device as its kind reads it; None, with the problems kept, where something is wrong with it."""
+    if kind is COME_WITH_IT.get(kind.name):
+        return kind.read(document, place)
+    used.watch(used.spot(kind), f"making {kind.name} for {place[-1]}")
+    try:
+        found = kind.read(document, place)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        _tell(document, place, kind, error, used)
+        return None
+    if found is None or isinstance(found, Robot):
+        return found
+    what = f"{kind.name} reads {quoted(found)}; a kind that reads by itself makes a Robot"
+    _keep(document, place, used.spot(kind), what, used)
+    return None
+
+
+def device(
+    document: Document, place: Place, kind: WrittenKind, used: Used
+) -> tuple[DeviceShape, DeviceKind] | None:
+    """What the plant file says of a device of that kind, and the kind with its settings."""
+    spot = used.spot(kind)
+    used.watch(spot, f"making {kind.name} for {place[-1]}")
+    try:
+        shape = document.read(_shape(kind), place)
+    except PydanticSchemaGenerationError:
+        what = f"the settings of {kind.name} have a type that no plant file can give"
+        used.keep(document, spot.problem(f"{what}; it can {TYPES}"))
+        return None
+    except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
+        used.keep(document, spot.problem(f"the settings of {kind.name} cannot be read: {said(error)}"))
+        return None
+    settings = None if shape is None else _settings(document, place, kind, shape, used)
+    if shape is None or (settings is None and kind.settings is not None):
+        return None
+    try:
+        made = kind.of(settings)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        _tell(document, place, kind, error, used)
+        return None
+    wrong = next(_misnamed(made), None)
+    if wrong is not None:
+        _keep(document, place, spot, f"{kind.name}: {wrong}", used)
+    return None if wrong is not None else (shape, made)
+
+
+def _named(document: Document) -> Iterator[tuple[str, Place]]:
+    """The kinds that devices are of and that the plant file does not declare, with their places."""
+    declared = document.keys(("kinds",))
+    sections: list[Place] = [("cells", cell, "devices") for cell in document.keys(("cells",))]
+    for section in [*sections, (SECTION,)]:
+        for role in document.keys(section):
+            place = (*section, role, "kind")
+            name = document.value(place)
+            if isinstance(name, str) and (name not in declared or name in RESERVED):
+                yield name, place
+
+
+def _installed(document: Document, place: Place, rows: list[EntryPoint], used: Used) -> KindInPython | None:
+    name, packages = rows[0].name, [_package(each) for each in rows]
+    if name in COME_WITH_IT:
+        owner = f"comes with Arboleda, and {' and '.join(packages)} registers another one"
+        document.problem(place, f"the kind {shown(name)} {owner}; uninstall that, or rename its kind")
+        return None
+    if len(rows) > 1:
+        document.problem(place, f"{' and '.join(packages)} both register a kind {shown(name)}; uninstall one")
+        return None
+    used.watch(Spot(file=rows[0].module), f"importing the kind {name}")
+    try:
+        kind = rows[0].load()
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        what = f"the kind {shown(name)} of {packages[0]} cannot be imported: {said(error)}"
+        document.problem(place, plain(what, LONGEST))
+        return None
+    if not isinstance(kind, IN_PYTHON) or kind.name != name:
+        what = f"{packages[0]} registers {rows[0].value} as a kind {shown(name)}"
+        rule = f'and that is none; one is a function with @kind("{name}") before it'
+        document.problem(place, plain(f"{what}, {rule}", LONGEST))
+        return None
+    file = used.spot(kind).file
+    used.files[file] = file
+    return kind
+
+
+def _package(entry: EntryPoint) -> str:
+    """The package of an entry point, as a sentence names it."""
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.module
+
+
+def _shape(kind: WrittenKind) -> type[DeviceShape]:
+    """What the plant file may say of a device of this kind: what it may of any, and the kind's settings."""
+    rows = () if kind.settings is None else fields(kind.settings)
+    taken = next((row.name for row in rows if row.name in DeviceShape.model_fields), None)
+    if taken is not None:
+        raise KindError(f"{taken} is a key of every device; give the field another name")
+    return create_model(f"Device_{kind.name}", __base__=DeviceShape, **keys(kind.settings))
+
+
+def _settings(document: Document, place: Place, kind: WrittenKind, shape: DeviceShape, used: Used) -> Any:
+    """The settings of a device; None, with the problem kept, where the kind's own rules refuse them."""
+    if kind.settings is None:
+        return None
+    given = {each.name: getattr(shape, each.name) for each in fields(kind.settings)}
+    try:
+        return kind.settings(**given)
+    except (ValueError, ArboledaError) as error:
+        document.problem(place, plain(str(error) or said(error), LONGEST))
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        _tell(document, place, kind, error, used)
+    return None
+
+
+def _tell(document: Document, place: Place, kind: KindInPython, error: BaseException, used: Used) -> None:
+    """Keeps what a kind raised: at its line, or at the device where no file of a user has that."""
+    spot = used.where(error.__cause__ or error, used.where(error, used.spot(kind)))
+    what = f"{kind.name}: {error}" if isinstance(error, KindError) else f"{kind.name}: {said(error)}"
+    _keep(document, place, spot, what, used)
+
+
+def _keep(document: Document, place: Place, spot: Spot, what: str, used: Used) -> None:
+    if spot.file in used.files.values():
+        used.keep(document, spot.problem(what))
+    else:
+        document.problem(place, plain(what, LONGEST))
+
+
+def _misnamed(kind: DeviceKind) -> Iterator[str]:
+    """What of a kind has a name that it cannot have."""
+    rows = [(name, "a fact", OF_FACTS) for name in kind.facts]
+    rows += [(name, "a verb", OF_STEPS) for name in kind.verbs]
+    rows += [(name, "a parameter", ("self",)) for verb in kind.verbs.values() for name, _ in verb.parameters]
+    for name, what, taken in rows:
+        objection = name_objection(name, what, taken)
+        if objection is not None:
+            yield objection

@@ -1,0 +1,19 @@
+"""The kinds of devices in Python that come with Arboleda; those of packages and files stand beside them."""
+
+from __future__ import annotations
+
+from arboleda.kinds import WrittenKind
+from arboleda.kinds.shipped import SHIPPED
+
+from .robot_kind import RobotKind
+from .robots import arm_device, mobile_device, person_device
+from .used import KindInPython
+
+ROBOTS = (
+    RobotKind(name="arm", read=arm_device, goes=True, has_twin=True),
+    RobotKind(name="mobile", read=mobile_device, goes=True),
+    RobotKind(name="person", read=person_device),
+)
+COME_WITH_IT: dict[str, KindInPython] = {each.name: each for each in (*ROBOTS, *SHIPPED)}
+RESERVED = tuple(each.name for each in ROBOTS)  # names that no kind of one's own may have
+IN_PYTHON = (WrittenKind, RobotKind)

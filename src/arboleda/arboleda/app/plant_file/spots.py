@@ -1,0 +1,25 @@
+"""Where one robot stands at one target."""
+
+from __future__ import annotations
+
+from arboleda.model.plant_model import Pose, Robot
+from arboleda.model.sentence import OWN
+
+from .document import Document, Place
+from .poses import PoseReader
+from .shapes import NodeShape
+
+START = "home"  # the target where each robot waits
+
+
+def spot(document: Document, place: Place, robot: Robot, name: str) -> Pose | None:
+    """The pose that the file has there for a target of this name; None, with the problem kept, else."""
+    if robot.on_grid:
+        shape = document.read(NodeShape, place)
+        if shape is not None and shape.node >= robot.grid.size:
+            document.problem((*place, "node"), f"must be 0 to {robot.grid.size - 1}, is {shape.node}")
+            return None
+        return None if shape is None else Pose(name=name, title=OWN(text=name), q=shape.node)
+    assert robot.has_joints
+    reader = PoseReader(document=document, cell=str(place[1]), model=robot.model, joints=robot.joints)
+    return reader.home(place) if name == START else reader.pose(place, OWN(text=name))

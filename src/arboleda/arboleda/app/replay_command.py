@@ -1,0 +1,237 @@
+"""`arboleda replay`: a record executed again through the core that is installed, and compared."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from arboleda import __version__
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import ENDED
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.recorder.beginning import Beginning, PlantFiles
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.plain_data import sentence_from
+
+from . import config
+from .rate import at_rate
+from .record_command import File, changes, last_of, moment
+from .where import StateFolder
+
+if TYPE_CHECKING:
+    from arboleda.recorder.reader import Record
+    from arboleda.recorder.replay import Replayed
+    from arboleda.recorder.steps import Recorded
+
+DIFFERS = 1
+ENDS = {state.value for state in ENDED}
+LONGEST = 500  # characters of a line
+SHOWN = 120  # characters of a value that differs
+WHAT = "Execute a record again, and compare every step with what it was."
+HOW = (
+    "The plant file of the record and the files of Python that it uses are those that are run: replay only "
+    "records that you trust."
+)
+EXIT = "Exit status: 0 all steps are equal, 1 one is not, 2 no record, or one that cannot be replayed."
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What of a record somebody wants to see, and how fast."""
+
+    until_ns: int | None = None
+    task: str | None = None
+    speed: float | None = None
+
+
+def add_to(cli: typer.Typer) -> None:
+    """Add the command."""
+    cli.command(help=f"{WHAT}\n\n{HOW}\n\n{EXIT}", short_help=WHAT)(replay)
+
+
+def replay(
+    file: File = None,
+    until: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="Up to 2026-11-22T03:15:00, or 03:15:00 of its first day."),
+    ] = None,
+    task: Annotated[
+        str | None, typer.Option(metavar="ID", help="Show this task only, up to its end.")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(metavar="X", min=0.01, help="X times as fast as it was. [default: at once]"),
+    ] = None,
+    plant: Annotated[
+        Path | None,
+        typer.Option(
+            "--plant",
+            metavar="FILE",
+            help="Another plant file: where it first does otherwise.",
+        ),
+    ] = None,
+    state: StateFolder = None,
+) -> None:
+    from arboleda.recorder import reader
+
+    record = reader.opened(last_of(file, None, state))
+    beginning = record.first.beginning
+    if record.missing:
+        gone = f"its first {record.missing} files were deleted to make room"
+        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+    for line in _notes(beginning, plant):
+        _say(line)
+    end_ns = None if until is None else _time(until, record.first.began_ns)
+    chosen = Chosen(end_ns, task, speed)
+    last = _run(record, _model(beginning, plant), chosen)
+    _finish(record, last)
+
+
+def _finish(record: Record, last: Replayed | None) -> None:
+    """Say what came of it."""
+    if last is not None and last.difference is not None:
+        for line in _difference(last):
+            _say(line)
+        raise typer.Exit(DIFFERS)
+    number = 0 if last is None else last.number
+    _say(f"{number} steps, all equal" + (f"; it ends early: {record.broken}" if record.broken else ""))
+
+
+def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
+    if beginning.version != __version__:
+        yield f"note: recorded by Arboleda {beginning.version}, replayed by {__version__}"
+    if plant is not None:
+        yield f"note: replayed with {plant} instead of the plant file of the record"
+
+
+def _model(beginning: Beginning, other: Path | None) -> PlantModel:
+    """The plant of the record, or of another file in its place."""
+    if other is not None:
+        model = config.load(other)
+    else:
+        with TemporaryDirectory(prefix="arboleda-") as made:
+            model = _loaded(beginning.files, Path(made))
+    return at_rate(model.on_boards(Link.DRIVER) if beginning.virtual else model, beginning.rate)
+
+
+def _loaded(files: PlantFiles, folder: Path) -> PlantModel:
+    for name, content in files.contents.items():
+        path = folder / _inside(name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    try:
+        model, recording = config.load_recorded(folder / _inside(files.plant))
+    except ConfigError as error:
+        raise NoRecord(f"The plant file of the record cannot be read by this version:\n{error}") from error
+    read = [] if recording is None else sorted(recording.files.contents.values())
+    if recording is not None and read != sorted(files.contents.values()):
+        raise NoRecord("The plant file of the record uses files by absolute paths, which are others now.")
+    return model
+
+
+def _inside(name: str) -> str:
+    """The name of a file in a record; NoRecord where it would be written somewhere else."""
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts or not path.parts or "\0" in name:
+        raise NoRecord("Its plant file has a path that no plant writes.")
+    return name
+
+
+def _time(text: str, began_ns: int) -> int:
+    """Nanoseconds of Unix time; ConfigError for what is no time."""
+    day = datetime.fromtimestamp(began_ns / 1e9).date().isoformat()
+    for candidate in (text, f"{day}T{text}"):
+        try:
+            return int(datetime.fromisoformat(candidate).timestamp() * 1e9)
+        except (OverflowError, ValueError):
+            continue
+    raise ConfigError((f"--until {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
+
+
+def _run(record: Record, model: PlantModel, chosen: Chosen) -> Replayed | None:
+    """Make the steps again and tell what becomes of tasks; the last of them."""
+    from arboleda.recorder.replay import plant_of, replayed
+
+    last: Replayed | None = None
+    pace = Pace(chosen.speed)
+    known = False
+    for last in replayed(plant_of(record.first.beginning, model), _until(record, chosen.until_ns)):
+        pace.wait(last.recorded.now)
+        rows = [row for row in changes(last.recorded.said) if chosen.task in (None, row["task"])]
+        for row in rows:
+            known = True
+            _say(f"{moment(last.recorded.unix_ns, 'milliseconds')} {_line(row)}")
+        if chosen.task is not None and any(row["state"] in ENDS for row in rows):
+            break
+    if chosen.task is not None and not known and (last is None or last.difference is None):
+        raise ConfigError((f"--task {plain(chosen.task, 80)}: there is no such task in this record",))
+    return last
+
+
+def _until(record: Record, end_ns: int | None) -> Iterator[Recorded]:
+    for step in record.steps():
+        if end_ns is not None and step.unix_ns > end_ns:
+            return
+        yield step
+
+
+class Pace:
+    """Waits, so that a replay is `speed` times as fast as it was; not at all where that is None."""
+
+    def __init__(self, speed: float | None) -> None:
+        self._speed = speed
+        self._begun: tuple[float, float] | None = None
+
+    def wait(self, now: float) -> None:
+        if self._speed is None:
+            return
+        if self._begun is None:
+            self._begun = now, time.monotonic()
+        first, at = self._begun
+        time.sleep(max(0.0, at + (now - first) / self._speed - time.monotonic()))
+
+
+def _line(row: dict[str, Any]) -> str:
+    sentence = sentence_of(row.get("sentence"))
+    why = f"  {sentence}" if sentence else ""
+    return f"{row['state']:<9} {row['text']} (id {row['task']}){why}"
+
+
+def sentence_of(data: Any) -> str:
+    """In English; "" where there is none, or none that can be said."""
+    try:
+        return str(sentence_from(data) or "")
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+        return ""
+
+
+def _difference(last: Replayed) -> Iterator[str]:
+    step, found = last.recorded, last.difference
+    assert found is not None
+    asked = ", ".join(_event(each) for each in step.events) or "no event, a deadline"
+    when = moment(step.unix_ns, "microseconds")
+    yield f"{last.number - 1} steps are equal; step {last.number}, of {when}, is not"
+    yield f"  what went in: {asked}"
+    yield f"  {found.field} was {_value(found.recorded)}, is now {_value(found.now)}"
+
+
+def _event(event: Any) -> str:
+    whose = getattr(event, "robot", None) or getattr(event, "text", None) or getattr(event, "scope", None)
+    return type(event).__name__ + (f" {whose}" if whose else "")
+
+
+def _value(value: Any) -> str:
+    return plain(json.dumps(value), SHOWN)
+
+
+def _say(line: str) -> None:
+    print(plain(line, LONGEST), flush=True)

@@ -1,0 +1,382 @@
+"""What the plant knows of one robot, merged from its reports."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
+from operator import attrgetter, methodcaller
+from typing import NamedTuple
+
+from arboleda.model.commands import Position
+from arboleda.model.facts import Facts, Value
+from arboleda.model.messages import BUILT_IN, Failure, Reason, Receipt, Report
+from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
+from arboleda.model.sentence import Phrase, Sentence
+
+STILL = frozenset({MotionState.STOPPED, MotionState.STOP_LATCHED, MotionState.NOT_HOMED})
+APART_S = 0.2  # two telemetry periods: by how much a state and a position of one instant may come apart
+RATE_S = 2.0  # the telemetry rate is counted over at least this long
+MERGED = ("epoch", "boot_id", "state", "q", "node", "homed", "effector", "piece", "receipt")
+_merged = attrgetter(*MERGED)
+
+
+@cache
+def _position_under(key: str | None) -> Callable[[Report | Belief], Position | None]:
+    return attrgetter(key) if key else _nowhere
+
+
+def _nowhere(said: Report | Belief) -> None:
+    """What has no position says none."""
+
+
+@cache
+def _fact_under(name: str | None) -> Callable[[Report | Belief], Value | None]:
+    if name is None:
+        return _nowhere
+    return attrgetter(name) if name in BUILT_IN else methodcaller("fact", name)
+
+
+class Moment(NamedTuple):
+    """A time as a robot's reports tell it: how many there were, and s of the plant's clock."""
+
+    reports: int
+    at: float
+
+
+class Belief:
+    """The last word of a robot on everything it reports; None means it never said.
+
+    `supervised`: whether silence means anything; a robot at `state` speaks only when it moves.
+    `stale_at`: when silence will have lasted too long; None where that cannot happen (again).
+    `barred`: its bridge has refused a command because of a stop, which a robot without one cannot tell.
+    """
+
+    def __init__(self, robot: Robot, stale_after_s: float, plant_epoch: int) -> None:
+        self.robot = robot
+        self.stale_after_s = stale_after_s
+        self.plant_epoch = plant_epoch
+        self.supervised = robot.evidence is not Evidence.STATE and robot.link is not Link.SCREEN
+        self.position_in = _position_under(robot.position_key)  # of a report, or of this
+        self.held_in = _fact_under(robot.held_fact)  # likewise: whether it holds something
+        self.drawn = robot.link is Link.NONE
+        self.heard_at: float | None = None
+        self.stale = False
+        self.stale_at: float | None = None
+        self.online = not self.supervised and not self.drawn
+        self.epoch: int | None = None
+        self.plant: int | None = None
+        self.boot_id: int | None = None
+        self.state: MotionState | None = None
+        self.q: tuple[float, ...] | None = None
+        self.node: int | None = None
+        self.position: Position | None = None
+        self.position_at = 0.0
+        self.position_no = 0
+        self.state_no = 0
+        self.state_at = 0.0
+        self.reports = 0
+        self.rate_hz: float | None = None
+        self._counted = (0.0, 0)  # when the rate was counted last, and the number of reports then
+        self.piece_at = 0.0
+        self.piece_since = 0.0
+        self.displaced = False
+        self.barred = False
+        self._still_from = 0  # of two still codes in a row the first, by number
+        self._rested_from = 0  # of two equal positions in a row the first, by number and by time
+        self._rested_at = 0.0
+        self.homed: bool | None = None
+        self.effector: bool | None = None
+        self.held_boot: int | None = None  # the boot in which it said whether it holds something
+        self.piece: bool | None = None
+        self.receipt: Receipt | None = None
+        self.facts: dict[str, Value] = {}
+        self.lost: Sentence | None = None  # why there is no link
+        self.facts_no = 0  # the report that changed one of them last
+        self._said: tuple[object, ...] = ()  # the words of the last report
+
+    @property
+    def numbers_commands(self) -> bool:
+        """Whether its board numbers the commands that it takes, and has told of its boot."""
+        return self.robot.evidence is Evidence.IDS and self.boot_id is not None
+
+    def fact(self, name: str) -> Value | None:
+        """The last word on a fact; None where there was none."""
+        value: Value | None = getattr(self, name) if name in BUILT_IN else self.facts.get(name)
+        return value
+
+    def hear_again(self, report: Report) -> bool:
+        """Take over a report that only repeats what an online robot said last; False: it is to be merged."""
+        if not self.online or report.at < self.position_at or report.words != self._said:
+            return False
+        self._count(report)
+        self._hear(report)
+        if report.at - self._counted[0] >= RATE_S:
+            self._count_rate(report.at)
+        return True
+
+    def merge(self, report: Report) -> None:
+        """Take over what the report says; what it leaves out stays."""
+        self._count(report)
+        if report.epoch is not None and report.epoch != self.epoch:
+            self.barred = False  # a bridge that restarted knows of no stop
+        for name, value in zip(MERGED, _merged(report), strict=True):
+            if value is not None:
+                setattr(self, name, value)
+        if report.facts:
+            self._merge_facts(report.facts)
+        self.position = self.position_in(self)
+        if self.held_in(report) is not None:
+            self.held_boot = self.boot_id
+        if report.epoch is not None:
+            self.plant = report.plant  # a bridge that restarted has to hear the plant anew
+        self._said, self.lost = report.words, report.lost
+        if report.state is not MotionState.NO_LINK:
+            self._count_rate(report.at)
+        self._hear(report)
+        self.online = self._is_online()
+
+    def _merge_facts(self, facts: Facts) -> None:
+        if any(self.facts.get(name) != value for name, value in facts):
+            self.facts.update(facts)
+            self.facts_no = self.reports
+
+    def _hear(self, report: Report) -> None:
+        """Take over when it spoke."""
+        if report.q is not None or report.node is not None:
+            self.position_at = report.at
+        if report.state is not MotionState.NO_LINK:
+            self.heard_at = report.at
+            self.stale = False
+            self.stale_at = report.at + self.stale_after_s if self.supervised else None
+
+    def _count_rate(self, at: float) -> None:
+        since, reports = self._counted
+        if self.heard_at is None or not self._is_online():
+            self.rate_hz, self._counted = None, (at, self.reports)
+        elif at - since >= RATE_S:
+            self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
+
+    def fall_silent(self) -> None:
+        """Silence has lasted too long."""
+        self.stale = True
+        self.stale_at = None
+        self.online = False
+
+    def _is_online(self) -> bool:
+        if self.stale or self.state is MotionState.NO_LINK or self.drawn:
+            return False
+        return self.heard_at is not None or not self.supervised
+
+    def _count(self, report: Report) -> None:
+        """Number the reports, so that "since" never hangs on two clocks agreeing."""
+        self.reports += 1
+        if report.state is not None:
+            still = report.state in STILL and self.state in STILL
+            self._still_from = self.state_no if still else 0
+            self.state_no, self.state_at = self.reports, report.at
+        said, before = self.position_in(report), self.position
+        if said is not None:
+            moved = said != before or not self._rested_from
+            self._rested_from = self.reports if moved else self.position_no
+            self._rested_at = report.at if moved else self.position_at
+            self.position_no = self.reports
+        if report.piece is not None:
+            self.piece_at = report.at
+            self.piece_since = report.at if report.piece is not self.piece else self.piece_since
+
+    @property
+    def still(self) -> bool:
+        """Whether its last two words agree that it stands still."""
+        return self.still_since(Moment(0, -math.inf))
+
+    @property
+    def moves(self) -> bool:
+        """Whether nothing but its moving keeps it from a command."""
+        return self.trouble is MOVING
+
+    def moment(self, now: float) -> Moment:
+        """Now, for `still_since`."""
+        return Moment(self.reports, now)
+
+    def rested_since(self, at: float) -> bool:
+        """Whether it reported the same position at least twice from `at` on, and no other one since."""
+        return self._rested_from < self.position_no and self._rested_at >= at
+
+    def still_since(self, moment: Moment) -> bool:
+        """Whether it stands still for sure: a still code and, where it reports its position, the same one in
+        two reports, all of them after that moment. What has no position says so twice; what has no work to do
+        stands still.
+
+        At `joints` a report may be older than the other one that came before it; so old ones do not count.
+        """
+        count, at = moment
+        if not self.robot.works:
+            return True
+        if self.state not in STILL or self.state_no <= count:
+            return False
+        if self.robot.evidence is Evidence.JOINTS and self.state_at < at + APART_S:
+            return False
+        if not self.supervised:
+            return True
+        if self.robot.position_key is None:
+            return count < self._still_from
+        rested = count < self._rested_from < self.position_no
+        return rested and (self.robot.evidence is Evidence.IDS or self.rested_since(at + APART_S))
+
+    @property
+    def answered(self) -> bool:
+        """Whether our bridge says that it hears this plant; a robot without our bridge cannot say so."""
+        return self.plant == self.plant_epoch or self.epoch is None or self.robot.link is Link.ROS
+
+    @property
+    def is_located(self) -> bool:
+        """Whether its position can be believed."""
+        return self.online and not self.unhomed
+
+    @property
+    def known_position(self) -> Position | None:
+        """The position, where it can be believed."""
+        return self.position if self.is_located else None
+
+    @property
+    def known_q(self) -> tuple[float, ...] | None:
+        """The joints, where they can be believed."""
+        return self.q if self.is_located else None
+
+    @property
+    def known_node(self) -> int | None:
+        return self.node if self.is_located else None
+
+    @property
+    def unhomed(self) -> bool:
+        """Whether its position means nothing: it says so, or it must have rebooted."""
+        return self.displaced or self.says_unhomed
+
+    @property
+    def says_unhomed(self) -> bool:
+        """Whether the board itself says that it is not homed."""
+        return self.homed is False or self.state is MotionState.NOT_HOMED
+
+    def obstacle(self, *, was: bool) -> Failure | None:
+        """Why no command may go to this robot, None where it is ready; `was`: in words that stay true."""
+        return self._failure(self.trouble, was=was)
+
+    def unreachable(self, *, was: bool = False) -> Failure | None:
+        """Why it could not even be asked something, stopped and unhomed as it may be."""
+        trouble = self.trouble
+        lost = trouble is not None and trouble.reason is Reason.LINK_LOST
+        return self._failure(trouble if lost else None, was=was)
+
+    def stopped(self, *, was: bool = False) -> Failure | None:
+        """What keeps a robot from every command that an operator of this plant stopped."""
+        return self._failure(STOPPED, was=was)
+
+    def obstacle_besides_stop(self, *, was: bool = False) -> Failure | None:
+        """The same for what a stop does not forbid; being stopped hides that a robot is not homed."""
+        trouble = self.trouble
+        if trouble is STOPPED:
+            trouble = UNHOMED if self.unhomed else None
+        return self._failure(trouble, was=was)
+
+    def _failure(self, trouble: Trouble | None, *, was: bool) -> Failure | None:
+        if trouble is None:
+            return None
+        said = trouble.was if was else trouble.said
+        return Failure(reason=trouble.reason, sentence=said(robot=self.robot.name, **trouble.more))
+
+    def _unanswered(self) -> Trouble:
+        """Why its bridge takes no command of this plant: it has not heard it yet, or obeys a later one."""
+        if self.plant is None or self.plant < self.plant_epoch:
+            return UNANSWERED
+        return FENCED._replace(more={"obeyed": self.plant, "ours": self.plant_epoch})
+
+    def _unreached(self) -> Trouble:
+        """Why it is not heard, as far as anybody says so."""
+        if self.lost is not None:
+            return LOST._replace(more={"why": self.lost})
+        return OFFLINE if self.heard_at is not None else UNHEARD
+
+    @property
+    def trouble(self) -> Trouble | None:
+        """What an obstacle is made of, whose ever it is."""
+        if self.drawn:
+            return DRAWN
+        if not self.online:
+            return self._unreached()
+        if not self.answered:
+            return self._unanswered()
+        trouble = TROUBLES.get(self.state)
+        if self.barred and trouble is None:
+            return STOPPED
+        return UNHOMED if self.unhomed and (trouble is None or trouble is MOVING) else trouble
+
+
+class Trouble(NamedTuple):
+    """What is said of a robot while it is so, and of what it was the cause afterwards."""
+
+    reason: Reason
+    said: Phrase
+    was: Phrase
+    more: Mapping[str, int | Sentence] = {}
+
+
+FENCED = Trouble(
+    Reason.LINK_LOST,
+    Phrase(
+        "robot.fenced",
+        "{robot} is fenced off: its bridge obeys plant {obeyed}, which started after this one ({ours}); "
+        "end that plant, then start the bridge anew, or this plant where it brings the bridge",
+    ),
+    Phrase(
+        "robot.was_fenced",
+        "{robot} was fenced off: its bridge obeyed plant {obeyed}, which started after this one ({ours})",
+    ),
+)
+ONLY_DRAWN = Phrase("robot.only_drawn", "{robot} is only drawn (link: none)")
+DRAWN = Trouble(Reason.LINK_LOST, ONLY_DRAWN, ONLY_DRAWN)
+OFFLINE = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.offline", "{robot} is offline"),
+    Phrase("robot.was_lost", "{robot} was lost"),
+)
+LOST = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.lost", "{robot} is offline: {why}"),
+    Phrase("robot.was_lost_because", "{robot} was offline: {why}"),
+)
+UNHEARD = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.unheard", "{robot} was not heard yet"),
+    Phrase("robot.was_unheard", "{robot} had not been heard yet"),
+)
+UNANSWERED = Trouble(
+    Reason.LINK_LOST,
+    Phrase("robot.unanswered", "{robot} has a bridge that does not hear this plant yet"),
+    Phrase("robot.was_unanswered", "{robot} had a bridge that did not hear this plant yet"),
+)
+UNHOMED = Trouble(
+    Reason.NOT_HOMED,
+    Phrase("robot.not_homed", "{robot} is not homed"),
+    Phrase("robot.was_not_homed", "{robot} was not homed"),
+)
+MOVING = Trouble(
+    Reason.REJECTED,
+    Phrase("robot.moving", "{robot} is still moving"),
+    Phrase("robot.was_moving", "{robot} was still moving"),
+)
+STOPPED = Trouble(
+    Reason.STOPPED,
+    Phrase("robot.stopped", "{robot} is stopped (latched)"),
+    Phrase("robot.was_stopped", "{robot} was stopped (latched)"),
+)
+FAULTY = Trouble(
+    Reason.DEVICE_FAULT,
+    Phrase("robot.in_fault", "{robot} is in fault"),
+    Phrase("robot.was_in_fault", "{robot} was in fault"),
+)
+TROUBLES: dict[MotionState | None, Trouble] = {
+    MotionState.MOVING: MOVING,
+    MotionState.FAULT: FAULTY,
+    MotionState.STOP_LATCHED: STOPPED,
+}

@@ -1,0 +1,391 @@
+"""Truth about motion: what a report proves about an open command, by the robot's declared evidence.
+
+Each rule looks at one open command, what was believed before the report, and the belief after it,
+and returns the feed it proves, or None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from arboleda.model.commands import Command, Home, Motion, Position, Process, Query, Switch
+from arboleda.model.facts import Facts, Value, shown
+from arboleda.model.messages import Failure, Reason, Report
+from arboleda.model.plant_model import Evidence, MotionState, Robot
+from arboleda.model.sentence import Phrase, Sentence
+
+from .belief import APART_S, Belief
+from .ledger import Entry, Feed, State
+
+REFUSALS: dict[str, Reason] = {
+    "no_link": Reason.LINK_LOST,
+    "paro": Reason.STOPPED,
+    "sin_ref": Reason.NOT_HOMED,
+    "condicion": Reason.PRECONDITION,
+}
+QUIET_S = 0.3  # what a command takes to a robot, one telemetry period, and APART_S for its answer
+OBJECTIONS = frozenset({MotionState.FAULT, MotionState.NOT_HOMED, MotionState.STOP_LATCHED})
+JITTER_S = APART_S  # two positions may arrive so much closer together than they were made
+
+NO_TELEMETRY_FOR = Phrase(
+    "command.no_telemetry_for", "{robot}: no telemetry for {seconds:.1f} s while {doing}"
+)
+LINK_LOST = Phrase("command.link_lost", "{robot}: the link was lost while {doing}")
+LINK_LOST_BECAUSE = Phrase("command.link_lost_because", "{robot}: the link was lost while {doing}: {why}")
+BRIDGE_RESTARTED = Phrase("command.bridge_restarted", "{robot}: the bridge restarted while {doing}")
+REFUSED = Phrase("command.refused", "{robot}: refused the command for {doing} ({word})")
+BOARD_REBOOTED = Phrase("command.board_rebooted", "{robot}: the board rebooted while {doing}")
+JOINTS_JUMPED = Phrase(
+    "command.joints_jumped", "{robot}: the joints jumped, the board must have rebooted, while {doing}"
+)
+BOARD_FAULT = Phrase("command.board_fault", "{robot}: the board reports a fault while {doing}")
+POSITION_UNKNOWN = Phrase(
+    "command.position_unknown", "{robot}: the position is unknown, the robot is not homed, while {doing}"
+)
+STOPPED = Phrase("command.stopped", "{robot}: stopped and latched while {doing}")
+OFF_TARGET = Phrase(
+    "command.off_target", "{robot}: reported the move done but stands off its target while {doing}"
+)
+FACT_UNSAID = Phrase(
+    "command.fact_unsaid",
+    "{robot}: reported the work done but does not say its {fact} while {doing}",
+)
+FACT_OTHER = Phrase(
+    "command.fact_other",
+    "{robot}: reported the work done but says {value} of its {fact} while {doing}",
+)
+GAVE_UP = Phrase("command.gave_up", "{robot}: gave up ({word}) while {doing}")
+SHORT_OF_TARGET = Phrase("command.short_of_target", "{robot}: stopped before its target while {doing}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What a report proves: a feed for the ledger, its cause where it is a failure, the answer to a query."""
+
+    feed: Feed
+    failure: Failure | None = None
+    answer: Value | None = None
+
+
+class Before(NamedTuple):
+    """What was believed just before the report under judgement."""
+
+    epoch: int | None
+    boot_id: int | None
+    position: Position | None
+    position_at: float
+    online: bool
+
+    @classmethod
+    def of(cls, belief: Belief) -> Before:
+        return cls(belief.epoch, belief.boot_id, belief.position, belief.position_at, belief.online)
+
+
+def judge(entry: Entry, before: Before | None, belief: Belief, report: Report) -> Verdict | None:
+    """The strongest feed that `report` proves about `entry`; None where it proves nothing new.
+
+    `before` is None where the report only repeats what was believed: nothing has broken then.
+    """
+    broken = _refused(entry, report) if before is None else _broken(entry, before, belief, report)
+    if broken is not None or report.at < entry.sent_at:
+        return broken
+    _look(entry, belief, report)
+    return _device(entry, report) or _progress(entry, belief, report) or _stopping(entry, belief)
+
+
+def _look(entry: Entry, belief: Belief, report: Report) -> None:
+    """Keep what a report shows about the command since it was sent."""
+    seen = entry.seen
+    _look_at_goal(entry, belief, report)
+    seen.moving = seen.moving or report.state is MotionState.MOVING
+    if report.state is not None:
+        stopped = report.state is MotionState.STOPPED
+        seen.stopped_since = (seen.stopped_since or report.at) if stopped else None
+    if report.done not in (None, seen.ended, entry.command.id):
+        seen.unhomed = False  # the end of another command is told only now: what was seen is from before ours
+    seen.unhomed = seen.unhomed or report.homed is False
+    seen.ended = report.done or seen.ended
+
+
+def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
+    """Keep since when all that is told is the goal, and how far along its way the robot was seen."""
+    seen, place = entry.seen, belief.position_in(report)
+    if place is None and not _tells(report, entry.sets):
+        return
+    if place is not None and len(entry.way) > 1 and place != seen.place:
+        seen.place = place
+        ahead = entry.way[seen.passed + 1 :]
+        seen.passed += ahead.index(place) + 1 if place in ahead else 0
+    seen.on_goal_since = (seen.on_goal_since or report.at) if _at_end(entry, belief) else None
+
+
+def _tells(report: Report, facts: Facts) -> bool:
+    return any(report.fact(name) is not None for name, _ in facts)
+
+
+def _at_end(entry: Entry, belief: Belief) -> bool:
+    """Whether what it told last is the goal; a way that comes by there before was seen driven to its end."""
+    driven = len(entry.way) <= 1 or entry.seen.passed == len(entry.way) - 1
+    return driven and reached(entry, belief)
+
+
+def reached(entry: Entry, belief: Belief) -> bool:
+    """Whether what is believed is the goal of a command that has one: its position, and what it sets."""
+    if entry.sets and any(belief.fact(name) != value for name, value in entry.sets):
+        return False
+    if not entry.way:
+        return entry.sets != ()
+    return belief.position is not None and belief.robot.stands_at(belief.position, entry.way[-1])
+
+
+def _failed(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> Verdict:
+    return Verdict(feed=Feed.FAILED, failure=_failure(entry, reason, what, **values))
+
+
+def _failure(entry: Entry, reason: Reason, what: Phrase, **values: str | float | Sentence) -> Failure:
+    sentence = what(robot=entry.command.robot, doing=entry.doing, **values)
+    return Failure(reason=reason, sentence=sentence)
+
+
+def _broken(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    link = _broken_link(entry, before, belief, report)
+    ended = _refused(entry, report) or _gave_up(entry, report)
+    return link or ended or _reboot(entry, before, belief, report)
+
+
+def _broken_link(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    if report.state is MotionState.NO_LINK:
+        if report.lost is not None:
+            return _failed(entry, Reason.LINK_LOST, LINK_LOST_BECAUSE, why=report.lost)
+        silence_s = 0.0 if belief.heard_at is None else report.at - belief.heard_at
+        silent = silence_s >= belief.stale_after_s
+        if silent:
+            return _failed(entry, Reason.LINK_LOST, NO_TELEMETRY_FOR, seconds=silence_s)
+        return _failed(entry, Reason.LINK_LOST, LINK_LOST)
+    if before.epoch is not None and report.epoch is not None and report.epoch != before.epoch:
+        return _failed(entry, Reason.LINK_LOST, BRIDGE_RESTARTED)
+    return None
+
+
+def _refused(entry: Entry, report: Report) -> Verdict | None:
+    if report.rejected != entry.command.id:
+        return None
+    word = report.refusal or "no reason given"
+    reason = REFUSALS.get(word, Reason.REJECTED)
+    return Verdict(feed=Feed.REJECTED, failure=_failure(entry, reason, REFUSED, word=word))
+
+
+def _gave_up(entry: Entry, report: Report) -> Verdict | None:
+    if report.failed != entry.command.id:
+        return None
+    return _failed(entry, Reason.DEVICE_FAULT, GAVE_UP, word=report.failure or "no reason given")
+
+
+def _reboot(entry: Entry, before: Before, belief: Belief, report: Report) -> Verdict | None:
+    if rebooted(before, belief, report):
+        return _failed(entry, Reason.REBOOTED, BOARD_REBOOTED)
+    if belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report):
+        return _failed(entry, Reason.REBOOTED, JOINTS_JUMPED)
+    return None
+
+
+def displaced(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether a robot that cannot say so must have lost its position: a new boot, or a jump."""
+    if belief.robot.says_homed:
+        return False
+    jumped = belief.robot.evidence is Evidence.JOINTS and _jumped(before, belief, report)
+    return jumped or rebooted(before, belief, report)
+
+
+def tells_boots_only(robot: Robot) -> bool:
+    """Whether nothing but the number of its boot tells that a robot must have lost its position."""
+    return robot.evidence is Evidence.IDS and not robot.says_homed
+
+
+def strayed(before: Before, belief: Belief, report: Report, goal: Position) -> bool:
+    """Whether who had reached `goal` is elsewhere after a silence, as after a boot unseen."""
+    robot, place = belief.robot, belief.position_in(report)
+    if before.online or place is None or robot.evidence is not Evidence.JOINTS or robot.reference is None:
+        return False
+    return not robot.stands_at(place, goal)
+
+
+def rebooted(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether the boot id changed; at `joints` it is a count of the bridge, which starts anew with it."""
+    if before.boot_id == report.boot_id or None in (before.boot_id, report.boot_id):
+        return False
+    evidence = belief.robot.evidence
+    return evidence is Evidence.IDS or (evidence is Evidence.JOINTS and before.epoch == report.epoch)
+
+
+def _jumped(before: Before, belief: Belief, report: Report) -> bool:
+    """Whether the robot moved further between two reports than its limits allow."""
+    place = belief.position_in(report)
+    if before.position is None or place is None:
+        return False
+    elapsed_s = report.at - before.position_at + JITTER_S
+    return not belief.robot.can_have_moved(before.position, place, elapsed_s)
+
+
+def _device(entry: Entry, report: Report) -> Verdict | None:
+    if report.state not in OBJECTIONS:
+        return None
+    if report.state is MotionState.FAULT:
+        return _failed(entry, Reason.DEVICE_FAULT, BOARD_FAULT)
+    if not entry.is_work:
+        return None
+    if report.state is MotionState.NOT_HOMED and not isinstance(entry.command, Home):
+        return _failed(entry, Reason.NOT_HOMED, POSITION_UNKNOWN)
+    stopping = entry.state is State.CANCELLING or entry.finishes
+    if report.state is MotionState.STOP_LATCHED and not stopping:
+        return Verdict(feed=Feed.HALTED, failure=_failure(entry, Reason.STOPPED, STOPPED))
+    return None
+
+
+def _stopping(entry: Entry, belief: Belief) -> Verdict | None:
+    if entry.cancelled_at is None or not entry.halts:
+        return None
+    return Verdict(feed=Feed.HALTED) if belief.still_since(entry.cancelled_after) else None
+
+
+def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    if entry.rule is None:
+        entry.rule = rule_for(type(entry.command), belief.robot.evidence)
+    verdict: Verdict | None = entry.rule(entry, belief, report)
+    if verdict is not None and verdict.feed is Feed.FAILED and entry.cancelled_at is not None:
+        return None  # it was asked to stop short
+    return verdict
+
+
+def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    finished = report.done == entry.command.id
+    if finished and report.state is MotionState.STOPPED:
+        return _off_target(entry, belief) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
+    if entry.accepted_at is None:
+        return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
+    if report.state is MotionState.STOPPED and _elsewhere(entry, belief):
+        return _short(entry)
+    return None
+
+
+def _elsewhere(entry: Entry, belief: Belief) -> bool:
+    """Whether a command that has a goal has not led there."""
+    return (entry.way != () or entry.sets != ()) and not reached(entry, belief)
+
+
+def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """State and position come apart, in any order: an old "stopped" may meet a new position, and a new
+    command the late end of the move before it.
+
+    Done is a robot on its goal that was seen to move and to stop since, or said nothing of moving for
+    QUIET_S. It has stopped short where it has left its origin, says stopped and stays elsewhere for QUIET_S.
+    """
+    seen = entry.seen
+    if belief.state is MotionState.STOPPED:
+        if seen.on_goal_since is not None:
+            moved = seen.moving and seen.stopped_since is not None
+            if moved or report.at >= seen.on_goal_since + QUIET_S:
+                return Verdict(feed=Feed.DONE)
+        elif _stays_short(entry, belief, report.at):
+            return _short(entry)
+    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:
+    seen = entry.seen
+    if not seen.moving or seen.stopped_since is None or at < seen.stopped_since + QUIET_S:
+        return False
+    if not entry.way:
+        return True
+    if belief.position == entry.origin:
+        return False  # who never left may have said only the end of an earlier move
+    return belief.rested_since(seen.stopped_since + APART_S)
+
+
+def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """What a process sets may have been so before it began: it has to be seen at work, and at its end."""
+    seen = entry.seen
+    if seen.moving and seen.stopped_since is not None:
+        if not entry.sets or seen.on_goal_since is not None:
+            return Verdict(feed=Feed.DONE)
+        if _stays_short(entry, belief, report.at):
+            return _short(entry)
+    return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _work_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    if entry.seen.moving and report.state is MotionState.STOPPED and entry.cancelled_at is None:
+        return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
+    return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
+
+
+def _unproven(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """No report proves it: it settles, or its deadline ends it."""
+    return None
+
+
+def _set_as_told(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """UInt8 commands carry no id over ROS 2: what the robot reports of it confirms a switch."""
+    if not entry.sets:
+        return Verdict(feed=Feed.DONE) if report.done == entry.command.id else None
+    told = all(report.fact(name) == value for name, value in entry.sets)
+    return Verdict(feed=Feed.DONE) if told else None
+
+
+def _answered(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """Only an answer that names the query is one: another may be to an earlier question."""
+    if report.answered == entry.command.id and report.answer is not None:
+        return Verdict(feed=Feed.DONE, answer=report.answer)
+    taken = report.accepted == entry.command.id and entry.state is State.SENT
+    return Verdict(feed=Feed.ACCEPTED) if taken else None
+
+
+def _homed_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
+    """Homing shows in `homed`: seen false, then true, and still."""
+    if entry.seen.unhomed and report.homed and report.state is MotionState.STOPPED:
+        return Verdict(feed=Feed.DONE)
+    return Verdict(feed=Feed.ACCEPTED) if entry.seen.unhomed and entry.state is State.SENT else None
+
+
+def _off_target(entry: Entry, belief: Belief) -> Verdict:
+    name = next((name for name, value in entry.sets if belief.fact(name) != value), None)
+    if name is None:
+        return _failed(entry, Reason.NOT_REACHED, OFF_TARGET)
+    told = belief.fact(name)
+    if told is None:
+        return _failed(entry, Reason.NOT_REACHED, FACT_UNSAID, fact=name)
+    return _failed(entry, Reason.NOT_REACHED, FACT_OTHER, fact=name, value=shown(told))
+
+
+def _short(entry: Entry) -> Verdict:
+    return _failed(entry, Reason.STOPPED_SHORT, SHORT_OF_TARGET)
+
+
+Rule = Callable[[Entry, Belief, Report], "Verdict | None"]
+RULES: dict[tuple[type[Command], Evidence], Rule] = {
+    (Motion, Evidence.IDS): _work_by_ids,
+    (Motion, Evidence.JOINTS): _move_by_joints,
+    (Motion, Evidence.STATE): _work_by_state,
+    (Home, Evidence.IDS): _homed_by_ids,
+    (Home, Evidence.JOINTS): _unproven,
+    (Home, Evidence.STATE): _unproven,
+    (Process, Evidence.IDS): _work_by_ids,
+    (Process, Evidence.JOINTS): _process_by_facts,
+    (Process, Evidence.STATE): _work_by_state,
+    (Switch, Evidence.IDS): _set_as_told,
+    (Switch, Evidence.JOINTS): _set_as_told,
+    (Query, Evidence.IDS): _answered,
+    (Query, Evidence.JOINTS): _answered,
+    (Query, Evidence.STATE): _answered,
+    (Command, Evidence.IDS): _unproven,
+    (Command, Evidence.JOINTS): _unproven,
+    (Command, Evidence.STATE): _unproven,
+}
+"""What proves a command, by what it is and by the evidence of its robot."""
+
+
+def rule_for(kind: type[Command], level: Evidence) -> Rule:
+    """The row of RULES for a class of commands: its own, or that of its nearest base."""
+    return next(RULES[base, level] for base in kind.__mro__ if (base, level) in RULES)

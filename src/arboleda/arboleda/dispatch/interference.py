@@ -1,0 +1,54 @@
+"""Commands of others to the plant's robots, as bridges and ports tell of them."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from arboleda.model.messages import Report
+from arboleda.model.sentence import Sentence
+
+KEPT = 20
+LATELY_S = 5.0  # in which a robot reports what a command has brought about
+
+
+@dataclass(frozen=True, kw_only=True)
+class Noticed:
+    """One command of somebody else, or several between two reports; `number` grows by one with each."""
+
+    number: int
+    at: float
+    robot: str
+    sentence: Sentence
+
+
+class Interferences:
+    """The last ones of all robots, oldest first."""
+
+    def __init__(self) -> None:
+        self.noticed: deque[Noticed] = deque(maxlen=KEPT)
+        self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
+        self._obeyed: dict[str, tuple[float, Sentence]] = {}
+        self._count = 0
+
+    def note(self, robot: str, sentence: Sentence, at: float, *, obeyed: bool) -> None:
+        self._count += 1
+        if obeyed:
+            self._obeyed[robot] = (at, sentence)
+        self.noticed.append(Noticed(number=self._count, at=at, robot=robot, sentence=sentence))
+
+    def lately_obeyed(self, robot: str, now: float) -> Sentence | None:
+        """What a robot did LATELY_S ago or later that somebody else commanded."""
+        at, sentence = self._obeyed.get(robot, (0.0, None))
+        return sentence if now <= at + LATELY_S else None
+
+    def rise(self, report: Report) -> tuple[bool, bool]:
+        """Whether a report tells of newly refused, and of newly obeyed ones since its bridge's start."""
+        if report.foreign is None:
+            return False, False
+        told = (report.epoch, report.foreign_refused or 0, report.foreign_obeyed or 0)
+        epoch, refused, obeyed = self._counts.get(report.robot, (report.epoch, 0, 0))
+        if epoch != report.epoch:
+            refused = obeyed = 0
+        self._counts[report.robot] = told
+        return told[1] > refused, told[2] > obeyed

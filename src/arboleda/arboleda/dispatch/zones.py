@@ -1,0 +1,218 @@
+"""Shared zones: who is in which, who waits for which; first come, first served.
+
+A device that cells share is one of them, held by the cell whose task uses it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from arboleda.model.errors import IllegalTransition
+from arboleda.model.outside import plain
+from arboleda.model.sentence import Phrase
+
+STILL_IN = Phrase(
+    "zone.still_in",
+    "{robot} may still be in {zones}, which is quarantined: "
+    "it gets none before it is back, homed and seen outside",
+)
+NO_MORE = Phrase(
+    "zone.no_more",
+    "{robot} holds {held} and asks for {asked}: nobody standing in a zone waits for another",
+)
+WAITS = Phrase("zone.waits", "{robot} waits for {waits} and asks for {asked}: withdraw first")
+TAKEN = Phrase("zone.taken", "zone {zone} is held by {holder}, not free for {robot}")
+NOT_QUARANTINED = Phrase(
+    "zone.not_quarantined", "zone {zone} is {now}; only a quarantined zone can be overridden"
+)
+HELD_BY = Phrase("zone.held_by", "held by {robot}, which still reports")
+FREE = Phrase("zone.free", "free")
+NO_ZONE = Phrase("zone.unknown", 'there is no zone "{zone}"; zones of this plant: {known}')
+NONE = Phrase("none", "none")
+
+
+class Zones:
+    """At most one robot per zone.
+
+    A robot takes all the zones of a way at once, from outside, so nobody who holds a zone waits for another
+    one and there is no deadlock. A quarantined zone may still have its silent robot in it.
+    """
+
+    def __init__(self, names: Iterable[str], quarantined: Mapping[str, str] | None = None) -> None:
+        """`quarantined`: zone -> robot, kept from an earlier start; what is not in `names` is left out."""
+        self._names = tuple(names)
+        self._holders = {zone: robot for zone, robot in (quarantined or {}).items() if zone in self._names}
+        self._quarantined = set(self._holders)
+        self._robbed = set(self._holders.values())  # robots inside that may have had more than they hold
+        self._waiting: dict[str, frozenset[str]] = {}  # in the order of asking
+
+    @property
+    def waiting(self) -> tuple[tuple[str, frozenset[str]], ...]:
+        """Each waiting robot with all it asked for, the first one first."""
+        return tuple(self._waiting.items())
+
+    def holder(self, zone: str) -> str | None:
+        """The robot that is, or in quarantine may be, in the zone."""
+        return self._holders.get(zone)
+
+    def held_by(self, robot: str) -> frozenset[str]:
+        """The zones of which it is the holder, quarantined ones too."""
+        return frozenset([zone for zone, holder in self._holders.items() if holder == robot])
+
+    @property
+    def is_used(self) -> bool:
+        """Whether anybody holds one."""
+        return bool(self._holders)
+
+    @property
+    def robots(self) -> set[str]:
+        """Who holds any."""
+        return set(self._holders.values())
+
+    @property
+    def robbed(self) -> set[str]:
+        """Who is inside and may lack what an override took; each may look whether it can `regain` that."""
+        return set(self._robbed)
+
+    def ahead_of(self, robot: str) -> tuple[str, ...]:
+        """Who waits before a waiting robot for one of its zones, the first one first."""
+        names, zones = list(self._waiting), self._waiting[robot]
+        return tuple(name for name in names[: names.index(robot)] if zones & self._waiting[name])
+
+    def is_quarantined(self, zone: str) -> bool:
+        return zone in self._quarantined
+
+    def snapshot(self) -> list[dict[str, Any]]:
+        """Plain data for screens, in the order of the plant file."""
+        return [self._row(zone) for zone in self._names]
+
+    def request(self, robot: str, zones: frozenset[str], *, moves_over: bool = False) -> bool:
+        """Ask for all of `zones`: True where it holds them now, else it waits; asking again changes nothing.
+
+        IllegalTransition for a zone there is not, for more than the robot holds, for other zones than it
+        waits for, and while any of its zones is quarantined. `moves_over`: a machine that is in the way of
+        one zone may ask for another one, to get there; it goes first, as others may wait for that it leaves.
+        """
+        for zone in sorted(zones):
+            self._require_known(zone)
+        held = self.held_by(robot)
+        if held & self._quarantined:
+            raise IllegalTransition(STILL_IN(robot=robot, zones=_named(held)))
+        if zones <= held:
+            return True
+        if held and not moves_over:
+            raise IllegalTransition(NO_MORE(robot=robot, held=_named(held), asked=_named(zones)))
+        if self._waiting.setdefault(robot, zones) != zones:
+            waits = _named(self._waiting[robot])
+            raise IllegalTransition(WAITS(robot=robot, waits=waits, asked=_named(zones)))
+        if held:
+            self._waiting = {robot: zones, **self._waiting}
+        return robot in self._grant()
+
+    def claim(self, robot: str, zones: frozenset[str]) -> None:
+        """Take zones that nobody else holds for a robot that may be in any of them, its quarantined ones too.
+
+        IllegalTransition where another robot holds one.
+        """
+        for zone in sorted(zones):
+            if self.holder(zone) not in (None, robot):
+                raise IllegalTransition(TAKEN(zone=zone, holder=self.holder(zone) or "", robot=robot))
+        self._holders.update(dict.fromkeys(zones, robot))
+        self._robbed.discard(robot)
+        if self._waiting.get(robot, zones) <= self.held_by(robot):
+            self._waiting.pop(robot, None)
+
+    def regain(self, robot: str, zones: frozenset[str]) -> bool:
+        """Whether a robot inside has all it needs to get out, `zones` at the most; it never waits.
+
+        What an override took from it, also in an earlier start, it takes again where nobody else has it.
+        """
+        if robot in self._robbed and all(self.holder(zone) in (None, robot) for zone in zones):
+            self.claim(robot, zones)
+        return robot not in self._robbed
+
+    def withdraw(self, robot: str) -> tuple[str, ...]:
+        """It gives up waiting; the robots that get their zones by this, the first one first."""
+        self._waiting.pop(robot, None)
+        return self._grant()
+
+    def release(self, robot: str) -> tuple[str, ...]:
+        """It is seen outside of all it holds; what is quarantined stays so. Returns as `withdraw`."""
+        return self._free(self.held_by(robot) - self._quarantined)
+
+    def quarantine(self, robot: str) -> None:
+        """It fell silent: what it holds stays occupied until `restore` or `override`."""
+        self._quarantined |= self.held_by(robot)
+
+    def restore(self, robot: str) -> tuple[str, ...]:
+        """It is back, homed and seen outside: its quarantined zones are free. Returns as `withdraw`."""
+        return self._free(self.held_by(robot) & self._quarantined)
+
+    def is_heard(self, machine: str) -> None:
+        """A machine says itself which zones it is in the way of: those that it holds are not quarantined."""
+        self._quarantined -= self.held_by(machine)
+
+    def quarantine_device(self, device: str) -> None:
+        """A shared device fell silent: the cell that holds it keeps it until `give_back` or `override`."""
+        if device in self._holders:
+            self._quarantined.add(device)
+
+    def give_back(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Shared devices are heard and do nothing, or a machine has left zones: nobody holds them any more.
+
+        Returns as `withdraw`.
+        """
+        return self._free(names & self._holders.keys())
+
+    def override(self, zone: str) -> tuple[str, ...]:
+        """An operator answers for one quarantined zone being empty: it is free. Returns as `withdraw`.
+
+        IllegalTransition where there is nothing to override.
+        """
+        self.require_quarantined(zone)
+        self._robbed.add(self._holders[zone])
+        return self._free(frozenset({zone}))
+
+    def require_quarantined(self, zone: str) -> None:
+        """IllegalTransition where there is nothing to override."""
+        self._require_known(zone)
+        if zone not in self._quarantined:
+            holder = self.holder(zone)
+            now = HELD_BY(robot=holder) if holder else FREE()
+            raise IllegalTransition(NOT_QUARANTINED(zone=zone, now=now))
+
+    def _free(self, zones: frozenset[str]) -> tuple[str, ...]:
+        self._quarantined -= zones
+        for zone in zones:
+            del self._holders[zone]
+        self._robbed &= self.robots
+        return self._grant()
+
+    def _grant(self) -> tuple[str, ...]:
+        """Serve the waiting in order; nobody gets past an earlier one that wants one of the same zones."""
+        granted = []
+        taken = set(self._holders)
+        for robot, zones in self.waiting:
+            if (zones - self.held_by(robot)).isdisjoint(taken):
+                del self._waiting[robot]
+                self._holders.update(dict.fromkeys(zones, robot))
+                granted.append(robot)
+            taken |= zones
+        return tuple(granted)
+
+    def _require_known(self, zone: str) -> None:
+        if zone not in self._names:
+            known = self._names or NONE()
+            raise IllegalTransition(NO_ZONE(zone=plain(zone, 40), known=known))
+
+    def _row(self, zone: str) -> dict[str, Any]:
+        state = (
+            "free" if zone not in self._holders else "quarantined" if self.is_quarantined(zone) else "held"
+        )
+        waiting = [robot for robot, zones in self.waiting if zone in zones]
+        return {"zone": zone, "state": state, "robot": self.holder(zone), "waiting": waiting}
+
+
+def _named(zones: frozenset[str]) -> tuple[str, ...]:
+    return tuple(sorted(zones))

@@ -1,0 +1,31 @@
+"""What drivers of one's own are written with; `@driver` makes one of a class with `start`, `send`, `stop`."""
+
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.declared import Told as VerbCommand
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState, Robot
+
+from .port import Clock, Driver, DriverError, Hear, NotSent, driver, lost
+
+__all__ = [
+    "Clock",
+    "Command",
+    "Driver",
+    "DriverError",
+    "FollowPath",
+    "Hear",
+    "Home",
+    "MotionState",
+    "MoveJoints",
+    "NotSent",
+    "Report",
+    "Robot",
+    "SetEffector",
+    "Stop",
+    "StopMode",
+    "VerbCommand",
+    "driver",
+    "lost",
+]

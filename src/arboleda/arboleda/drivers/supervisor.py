@@ -1,0 +1,271 @@
+"""All drivers of a plant as one machine: whom a command goes to, which report counts, and what is lost.
+
+Drivers are other people's code. Whatever one of them does, its devices lose their link, with a sentence that
+says why; it is ended and made anew, and nothing that was open is sent again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report, Undelivered
+from arboleda.model.plant_model import MotionState, Robot
+from arboleda.model.sentence import Phrase, Sentence
+
+from .device import DrivenDevice
+from .reports import objection
+
+FIRST_RETRY_S, LAST_RETRY_S = 0.5, 30.0
+STARTING = Phrase("driver.starting", "its driver {driver} was started and has said nothing yet")
+SILENT = Phrase("driver.silent", "its driver {driver} has said nothing for {seconds:g} s")
+STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send for {seconds:g} s")
+FAILED = Phrase("driver.failed", "its driver {driver} broke down ({error}), and is started again")
+NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({error}), and tries again")
+NOT_SENT = Phrase("driver.not_sent", "its driver {driver} could not send a command ({error})")
+UNSAID = Phrase("driver.unsaid", "its driver {driver} says that there is no link")
+NONSENSE = Phrase("driver.nonsense", "the driver {driver} reported nonsense: {why}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Life:
+    """One object that was made of a driver; what an earlier one says counts no more."""
+
+    driver: int
+    number: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """The plant commands a device."""
+
+    at: float
+    command: Command
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """A driver handed something over that should be a Report."""
+
+    at: float
+    life: Life
+    report: object
+
+
+@dataclass(frozen=True, kw_only=True)
+class Broken:
+    """A driver raised what it should not, or a thread of it died; `started`: its start was over by then."""
+
+    at: float
+    life: Life
+    error: str
+    started: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Taken:
+    """A driver came back from `send`; `error` says why the command did not leave.
+
+    `broken`: that was no refusal but a defect, and nobody knows what it has left behind.
+    """
+
+    at: float
+    life: Life
+    command: Command
+    error: Sentence | None = None
+    broken: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leaving:
+    """The plant ends."""
+
+    at: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Begin:
+    """Make the driver of this life, and start it."""
+
+    life: Life
+
+
+@dataclass(frozen=True, kw_only=True)
+class Give:
+    """Have a driver send a command."""
+
+    life: Life
+    command: Command
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """Stop the driver of this life."""
+
+    life: Life
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refused:
+    """Something that a driver said was not used; `sentence` is for the log."""
+
+    at: float
+    sentence: Sentence
+
+
+Event = Asked | Said | Broken | Taken | Leaving
+Message = Begin | Give | End | Refused | Report | Undelivered
+
+
+class SupervisedDriver:
+    """One driver and its devices; `life` is the object that there is of it now."""
+
+    def __init__(self, number: int, name: str, devices: Sequence[DrivenDevice], stuck_after_s: float) -> None:
+        self.name = name
+        self.devices = {device.robot.name: device for device in devices}
+        self.robots = {name: device.robot for name, device in self.devices.items()}
+        self.life = Life(driver=number, number=0)
+        self.begin_at = -math.inf  # when it is to be started; never while there is a life
+        self._stuck_after_s = stuck_after_s
+        self._given: deque[float] = deque()  # when the commands left that it has not come back from
+        self._stuck = False
+        self._began_at = 0.0
+        self._delay_s = FIRST_RETRY_S
+
+    @property
+    def next_deadline(self) -> float:
+        stale_at = min(device.stale_at for device in self.devices.values())
+        stuck_at = self._given[0] + self._stuck_after_s if self._given and not self._stuck else math.inf
+        return min(self.begin_at, stuck_at, stale_at)
+
+    def begin(self, now: float) -> list[Message]:
+        first = self.life.number == 0
+        self.life = replace(self.life, number=self.life.number + 1)
+        self.begin_at, self._began_at = math.inf, now
+        starting = STARTING(driver=self.name)
+        unheard = [device.no_link(now, starting) for device in self.devices.values()] if first else []
+        return [*unheard, Begin(life=self.life)]
+
+    def command(self, at: float, command: Command) -> list[Message]:
+        device = self.devices[command.robot]
+        if device.repeated(command):
+            return []
+        word = device.refusal(command)
+        return [device.refuse(at, command, word)] if word else [self._give(at, device, command)]
+
+    def taken(self, event: Taken) -> list[Message]:
+        """It came back from `send`."""
+        if self._given:
+            self._given.popleft()
+        self._stuck = self._stuck and bool(self._given)
+        if event.error is None:
+            return []
+        name = event.command.robot
+        why = NOT_SENT(driver=self.name, error=event.error)
+        news: list[Message] = [Undelivered(at=event.at, id=event.command.id, robot=name, sentence=why)]
+        return [*news, *(self.devices[name].lose(event.at, why) if event.broken else [])]
+
+    def broken(self, event: Broken) -> list[Message]:
+        """It is ended, and made anew after a while: the longer, the sooner it broke down."""
+        what = FAILED if event.started else NOT_STARTED
+        held = event.at - self._began_at > LAST_RETRY_S
+        self._delay_s = FIRST_RETRY_S if held else self._delay_s
+        self.begin_at = event.at + self._delay_s
+        self._delay_s = min(2 * self._delay_s, LAST_RETRY_S)
+        ended, self.life = End(life=self.life), replace(self.life, number=self.life.number + 1)
+        self._given.clear()
+        self._stuck = False
+        why = what(driver=self.name, error=event.error)
+        return [*(device.no_link(event.at, why) for device in self.devices.values()), ended]
+
+    def said(self, event: Said) -> list[Message]:
+        """What counts as heard; the rest is told in the log."""
+        why = objection(event.report, self.robots)
+        if why is not None:
+            return [Refused(at=event.at, sentence=NONSENSE(driver=self.name, why=why))]
+        assert isinstance(event.report, Report)
+        device = self.devices[event.report.robot]
+        report = event.report.again(min(event.report.at, event.at))  # nobody has heard of what is to come
+        if self._stuck or device.is_late(report, event.at):
+            return []
+        if report.state is MotionState.NO_LINK:
+            return [*device.lose(report.at, report.lost or UNSAID(driver=self.name))]
+        heard, stop = device.hear(report)
+        return [heard] if stop is None else [heard, self._give(event.at, device, stop)]
+
+    def pass_time(self, now: float) -> list[Message]:
+        """What silence, and a `send` that does not come back, have lost by now."""
+        if self.begin_at <= now:
+            return self.begin(now)
+        if self._given and not self._stuck and self._given[0] + self._stuck_after_s <= now:
+            self._stuck = True
+            why = STUCK(driver=self.name, seconds=self._stuck_after_s)
+            return [message for device in self.devices.values() for message in device.lose(now, why)]
+        silent = [device for device in self.devices.values() if device.stale_at <= now]
+        why = SILENT(driver=self.name, seconds=self._stuck_after_s)
+        return [message for device in silent for message in device.lose(now, why)]
+
+    def leave(self, at: float) -> list[Message]:
+        """Whatever may still move is halted before the driver ends."""
+        halts = [(device, device.halt()) for device in self.devices.values()]
+        given: list[Message] = [self._give(at, device, halt) for device, halt in halts if halt is not None]
+        alive, self.begin_at = self.begin_at == math.inf, math.inf
+        return [*given, *([End(life=self.life)] if alive else [])]
+
+    def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
+        device.leaves(command)
+        self._given.append(at)
+        return Give(life=self.life, command=command)
+
+
+class Supervisor:
+    """The drivers by number, each a name and the robots behind it; `epoch` names the plant's start."""
+
+    def __init__(
+        self, drivers: Sequence[tuple[str, Sequence[Robot]]], *, epoch: int, stale_after_s: float
+    ) -> None:
+        self._drivers = [
+            SupervisedDriver(
+                number,
+                name,
+                [DrivenDevice(robot, epoch=epoch, stale_after_s=stale_after_s) for robot in robots],
+                stale_after_s,
+            )
+            for number, (name, robots) in enumerate(drivers)
+        ]
+        self._of_device = {name: driver for driver in self._drivers for name in driver.devices}
+        self._leaving = False
+
+    @property
+    def next_deadline(self) -> float | None:
+        """When `step` must be called even without events; None: never."""
+        due = min((driver.next_deadline for driver in self._drivers), default=math.inf)
+        return due if due < math.inf and not self._leaving else None
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Message]:
+        """Reports and undelivered commands for the plant, and what drivers are to do, in their order."""
+        out = [message for event in events for message in self._take(event)]
+        if self._leaving:
+            return out
+        for driver in self._drivers:
+            if driver.next_deadline <= now:
+                out += driver.pass_time(now)
+        return out
+
+    def _take(self, event: Event) -> list[Message]:
+        if self._leaving:
+            return []
+        if isinstance(event, Leaving):
+            self._leaving = True
+            return [message for driver in self._drivers for message in driver.leave(event.at)]
+        if isinstance(event, Asked):
+            return self._of_device[event.command.robot].command(event.at, event.command)
+        driver = self._drivers[event.life.driver]
+        if event.life != driver.life:
+            return []
+        if isinstance(event, Said):
+            return driver.said(event)
+        return driver.taken(event) if isinstance(event, Taken) else driver.broken(event)

@@ -1,0 +1,8 @@
+"""The kinds in Python that come with Arboleda; each is written as anybody's would be."""
+
+from .conveyor import conveyor
+from .effector import effector
+from .gripper import gripper
+from .sensors import camera, sensor
+
+SHIPPED = (gripper, effector, conveyor, camera, sensor)

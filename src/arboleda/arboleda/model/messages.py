@@ -1,0 +1,350 @@
+"""What crosses the core's border beside commands: notices out, events in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from enum import Enum
+from functools import cached_property
+from operator import attrgetter
+from typing import NamedTuple
+
+from .facts import Facts, Value
+from .grips import Grip
+from .plant_model import MotionState
+from .sentence import NOTHING, Sentence
+
+
+class Reason(str, Enum):
+    """Why something failed; one per failure."""
+
+    LINK_LOST = "link_lost"
+    REBOOTED = "rebooted"
+    NOT_HOMED = "not_homed"
+    REJECTED = "rejected"
+    DEADLINE = "deadline"
+    STOPPED_SHORT = "stopped_short"
+    NOT_REACHED = "not_reached"
+    PRECONDITION = "precondition"
+    DEVICE_FAULT = "device_fault"
+    STOP_UNCONFIRMED = "stop_unconfirmed"
+    STOPPED = "stopped"
+    CANCELLED = "cancelled"
+    NO_PIECE = "no_piece"
+    NOT_GRIPPED = "not_gripped"
+    PART_LOST = "part_lost"
+    ZONE_UNAVAILABLE = "zone_unavailable"
+    INTERRUPTED = "interrupted"
+    INTERNAL = "internal"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Failure:
+    """One reason and one sentence for the operator."""
+
+    reason: Reason
+    sentence: Sentence
+
+
+class TaskState(str, Enum):
+    """The life of a task as `/task_status` tells it."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+    REFUSED = "refused"
+
+
+ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})  # of a task that was accepted
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskAnswer:
+    """What a device or a person answered to a task; `asked` is the question, or the verb and its values."""
+
+    by: str
+    asked: str
+    answer: Value
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeptTask:
+    """What was kept of a task that an earlier start accepted; times in s of this start's clock."""
+
+    id: str
+    text: str
+    cell: str
+    state: TaskState
+    failure: Failure | None = None
+    started_at: float | None = None
+    ended_at: float | None = None
+    attempts: int = 0
+    answers: tuple[TaskAnswer, ...] = ()
+
+
+class Verb(str, Enum):
+    """What an operator can ask for; the same words on every screen."""
+
+    STOP = "stop"
+    CLEAR = "clear"
+    RESET = "reset"
+    HOLD = "hold"
+    RESUME = "resume"
+    CANCEL = "cancel"
+    RETRY = "retry"
+    ABANDON = "abandon"
+    RELEASE = "release"
+    HOME = "home"
+    OVERRIDE = "override"
+    UNLOAD = "unload"
+    ANSWER = "answer"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heartbeat:
+    """The plant is alive; `epoch` names this start of it."""
+
+    epoch: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class SystemStart:
+    """A cell starts a task."""
+
+    cell: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskChanged:
+    """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
+    says of a refused one that the same text may be taken later."""
+
+    task: str
+    text: str
+    cell: str | None
+    state: TaskState
+    reason: Reason | None = None
+    sentence: Sentence = NOTHING
+    request: str | None = None
+    for_now: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorAnswer:
+    """What became of an operator's request; `refusal` says why nothing was done, None where it was."""
+
+    verb: Verb
+    scope: str
+    refusal: Sentence | None = None
+    request: str | None = None
+
+
+class Fact(str, Enum):
+    """What must survive a restart of the plant."""
+
+    LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
+    EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
+    QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
+    STORED = "stored"  # cell -> the numbers of its stations with a part, "0 7"
+    DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
+    BOOT = "boot"  # such a robot -> the boot in which it was heard last
+    STEP = "step"  # running task -> where its tree stands, as `trees/trail.py` writes it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remember:
+    """A fact to keep before anything sent after it leaves; None forgets it."""
+
+    fact: Fact
+    name: str
+    value: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Journal:
+    """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more."""
+
+    verb: Verb
+    scope: str
+    cell: str | None
+    sentence: Sentence
+
+
+def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
+    """Whether a power cut must not undo that this was kept; all that was kept survives a process that dies.
+
+    What is lost may only make the plant more careful than it need be: that an effector has let go, that a
+    zone is free again, that a robot was put right, the last steps of a task.
+    """
+    if not isinstance(kept, Remember):
+        return True
+    if kept.fact is Fact.STEP:
+        return False
+    if kept.fact is Fact.EFFECTOR:
+        return kept.value != Grip.OFF.value  # what has gripped and counts as switching lets go in a recovery
+    return kept.value is not None or kept.fact not in (Fact.QUARANTINE, Fact.DISPLACED)
+
+
+@dataclass(frozen=True, kw_only=True)
+class InternalError:
+    """A defect: something raised what nobody handles. `cell` is held for it, "" where it belongs to none.
+
+    `error` carries its traceback, for the log.
+    """
+
+    cell: str
+    error: Exception
+
+
+@dataclass(frozen=True, kw_only=True)
+class Absence:
+    """The plant did nothing for so many seconds: its process was stopped, or its machine suspended."""
+
+    seconds: float
+
+
+Notice = Heartbeat | SystemStart | TaskChanged | OperatorAnswer | Remember | Journal | InternalError | Absence
+
+
+class Receipt(NamedTuple):
+    """The numbers of the last commands that a board accepted and did, whoever gave them, of one epoch."""
+
+    epoch: int
+    accepted: int
+    done: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report:
+    """What a robot said, in SI units; None means it did not say.
+
+    `epoch` names the bridge's start, `plant` the start of the plant whose heartbeat the bridge hears,
+    `boot_id` the board's; `accepted`, `done` and `rejected` are
+    command ids, the last of each; `refusal` is the word that came with `rejected`. `failed` is the last
+    command that the robot itself gave up, `failure` its word for why; `answered` is the last query that it
+    answered, with `answer`. `receipt` is what its board says of numbers, which outlive the start of plant and
+    bridge. `facts` are what it reports beside the fields here. `lost` says why there is no
+    link, where whoever reports that knows it. `foreign_refused` and
+    `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
+    """
+
+    at: float
+    robot: str
+    epoch: int | None = None
+    plant: int | None = None
+    boot_id: int | None = None
+    accepted: str | None = None
+    done: str | None = None
+    rejected: str | None = None
+    refusal: str | None = None
+    failed: str | None = None
+    failure: str | None = None
+    answered: str | None = None
+    answer: Value | None = None
+    state: MotionState | None = None
+    q: tuple[float, ...] | None = None
+    node: int | None = None
+    homed: bool | None = None
+    effector: bool | None = None
+    piece: bool | None = None
+    facts: Facts | None = None
+    receipt: Receipt | None = None
+    lost: Sentence | None = None
+    foreign_refused: int | None = None
+    foreign_obeyed: int | None = None
+    foreign: Sentence | None = None
+
+    def fact(self, name: str) -> Value | None:
+        """What it says of a fact; None where it says nothing."""
+        if name in BUILT_IN:
+            value: Value | None = getattr(self, name)
+            return value
+        return next((value for fact, value in self.facts or () if fact == name), None)
+
+    @cached_property
+    def words(self) -> tuple[object, ...]:
+        """All that it says, when apart."""
+        return _words(self)
+
+    def again(self, at: float, **news: object) -> Report:
+        """The same words, said once more, but for the news."""
+        said = vars(self).copy()  # several times as fast as `replace`, and most reports are repeats
+        said["at"] = at
+        if news:
+            said.update(news)
+            said.pop("words", None)
+        report = object.__new__(Report)
+        object.__setattr__(report, "__dict__", said)
+        return report
+
+
+BUILT_IN = frozenset({"homed", "effector", "piece"})  # facts that have a field of their own
+_words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskRequest:
+    """Somebody asks for a task; `request` comes back in the TaskChanged that answers it.
+
+    `trigger` marks a machine's start signal, which may be refused during the arm's own cycle. `kept` is the
+    task of this id, where an earlier start has accepted it: no part of what is asked.
+    """
+
+    at: float
+    text: str
+    request: str | None = None
+    trigger: bool = False
+    kept: KeptTask | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Undelivered:
+    """A command could not leave this process; `sentence` says why."""
+
+    at: float
+    id: str
+    robot: str
+    sentence: Sentence
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interference:
+    """Somebody else commanded a robot that its link lets everybody command."""
+
+    at: float
+    robot: str
+    sentence: Sentence
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shutdown:
+    """The plant is asked to end: no new task, whatever moves is halted.
+
+    What waits is left for the next start, unless `drops_waiting`: then what this start accepted is cancelled.
+    """
+
+    at: float
+    drops_waiting: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorRequest:
+    """An operator's act; `scope` is "" for the plant, a cell, a robot, a zone (override) or a task (cancel).
+
+    The scope of `unload` may be a cell and a station, that of `answer` is a person and the
+    answer, and between them, after a #, the id of the question where only that one is meant.
+
+    `by_hand` (home) declares a robot homed that stands at its reference. `client` (cancel): who asks is no
+    operator but the client of the task itself.
+    """
+
+    at: float
+    verb: Verb
+    scope: str = ""
+    by_hand: bool = False
+    client: bool = False
+    request: str | None = None
+
+
+Event = Report | TaskRequest | OperatorRequest | Undelivered | Interference | Shutdown

@@ -1,0 +1,534 @@
+"""What a plant is: frozen values in SI units (rad, m, s), built once from the plant file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from .commands import Command, Position
+from .facts import Facts
+from .recipe import Recipe
+from .sentence import NOTHING, OWN, Sentence
+
+if TYPE_CHECKING:
+    from .messages import Report
+
+Positions = Callable[[str], "Position | None"]
+"""Where a robot of this name is known to be."""
+
+
+class Evidence(str, Enum):
+    """How much a robot can prove about its motion."""
+
+    IDS = "ids"
+    JOINTS = "joints"
+    STATE = "state"
+
+
+class Link(str, Enum):
+    """How a robot is reached: MQTT through the bridge, directly on ROS 2 topics, or not: it is only drawn.
+
+    By DRIVER it is reached by a driver of somebody's own. Who is reached by SCREEN is a person, who answers
+    on the page, on the command line, over HTTP or ROS 2.
+    """
+
+    MQTT = "mqtt"
+    ROS = "ros"
+    NONE = "none"
+    SCREEN = "screen"
+    DRIVER = "driver"
+
+
+class ForeignCommands(str, Enum):
+    """What a bridge that hears its plant does with commands of other nodes; stops it always obeys."""
+
+    REFUSE = "refuse"
+    OBEY = "obey"
+
+
+class MqttVersion(str, Enum):
+    """Which MQTT a plant speaks."""
+
+    V3_1_1 = "3.1.1"
+    V5 = "5"
+
+
+class MotionState(int, Enum):
+    """The code a robot reports as `motion_state` (ROS 2) and `estado` (MQTT)."""
+
+    STOPPED = 0
+    MOVING = 1
+    FAULT = 2
+    NOT_HOMED = 3
+    STOP_LATCHED = 4
+    NO_LINK = 255
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriverUse:
+    """The driver that reaches a robot, and its settings; `make` makes one with them."""
+
+    name: str
+    settings: object = field(default=None, hash=False)
+    make: Callable[[], Any] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """What every robot declares: its names, its link and what it can prove."""
+
+    name: str
+    mqtt: str
+    link: Link
+    evidence: Evidence
+    timeout_s: float
+    assume_homed: bool = False
+    home_at_start: bool = False  # True: homed by the plant when it starts, if it is not
+    has_stop: bool = True
+    driver: DriverUse | None = None  # with `Link.DRIVER`
+    piece_on_change: bool = False  # True: its piece sensor speaks only when the value changes
+    position_key: ClassVar[str | None] = None  # the key of a report that has its position, if any
+
+    @property
+    def kind_name(self) -> str:
+        """What its kind is called."""
+        raise NotImplementedError
+
+    @property
+    def has_joints(self) -> bool:
+        """Whether its position is a number for each of its joints."""
+        return self.position_key == "q"
+
+    @property
+    def on_grid(self) -> bool:
+        """Whether its position is a node of a grid."""
+        return self.position_key == "node"
+
+    @property
+    def goes(self) -> bool:
+        """Whether it goes from place to place."""
+        return self.position_key is not None
+
+    @property
+    def verb_names(self) -> tuple[str, ...]:
+        """What it can be told besides where to go and what to hold, by name."""
+        return ()
+
+    @property
+    def on_a_board(self) -> Robot:
+        """The same robot, reached over MQTT, where virtual boards are."""
+        return replace(self, link=Link.MQTT, driver=None)
+
+    @property
+    def query_names(self) -> tuple[str, ...]:
+        """Those of its verbs that ask it for an answer."""
+        return ()
+
+    @property
+    def fact_names(self) -> tuple[str, ...]:
+        """The facts that it reports, in the order in which people read them."""
+        return ()
+
+    def drawn(self) -> dict[str, object] | None:
+        """Its place on the floor, its speeds and its reference, for drawings; None where it is not drawn."""
+        return None
+
+    @property
+    def held_fact(self) -> str | None:
+        """The fact, a yes or no, that says whether it holds something; None where it cannot hold anything."""
+        return None
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether it is somebody who answers on the plant's own screens."""
+        return self.link is Link.SCREEN
+
+    @property
+    def has_effector(self) -> bool:
+        """Whether what it holds parts with is called its effector; of any other device the fact is named."""
+        return self.held_fact == "effector"
+
+    @property
+    def units(self) -> list[str] | None:
+        """The unit of each number of its position; None where that is no list of numbers."""
+        return None
+
+    def objection(self, report: Report) -> str | None:
+        """Why it cannot have said this; None where it can."""
+        return None
+
+    @property
+    def works(self) -> bool:
+        """Whether it can be given work; what only answers or switches always stands still."""
+        return True
+
+    @property
+    def homes(self) -> bool:
+        """Whether it can lose its position, and run a homing routine or be put at its reference."""
+        return True
+
+    @property
+    def reference(self) -> Position | None:
+        """Where its position is counted from; None where it counts nothing that a boot could lose."""
+        return None
+
+    def route(self, start: Position | None, goal: Position) -> tuple[Position, ...]:
+        """The positions by which it gets from `start`, where that is known, to `goal`, which is the last."""
+        return (goal,)
+
+    def go(self, *, id: str, way: Sequence[Position]) -> Command:
+        """The command that brings it along `way` to its last position."""
+        raise NotImplementedError
+
+    def grip(self, *, id: str) -> Command:
+        """The command that takes hold of a part."""
+        raise NotImplementedError
+
+    def let_go(self, *, id: str) -> Command:
+        """The command that lets go of what it holds."""
+        raise NotImplementedError
+
+    def at_rate(self, rate: float) -> Robot:
+        """The same robot, virtual and so many times as fast."""
+        return self
+
+    def stands_at(self, position: Position, goal: Position) -> bool:
+        """Whether a reported position is that goal."""
+        return position == goal
+
+    def confuses(self, position: Position, other: Position) -> bool:
+        """Whether it may stop at the one and count as standing at the other."""
+        return position == other
+
+    def held_at(self, position: Position) -> Position:
+        """The position as its motors can hold it."""
+        return position
+
+    def lifted(self, position: Position, heights: Sequence[Position]) -> Position:
+        """The position, raised to all of these heights where that is possible."""
+        return position
+
+    def travel_s(self, start: Position | None, way: Sequence[Position]) -> float:
+        """Time of a motion along `way`; from an unknown start the longest possible one."""
+        raise NotImplementedError
+
+    def can_have_moved(self, before: Position, after: Position, elapsed_s: float) -> bool:
+        """Whether its limits allow it to come from one position to the other in that time."""
+        return True
+
+    @property
+    def says_homed(self) -> bool:
+        """Whether it knows itself if it is homed; a board that assumes so after every boot does not.
+
+        What has no homing never loses a position, and so never has to say it.
+        """
+        return (self.evidence is Evidence.IDS and not self.assume_homed) or not self.homes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """A named position of a robot; `above` the point over it where it has an approach height, `zones` where
+    it lies.
+    """
+
+    name: str
+    q: Position
+    above: Position | None = None
+    zones: frozenset[str] = frozenset()
+    title: Sentence = NOTHING
+
+    @property
+    def joints(self) -> tuple[float, ...]:
+        """The position of an arm."""
+        assert isinstance(self.q, tuple)
+        return self.q
+
+    @property
+    def said(self) -> Sentence:
+        """Its name as sentences have it."""
+        return self.title or OWN(text=self.name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """The moves between two zone-free poses, in either direction, that cross zones."""
+
+    a: str  # names of poses
+    b: str
+    zones: frozenset[str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Retry:
+    """How often a failed step is tried again, where that can help, and the pause before each, s."""
+
+    times: int = 0
+    backoff_s: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Workspace:
+    """Where one robot goes in its cell, which shared zones lie on its ways, and what it takes parts with."""
+
+    robot: Robot
+    tool: Robot | None = None  # a device of its own at the robot's end; None: what the robot itself has
+    home: Pose  # where it waits, and where a recovery ends
+    poses: tuple[Pose, ...]  # home is one of them
+    crossings: tuple[Crossing, ...] = ()
+
+    @cached_property
+    def zones(self) -> frozenset[str]:
+        """Every shared zone that it may get into."""
+        places = (pose.zones for pose in self.poses)
+        return frozenset[str]().union(*places, *(crossing.zones for crossing in self.crossings))
+
+    def with_robots(self, change: Callable[[Robot], Robot]) -> Workspace:
+        """The same workspace of a changed robot."""
+        tool = None if self.tool is None else change(self.tool)
+        return replace(self, robot=change(self.robot), tool=tool)
+
+    @property
+    def hand(self) -> Robot:
+        """What holds the parts that it carries."""
+        return self.tool or self.robot
+
+    @cached_property
+    def free_spots(self) -> tuple[tuple[Position, Pose], ...]:
+        """Each position at, or above, a zone-free pose, with that pose.
+
+        The robot's reference counts as home: homing leads there, and both lie outside all zones.
+        """
+        free = [pose for pose in self.poses if not pose.zones]
+        spots: list[tuple[Position, Pose]] = []
+        spots += [(q, pose) for pose in free for q in (pose.q, pose.above) if q is not None]
+        reference = self.robot.reference
+        if reference is not None and all(pose.q != reference for pose in self.poses):
+            spots.append((reference, self.home))
+        return tuple((self.robot.held_at(q), pose) for q, pose in spots)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interlock:
+    """A zone that a device occupies whenever it does not say all of `free_while`: a mill whose door is not
+    open, a lift that is not down.
+    """
+
+    device: str
+    zone: str
+    free_while: Facts
+
+    def is_ended_by(self, command: Command) -> bool:
+        """Whether a command may make the device occupy the zone."""
+        free = dict(self.free_while)
+        return any(free.get(name, value) != value for name, value in command.sets)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """Robots that carry out one task at a time, each in a role of its own."""
+
+    is_storage: ClassVar[bool] = False  # whether it is one of an arm, a mobile robot and a rack
+
+    name: str
+    members: tuple[tuple[str, Robot], ...] = ()  # by role
+    spaces: tuple[Workspace, ...] = ()  # of those that go from pose to pose
+    queue_limit: int
+    goes_on: bool = False  # after a restart the queue of an idle cell goes on by itself
+    retry: Retry = Retry()
+    zone_wait_s: float = 30.0
+    recipes: tuple[Recipe, ...] = ()
+    interlocks: tuple[Interlock, ...] = ()
+    stations: tuple[Pose, ...] = ()  # by number: where parts stay until somebody takes them out
+    arrays: tuple[tuple[str, tuple[str, ...]], ...] = ()  # groups of targets by name, in order
+    grids: tuple[tuple[str, int, int], ...] = ()  # of those that are made of corners: rows and columns
+    shared: tuple[str, ...] = ()  # the names of those devices that other cells have, too
+    keyed_roles: ClassVar[tuple[str, ...]] = ()  # in data for clients these are keys of the cell as well
+
+    def described(self) -> dict[str, object]:
+        """What clients are told of it besides its devices and recipes."""
+        return {}
+
+    @property
+    def drawing(self) -> dict[str, object] | None:
+        """Which of its robots works where, for drawings of its work; None where that is not drawn."""
+        return None
+
+    def role_said(self, role: str) -> Sentence | str:
+        """What a role is called in sentences."""
+        return role
+
+    def part_waits(self, recipe: str) -> Pose | None:
+        """At which pose the part of a task waits until it is gripped; None: on the mobile robot."""
+        return None
+
+    @cached_property
+    def roles(self) -> dict[str, Robot]:
+        """Its robots by what they are in it, in the order of the file."""
+        return dict(self.members)
+
+    @cached_property
+    def workspaces(self) -> dict[str, Workspace]:
+        """By the name of each robot that goes from pose to pose."""
+        return {space.robot.name: space for space in self.spaces}
+
+    @cached_property
+    def reach(self) -> dict[str, Workspace]:
+        """The same of all that recipes send somewhere; a recovery brings home those of `workspaces`."""
+        return self.workspaces
+
+    def spots(self, robot: str) -> dict[str, Pose]:
+        """Where a robot can be sent, by the names that recipes and tasks have for it."""
+        return {pose.name: pose for pose in self.reach[robot].poses}
+
+    @cached_property
+    def targets(self) -> tuple[str, ...]:
+        """The names of the places that one of its robots goes to; a place has one name for all of them."""
+        return tuple(dict.fromkeys(name for robot in self.reach for name in self.spots(robot)))
+
+    @cached_property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """Targets that are chosen from together, by the name of their group."""
+        return dict(self.arrays)
+
+    def recipe(self, name: str) -> Recipe:
+        return next(recipe for recipe in self.recipes if recipe.name == name)
+
+    def refuses_triggers(self, at_work: Sequence[str]) -> str | None:
+        """Whose own cycle keeps start signals of machines away, while tasks of these recipes run or wait."""
+        return None
+
+    def start_of(self, robot: str) -> Position | None:
+        """Where a virtual robot stands at first; None where it has no place."""
+        space = self.workspaces.get(robot)
+        return space.home.q if space else None
+
+    def supplies(self, robot: str) -> tuple[Pose, ...]:
+        """Where parts lie ready for a virtual robot."""
+        space = self.workspaces.get(robot)
+        return space.poses if space else ()
+
+    def back(self, robot: str, positions: Positions) -> Pose | None:
+        """Where a recovery brings a part whose origin nobody knows; None: the robot keeps it."""
+        return None
+
+    @cached_property
+    def robots(self) -> tuple[Robot, ...]:
+        return tuple(self.roles.values())
+
+    def with_robots(self, change: Callable[[Robot], Robot]) -> Cell:
+        """The same cell with each robot changed; none of them gets another name."""
+        members = tuple((role, change(robot)) for role, robot in self.members)
+        return replace(
+            self, members=members, spaces=tuple(space.with_robots(change) for space in self.spaces)
+        )
+
+    @cached_property
+    def reached(self) -> tuple[Robot, ...]:
+        """Its robots without those that are only drawn."""
+        return tuple(robot for robot in self.robots if robot.link is not Link.NONE)
+
+    @cached_property
+    def holders(self) -> tuple[str, ...]:
+        """The robots that can hold a part."""
+        return tuple(robot.name for robot in self.robots if robot.held_fact is not None)
+
+    def interlocks_of(self, device: str) -> tuple[Interlock, ...]:
+        """Those of one device."""
+        return tuple(each for each in self.interlocks if each.device == device)
+
+    @cached_property
+    def own(self) -> tuple[str, ...]:
+        """The names of its robots that no other cell has."""
+        return tuple(robot.name for robot in self.robots if robot.name not in self.shared)
+
+    @cached_property
+    def interlocked(self) -> tuple[str, ...]:
+        """The devices that may occupy shared zones."""
+        return tuple(dict.fromkeys(each.device for each in self.interlocks))
+
+    @cached_property
+    def zone_users(self) -> tuple[str, ...]:
+        """The robots that may get into shared zones."""
+        return tuple(name for name, workspace in self.workspaces.items() if workspace.zones)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """The plant's waiting times in seconds; `deadline_factor` multiplies a computed motion time."""
+
+    dwell_s: float = 0.2
+    effector_settle_s: float = 0.2
+    effector_timeout_s: float = 5.0
+    stale_after_s: float = 1.5
+    stop_timeout_s: float = 5.0
+    deadline_factor: float = 1.5
+    deadline_floor_s: float = 2.0
+    piece_wait_s: float = 2.0
+    piece_debounce_s: float = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantModel:
+    """The whole plant as its file describes it."""
+
+    name: str
+    cells: tuple[Cell, ...]
+    timing: Timing = Timing()
+    mqtt_version: MqttVersion = MqttVersion.V3_1_1
+    zones: tuple[str, ...] = ()
+    foreign_commands: ForeignCommands = ForeignCommands.REFUSE
+    history_days: float = 90.0  # how long ended tasks are kept
+
+    def cell(self, name: str) -> Cell:
+        return next(cell for cell in self.cells if cell.name == name)
+
+    def on_boards(self, *links: Link) -> PlantModel:
+        """The same plant, where who is reached by one of these has a board on MQTT instead."""
+
+        def change(robot: Robot) -> Robot:
+            return robot.on_a_board if robot.link in links else robot
+
+        return replace(self, cells=tuple(cell.with_robots(change) for cell in self.cells))
+
+    @cached_property
+    def robots(self) -> dict[str, Robot]:
+        """Every robot by name, in the order of the file."""
+        return {robot.name: robot for cell in self.cells for robot in cell.robots}
+
+    @cached_property
+    def recipes(self) -> tuple[Recipe, ...]:
+        """Every recipe that a cell of it offers, the default ones first."""
+        found = dict.fromkeys(each for cell in self.cells for each in cell.recipes)
+        return tuple(sorted(found, key=lambda each: not each.is_default))
+
+    @cached_property
+    def has_boards(self) -> bool:
+        """Whether a robot is reached over MQTT; without one, nobody needs a broker."""
+        return any(robot.link is Link.MQTT for robot in self.robots.values())
+
+    @cached_property
+    def cells_of(self) -> dict[str, tuple[Cell, ...]]:
+        """The cells of each robot by its name, in the order of the file; only what is shared has several."""
+        found: dict[str, tuple[Cell, ...]] = {}
+        for cell in self.cells:
+            for robot in cell.robots:
+                found[robot.name] = (*found.get(robot.name, ()), cell)
+        return found
+
+    @cached_property
+    def driven(self) -> tuple[Robot, ...]:
+        """Its robots that drivers of somebody's own reach."""
+        return tuple(robot for robot in self.robots.values() if robot.link is Link.DRIVER)
+
+    @cached_property
+    def cell_of(self) -> dict[str, Cell]:
+        """The cell of each robot, by robot name; of what is shared the first one."""
+        return {name: cells[0] for name, cells in self.cells_of.items()}
+
+    @cached_property
+    def shared(self) -> tuple[str, ...]:
+        """The devices that cells share, each held by one of them at a time."""
+        return tuple(dict.fromkeys(name for cell in self.cells for name in cell.shared))

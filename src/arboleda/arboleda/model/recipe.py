@@ -1,0 +1,92 @@
+"""What a recipe is: its name, its typed parameters, and what makes its tree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from py_trees.behaviour import Behaviour
+
+from .facts import shown
+from .sentence import Phrase
+
+if TYPE_CHECKING:
+    from arboleda.trees.context import Context
+
+    from .plant_model import Cell
+    from .task import Order
+
+Build = Callable[["Order", "Context"], Behaviour]
+"""Makes the tree of an order in the context of its cell."""
+Builders = Mapping[str, Build]
+"""By the name of the recipe that they make the tree of."""
+
+
+def known(word: str, names: Iterable[str]) -> str | None:
+    """The name that `word` spells, whatever its case; only ASCII words spell names."""
+    return next((name for name in names if word.isascii() and name.lower() == word.lower()), None)
+
+
+def same_word(cell: Cell, word: str) -> object:
+    """What a word means that means itself."""
+    return word
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Within which a number lies, both ends included."""
+
+    lower: float
+    upper: float
+    whole: bool = False
+
+    def reads(self, word: str) -> str | None:
+        """The number that a word spells, as `shown` writes it; None where it is none, or lies outside."""
+        try:
+            number = int(word) if self.whole else float(word)
+        except ValueError:
+            return None
+        return shown(number) if self.lower <= number <= self.upper else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One word of a task: what it is called, what it can be in a cell, and what it means there.
+
+    `words`: all that it can be; of a number, whose `limits` say that, only examples. `called`: its name in
+    sentences, where they exist in several languages.
+    """
+
+    name: str
+    words: Callable[[Cell], Sequence[str]]
+    value: Callable[[Cell, str], object] = same_word
+    called: Phrase | None = None
+    limits: Limits | None = None
+
+    def reads(self, cell: Cell, word: str) -> str | None:
+        """The word as the cell has it, whatever its case; None where it is none of this parameter's."""
+        return self.limits.reads(word) if self.limits else known(word, self.words(cell))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recipe:
+    """Work that cells offer; a task has a word for each parameter, in their order.
+
+    `about`: what it does, in a line. `is_default`: a task that names no recipe means this one. `alone`: the
+    role of the one robot that works in it, whose name may stand for that of the cell; None where the whole
+    cell works.
+    """
+
+    name: str
+    build: Build
+    parameters: tuple[Parameter, ...] = ()
+    about: str = ""
+    is_default: bool = False
+    alone: str | None = None
+
+    def form(self) -> str:
+        """How a task of it is written."""
+        cell = "<cell>" if self.alone is None else f"<{self.alone} or cell>"
+        words = [*([] if self.is_default else [self.name]), *(f"<{each.name}>" for each in self.parameters)]
+        return " ".join([cell, *words])

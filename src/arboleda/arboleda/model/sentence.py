@@ -1,0 +1,157 @@
+"""What the plant says, as data: a key with values, of which each language makes its own sentence.
+
+Nobody finds out anything by reading a text; who needs to know looks at the key and at the values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Union
+
+Value = Union[str, int, float, "Sentence", "tuple[Value, ...]"]
+
+
+class Phrase:
+    """One thing that can be said: its key, and its English with a {slot} for each value.
+
+    `others` has it in further languages, `es="..."`, for a page whose own catalogue does not know the key:
+    so a recipe or a kind brings its sentences along.
+    """
+
+    __slots__ = ("english", "key", "others")
+
+    def __init__(self, key: str, english: str, **others: str) -> None:
+        self.key = key
+        self.english = english
+        self.others = others
+
+    def __call__(self, **values: Value) -> Sentence:
+        return Sentence(self, values)
+
+    def __repr__(self) -> str:
+        return f"Phrase({self.key!r}, {self.english!r})"
+
+
+class Sentence:
+    """A phrase with its values: words as they are, numbers, sentences inside it, tuples that make a list.
+
+    `str()` is its English, made when somebody wants it. Equal ones have the same key and values. False is
+    only the one that says nothing.
+    """
+
+    __slots__ = ("_text", "phrase", "values")
+
+    def __init__(self, phrase: Phrase, values: dict[str, Value]) -> None:
+        self.phrase = phrase
+        self.values = values
+        self._text: str | None = None
+
+    @property
+    def key(self) -> str:
+        return self.phrase.key
+
+    def told(self, template: Callable[[Phrase], str]) -> str:
+        """It in the language whose text for a phrase, with the same slots, is `template`."""
+        words = {slot: _told(value, template) for slot, value in self.values.items()}
+        return template(self.phrase).format(**words)
+
+    def parts(self) -> Iterator[Sentence]:
+        """It, and every sentence inside it."""
+        yield self
+        for value in self.values.values():
+            for each in value if isinstance(value, tuple) else (value,):
+                if isinstance(each, Sentence):
+                    yield from each.parts()
+
+    def data(self) -> dict[str, Any]:
+        """Key and values for JSON; a sentence inside it likewise."""
+        return {"key": self.key, "values": {slot: _data(value) for slot, value in self.values.items()}}
+
+    def __str__(self) -> str:
+        if self._text is None:
+            self._text = self.told(_english)
+        return self._text
+
+    def __repr__(self) -> str:
+        return repr(str(self))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Sentence):
+            return NotImplemented
+        return self.key == other.key and self.values == other.values
+
+    def __hash__(self) -> int:
+        return hash((self.key, frozenset(self.values.items())))
+
+    def __bool__(self) -> bool:
+        return bool(self.phrase.english)
+
+
+def as_sentence(said: Sentence | str | BaseException) -> Sentence:
+    """What somebody said in words of their own as a sentence; an error's where it has one."""
+    if isinstance(said, BaseException):
+        said = said.args[0] if len(said.args) == 1 and isinstance(said.args[0], Sentence) else str(said)
+    return said if isinstance(said, Sentence) else OWN(text=said)
+
+
+def in_json(value: object) -> str:
+    """The `default` with which `json.dumps` writes sentences, as their texts."""
+    if isinstance(value, Sentence):
+        return str(value)
+    raise TypeError(f"{type(value).__name__} is not for JSON")
+
+
+def from_data(data: Any, phrases: Mapping[str, Phrase]) -> Sentence:
+    """The sentence of such data, made of these phrases; ValueError for anything else."""
+    try:
+        phrase, values = phrases[data["key"]], data["values"].items()
+        return phrase(**{slot: _value(value, phrases) for slot, value in values})
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError(f"{data!r} is no sentence") from error
+
+
+def retold(english: str, data: Any) -> Sentence:
+    """A sentence of another start, or of another version: its English as it was, and the data of it, with
+    which a catalogue that knows its key says it in another language. ValueError for what is no such data.
+    """
+    literal = english.replace("{", "{{").replace("}", "}}")
+    try:
+        outer = Phrase(str(data["key"]), literal)
+        return outer(**{slot: _retold(value) for slot, value in data["values"].items()})
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError(f"{data!r} is no sentence") from error
+
+
+def _retold(data: Any) -> Value:
+    if isinstance(data, list):
+        return tuple(_retold(each) for each in data)
+    return data if isinstance(data, str | int | float) else retold("", data)
+
+
+def _data(value: Value) -> Any:
+    if isinstance(value, tuple):
+        return [_data(each) for each in value]
+    return value.data() if isinstance(value, Sentence) else value
+
+
+def _value(data: Any, phrases: Mapping[str, Phrase]) -> Value:
+    if isinstance(data, list):
+        return tuple(_value(each, phrases) for each in data)
+    return data if isinstance(data, str | int | float) else from_data(data, phrases)
+
+
+def _english(phrase: Phrase) -> str:
+    return phrase.english
+
+
+def _told(value: Value, template: Callable[[Phrase], str]) -> Any:
+    if isinstance(value, Sentence):
+        return str(value) if template is _english else value.told(template)
+    if isinstance(value, tuple):
+        return ", ".join(str(_told(each, template)) for each in value)
+    return value
+
+
+OWN = Phrase("own", "{text}")
+NOTHING = Phrase("nothing", "")()
+BOTH = Phrase("both", "{first}; {second}")

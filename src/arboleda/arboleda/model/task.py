@@ -1,0 +1,71 @@
+"""A task and the states it passes through."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from .errors import IllegalTransition
+from .messages import Failure, KeptTask, TaskAnswer, TaskState
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """A parsed task text: canonical words, the id after `#`, if any, and the value of each parameter."""
+
+    text: str
+    cell: str
+    recipe: str
+    id: str | None = None
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+LEGAL: dict[TaskState, frozenset[TaskState]] = {
+    TaskState.QUEUED: frozenset({TaskState.RUNNING, TaskState.CANCELLED}),
+    TaskState.RUNNING: frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED}),
+    TaskState.DONE: frozenset(),
+    TaskState.FAILED: frozenset(),
+    TaskState.CANCELLED: frozenset(),
+}
+
+
+class Task:
+    """An accepted order on its way through the plant; times in s of the plant's clock."""
+
+    def __init__(self, id: str, order: Order) -> None:
+        self.id = id
+        self.order = order
+        self.state = TaskState.QUEUED
+        self.failure: Failure | None = None
+        self.failed_in: str | None = None  # the path of the leaf that named its failure
+        self.started_at: float | None = None
+        self.ended_at: float | None = None
+        self.attempts = 0  # how often its work was begun, or its step given again by a retry
+        self.answers: list[TaskAnswer] = []  # in the order in which they came
+        self.is_kept = False  # whether an earlier start accepted it
+
+    @classmethod
+    def of(cls, kept: KeptTask, order: Order | None = None) -> Task:
+        """The task as it was kept; without an order one that is only looked at."""
+        task = cls(kept.id, order or Order(text=kept.text, cell=kept.cell, recipe=""))
+        task.state, task.failure = kept.state, kept.failure
+        task.started_at, task.ended_at, task.is_kept = kept.started_at, kept.ended_at, True
+        task.attempts, task.answers = kept.attempts, list(kept.answers)
+        return task
+
+    def become(self, state: TaskState, now: float) -> None:
+        """Move to `state`; IllegalTransition where the table has no such step."""
+        if state not in LEGAL[self.state]:
+            raise IllegalTransition(f"task {self.id} cannot go from {self.state.value} to {state.value}")
+        self.state = state
+        if state is TaskState.RUNNING:
+            self.started_at = now
+            self.attempts += 1
+        else:
+            self.ended_at = now
+
+    def fail(self, failure: Failure, leaf: str | None = None) -> None:
+        """Keep the first cause of a failure, and the path of its leaf; later ones are consequences."""
+        if self.failure is None:
+            self.failure, self.failed_in = failure, leaf

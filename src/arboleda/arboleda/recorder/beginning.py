@@ -1,0 +1,97 @@
+"""What a record begins with: all that the core was made of, so that it can be made once more."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from arboleda.model.messages import Fact, KeptTask
+
+from .errors import NoRecord
+from .plain_data import Memory, kept_from, memory_from, plain
+
+FORMAT = 1  # of what is in a file; a higher one is of a newer version
+DAY_S = 86_400.0
+MEGABYTE = 1_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """How much is kept of all records of a plant: `megabytes` and `days` at most."""
+
+    megabytes: float = 1000.0
+    days: float = 30.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantFiles:
+    """The plant file under its name, and every file that it uses, as they were read; by their paths."""
+
+    plant: str
+    contents: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """What is recorded of a start beside its events, and within which limits.
+
+    `virtual`: its devices with drivers of their own had virtual boards instead.
+    """
+
+    files: PlantFiles
+    virtual: bool = False
+    limits: Limits = field(default_factory=Limits)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beginning:
+    """A start: which plant, what was remembered of earlier ones, and when, on the plant's clock."""
+
+    plant: str
+    version: str
+    epoch: int
+    now: float
+    rate: float
+    virtual: bool
+    memory: Mapping[Fact, Mapping[str, str]]
+    kept: Sequence[KeptTask]
+    files: PlantFiles
+
+    def data(self) -> bytes:
+        """All but the files, in JSON."""
+        return json.dumps(
+            {
+                "plant": self.plant,
+                "version": self.version,
+                "epoch": self.epoch,
+                "now": self.now,
+                "rate": self.rate,
+                "virtual": self.virtual,
+                "memory": plain(self.memory),
+                "kept": plain(list(self.kept)),
+                "file": self.files.plant,
+            }
+        ).encode()
+
+
+def beginning_from(data: bytes, contents: Mapping[str, bytes]) -> Beginning:
+    """The beginning that `data` is of, with its files; NoRecord for anything else."""
+    try:
+        rows: dict[str, Any] = json.loads(data)
+        files = PlantFiles(plant=str(rows["file"]), contents=contents)
+        memory: Memory = memory_from(rows["memory"])
+        return Beginning(
+            plant=str(rows["plant"]),
+            version=str(rows["version"]),
+            epoch=int(rows["epoch"]),
+            now=float(rows["now"]),
+            rate=float(rows["rate"]),
+            virtual=bool(rows["virtual"]),
+            memory=memory,
+            kept=[kept_from(each) for each in rows["kept"]],
+            files=files,
+        )
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise NoRecord("its beginning is not as a plant writes it") from error

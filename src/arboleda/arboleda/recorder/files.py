@@ -1,0 +1,157 @@
+"""The files of records in their folder: their names, what is kept of them, and how one is written."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from mcap.writer import CompressionType, Writer
+
+from arboleda import __version__
+
+from .beginning import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
+from .steps import SCHEMA, SCHEMA_NAME, TOPIC, Step, as_json
+
+FOLDER = "record"
+NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")
+METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
+LIBRARY = f"arboleda {__version__}"
+CHUNK_BYTES = 1024 * 1024  # more than comes between two flushes: the larger, the smaller they become
+PARTS = 10  # into which the megabytes are divided, so that old ones go bit by bit
+PART_BYTES = (200_000, 50_000_000)  # a file has at least and at most
+
+
+@dataclass(frozen=True, kw_only=True, order=True)
+class Part:
+    """One file of a record: that of the start `epoch`, the first is number 1."""
+
+    epoch: int
+    number: int
+    path: Path
+
+    @property
+    def bytes(self) -> int:
+        """Its size; 0 where it is gone."""
+        with suppress(OSError):
+            return self.path.stat().st_size
+        return 0
+
+
+def part_path(folder: Path, epoch: int, number: int) -> Path:
+    return folder / f"{epoch}-{number:04}.mcap"
+
+
+def part_at(path: Path) -> Part | None:
+    """The part that a file is by its name; None for any other file."""
+    found = NAME.fullmatch(path.name)
+    return Part(epoch=int(found[1]), number=int(found[2]), path=path) if found else None
+
+
+def parts_in(folder: Path) -> list[Part]:
+    """All parts in a folder, the oldest first; none where there is no such folder."""
+    try:
+        return sorted(part for path in folder.iterdir() if (part := part_at(path)) is not None)
+    except OSError:
+        return []
+
+
+def part_bytes(limits: Limits) -> int:
+    """How large a file grows before the next one begins."""
+    least, most = PART_BYTES
+    return int(min(max(limits.megabytes * MEGABYTE / PARTS, least), most))
+
+
+def prune(folder: Path, limits: Limits, unix_s: float) -> None:
+    """Delete the oldest parts, as many as leave room for another one, and those that are too old."""
+    left = [part for part in parts_in(folder) if not _deleted_if_old(part, unix_s - limits.days * DAY_S)]
+    total = sum(part.bytes for part in left)
+    for part in left:
+        if total + part_bytes(limits) <= limits.megabytes * MEGABYTE:
+            break
+        total -= part.bytes
+        part.path.unlink(missing_ok=True)
+
+
+def _deleted_if_old(part: Part, before_unix_s: float) -> bool:
+    with suppress(OSError):
+        if part.path.stat().st_mtime < before_unix_s:
+            part.path.unlink(missing_ok=True)
+            return True
+    return False
+
+
+class PartFile:
+    """One file that is being written; what was put in is on the disk after `flush`, but for a power cut.
+
+    OSError where it cannot be written.
+    """
+
+    def __init__(self, path: Path, beginning: Beginning, number: int, unix_ns: int) -> None:
+        self._file = os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb")
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
+        try:
+            self._begin(beginning, number, unix_ns)
+        except BaseException:  # whatever it is, no file is left open
+            self._file.close()
+            raise
+
+    def _begin(self, beginning: Beginning, number: int, unix_ns: int) -> None:
+        write_beginning(self._writer, beginning, (number,), unix_ns)
+        self._channel = steps_channel(self._writer)
+        self._file.flush()
+
+    def put(self, step: Step) -> None:
+        put(self._writer, self._channel, step.unix_ns, as_json(step))
+
+    def flush(self) -> int:
+        """How large it is then."""
+        self._writer.flush()  # type: ignore[no-untyped-call]
+        return self._file.tell()
+
+    def close(self) -> None:
+        """Write what other tools look for at the end of a file, and give it back."""
+        try:
+            self._writer.finish()  # type: ignore[no-untyped-call]
+        finally:
+            self.drop()
+
+    def drop(self) -> None:
+        """Give it back as it is."""
+        with suppress(OSError):  # of what could not be written, and was told before
+            self._file.close()
+
+
+def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:
+    """What each file starts with; `numbers` are those of the parts that it has the steps of."""
+    writer.start(library=LIBRARY)
+    metadata = {
+        "format": str(FORMAT),
+        "version": beginning.version,
+        "plant": beginning.plant,
+        "epoch": str(beginning.epoch),
+        "parts": " ".join(map(str, numbers)),
+    }
+    writer.add_metadata(METADATA, metadata)
+    _attach(writer, BEGINNING, "application/json", beginning.data(), unix_ns)
+    for name, content in beginning.files.contents.items():
+        _attach(writer, f"{OF_PLANT}{name}", "application/octet-stream", content, unix_ns)
+
+
+def _attach(writer: Writer, name: str, kind: str, content: bytes, unix_ns: int) -> None:
+    writer.add_attachment(create_time=unix_ns, log_time=unix_ns, name=name, media_type=kind, data=content)
+
+
+def steps_channel(writer: Writer) -> int:
+    """The channel that steps are put into."""
+    schema = writer.register_schema(SCHEMA_NAME, "jsonschema", json.dumps(SCHEMA).encode())
+    return writer.register_channel(TOPIC, "json", schema)
+
+
+def put(writer: Writer, channel: int, unix_ns: int, data: bytes) -> None:
+    """One message."""
+    writer.add_message(channel, log_time=unix_ns, data=data, publish_time=unix_ns)

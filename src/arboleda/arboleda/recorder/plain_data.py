@@ -1,0 +1,221 @@
+"""What crosses the core's border as plain data for JSON, and what went in back from it, to the last bit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from enum import Enum
+from typing import Any
+
+from arboleda.model.messages import (
+    Event,
+    Fact,
+    Failure,
+    Interference,
+    KeptTask,
+    OperatorRequest,
+    Reason,
+    Receipt,
+    Report,
+    Shutdown,
+    TaskAnswer,
+    TaskRequest,
+    TaskState,
+    Undelivered,
+    Verb,
+)
+from arboleda.model.plant_model import MotionState
+from arboleda.model.sentence import Phrase, Sentence, Value
+
+from .errors import NoRecord
+
+Memory = dict[Fact, dict[str, str]]
+TYPE, NUMBER = "type", "number"
+EVENTS: dict[str, type[Any]] = {
+    each.__name__: each
+    for each in (Report, TaskRequest, OperatorRequest, Undelivered, Interference, Shutdown)
+}
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON has it: of a dataclass its type and the fields that are not as by default."""
+    write = WRITERS.get(type(value))
+    return _other(value) if write is None else write(value)
+
+
+def event_from(data: Any) -> Event:
+    """The event that was made plain; NoRecord where this version knows no such thing."""
+    try:
+        made: Event = _made(EVENTS[data[TYPE]], data)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        raise NoRecord(f"it has an event that this version does not know ({_short(data)})") from error
+    return made
+
+
+def kept_from(data: Any) -> KeptTask:
+    """The task of an earlier start that was made plain; NoRecord likewise."""
+    try:
+        return _kept(data)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        raise NoRecord(f"it has a task that this version does not know ({_short(data)})") from error
+
+
+def memory_from(data: Any) -> Memory:
+    """What earlier starts had to keep, that was made plain; NoRecord likewise."""
+    try:
+        return {
+            Fact(fact): {str(name): str(value) for name, value in kept.items()} for fact, kept in data.items()
+        }
+    except (AttributeError, ValueError) as error:
+        raise NoRecord(f"it has a fact that this version does not know ({_short(data)})") from error
+
+
+def _short(data: Any) -> str:
+    return repr(data)[:80]
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _number(value: float) -> Any:
+    """JSON has no word for what is no finite number."""
+    return value if math.isfinite(value) else {NUMBER: repr(value)}
+
+
+def _sequence(value: Any) -> list[Any]:
+    return [plain(each) for each in value]
+
+
+def _mapping(value: Mapping[Any, Any]) -> dict[str, Any]:
+    return {str(plain(key)): plain(each) for key, each in value.items()}
+
+
+def _sentence(value: Sentence) -> dict[str, Any]:
+    values = {slot: plain(each) for slot, each in value.values.items()}
+    return {"key": value.key, "english": value.phrase.english, "values": values, **_others(value.phrase)}
+
+
+def _others(phrase: Phrase) -> dict[str, Any]:
+    return {"others": dict(phrase.others)} if phrase.others else {}
+
+
+def _error(value: BaseException) -> str:
+    return f"{type(value).__name__}: {value}"
+
+
+WRITERS: dict[type, Callable[[Any], Any]] = {
+    str: _same,
+    int: _same,
+    bool: _same,
+    type(None): _same,
+    float: _number,
+    tuple: _sequence,
+    list: _sequence,
+    dict: _mapping,
+    Sentence: _sentence,
+}
+
+
+def _other(value: Any) -> Any:
+    """Of what has no row of its own: by what it is."""
+    if isinstance(value, Enum):
+        return value.value
+    if is_dataclass(value):
+        return _record(value)
+    for kind in (bool, int, float, str):
+        if isinstance(value, kind):
+            return WRITERS[kind](kind(value))
+    if isinstance(value, Mapping):
+        return _mapping(value)
+    if isinstance(value, tuple | list):
+        return _sequence(value)
+    if isinstance(value, set | frozenset):
+        return sorted(_sequence(value), key=repr)
+    return _error(value) if isinstance(value, BaseException) else type(value).__name__
+
+
+def _record(value: Any) -> dict[str, Any]:
+    data = {TYPE: type(value).__name__}
+    for name, default in _defaults(type(value)):
+        if (each := getattr(value, name)) is not default:
+            data[name] = plain(each)
+    return data
+
+
+_known: dict[type, tuple[tuple[str, Any], ...]] = {}  # of each dataclass, its fields with their defaults
+
+
+def _defaults(kind: type) -> tuple[tuple[str, Any], ...]:
+    if kind not in _known:
+        _known[kind] = tuple((each.name, each.default) for each in fields(kind))
+    return _known[kind]
+
+
+def _made(kind: type[Any], data: Mapping[str, Any]) -> Any:
+    """A dataclass of its fields; a field that it does not have raises."""
+    readers = READERS[kind]
+    values = {name: readers.get(name, _value)(each) for name, each in data.items() if name != TYPE}
+    missing = [each.name for each in fields(kind) if each.default is MISSING and each.name not in values]
+    if missing:
+        raise ValueError(f"{kind.__name__} has no {missing[0]}")
+    return kind(**values)
+
+
+def _value(data: Any) -> Any:
+    """What has no type of its own: JSON's lists are tuples, which is all that an event has."""
+    if isinstance(data, list):
+        return tuple(_value(each) for each in data)
+    return float(data[NUMBER]) if isinstance(data, dict) else data
+
+
+def sentence_from(data: Any) -> Sentence | None:
+    """The sentence that was made plain, or None; errors of all kinds for anything else."""
+    if data is None:
+        return None
+    phrase = Phrase(data["key"], data["english"], **data.get("others", {}))
+    return Sentence(phrase, {slot: _said_value(each) for slot, each in data["values"].items()})
+
+
+def _said_value(data: Any) -> Value:
+    if isinstance(data, list):
+        return tuple(_said_value(each) for each in data)
+    if isinstance(data, dict) and NUMBER not in data:
+        inner = sentence_from(data)
+        assert inner is not None
+        return inner
+    value: Value = _value(data)
+    return value
+
+
+def _receipt(data: Any) -> Receipt:
+    return Receipt(*data)
+
+
+def _failure(data: Any) -> Failure:
+    failure: Failure = _made(Failure, data)
+    return failure
+
+
+def _kept(data: Any) -> KeptTask:
+    kept: KeptTask = _made(KeptTask, data)
+    return kept
+
+
+def _answers(data: Any) -> tuple[TaskAnswer, ...]:
+    return tuple(_made(TaskAnswer, each) for each in data)
+
+
+Reader = Callable[[Any], Any]
+READERS: dict[type, dict[str, Reader]] = {
+    Report: {"state": MotionState, "receipt": _receipt, "lost": sentence_from, "foreign": sentence_from},
+    TaskRequest: {"kept": _kept},
+    OperatorRequest: {"verb": Verb},
+    Undelivered: {"sentence": sentence_from},
+    Interference: {"sentence": sentence_from},
+    Shutdown: {},
+    KeptTask: {"state": TaskState, "failure": _failure, "answers": _answers},
+    Failure: {"reason": Reason, "sentence": sentence_from},
+    TaskAnswer: {},
+}

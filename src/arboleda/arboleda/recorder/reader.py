@@ -1,0 +1,253 @@
+"""Records as they are read: whole ones, those that are being written, and what a killed process left."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import closing, suppress
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import IO
+
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Chunk, Footer, Header, McapRecord, Message, Metadata
+from mcap.stream_reader import CRCValidationError, breakup_chunk
+from mcap.writer import MCAP0_MAGIC as MAGIC
+
+from arboleda.model.outside import quoted
+
+from .beginning import FORMAT, Beginning, beginning_from
+from .errors import NoRecord
+from .files import BEGINNING, METADATA, OF_PLANT, Part, part_at, parts_in
+from .steps import Recorded, from_json
+
+LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller
+HEAD = struct.Struct("<BQ")  # what a piece begins with: what it is, and its length
+KNOWN = frozenset(Opcode)
+READ: dict[int, Callable[[ReadDataStream], McapRecord]] = {
+    Opcode.HEADER: Header.read,
+    Opcode.METADATA: Metadata.read,
+    Opcode.ATTACHMENT: Attachment.read,
+    Opcode.CHUNK: Chunk.read,
+    Opcode.FOOTER: Footer.read,
+}
+TORN = (McapError, CRCValidationError, zstandard.ZstdError, zlib.error, struct.error, UnicodeDecodeError)
+Raw = tuple[int, bytes]  # nanoseconds of Unix time, and a message
+
+
+@dataclass
+class PartRead:
+    """What one file is: which steps it has of which start, and how it ends.
+
+    `whole`: it was closed as it should be; else it is being written, or its plant was killed.
+    """
+
+    path: Path
+    beginning: Beginning
+    numbers: tuple[int, ...]
+    began_ns: int
+    whole: bool = False
+
+
+class PartReader:
+    """One file, read from its beginning; NoRecord says in a sentence why it is none.
+
+    What it ends with in the middle of a piece is left out: a plant that was killed wrote no more of it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file = _opened(path)
+        try:
+            self._records = self._pieces()
+            self.read = self._begin()
+        except BaseException:  # whatever it is, no file is left open
+            self._file.close()
+            raise
+
+    def close(self) -> None:
+        self._file.close()
+
+    def raw(self) -> Iterator[Raw]:
+        """Its messages that were not given yet, in order, with their times; up to the first damage.
+
+        Asked again, those that were written since.
+        """
+        for record in self._records:
+            if isinstance(record, Chunk):
+                messages = _messages(record)
+                if messages is None:
+                    return
+                for message in messages:
+                    yield message.log_time, message.data
+            self.read.whole = isinstance(record, Footer)
+        self._records = self._rest()
+
+    def _begin(self) -> PartRead:
+        contents: dict[str, bytes] = {}
+        began_ns = 0
+        metadata: dict[str, str] | None = None
+        for record in self._records:
+            if isinstance(record, Metadata) and record.name == METADATA:
+                metadata = record.metadata
+                self._refuse_newer(metadata)
+            elif isinstance(record, Attachment) and metadata is not None:
+                contents[record.name], began_ns = record.data, record.log_time
+            elif isinstance(record, Chunk | Footer):
+                self._records = _with(record, self._records)
+                break
+            elif not isinstance(record, Header):
+                break
+        if metadata is None:
+            raise NoRecord(f"{self.path} is an MCAP file, but no record of a plant.")
+        if BEGINNING not in contents:
+            raise NoRecord(f"{self.path} is the beginning of a record, too little of it to be read.")
+        try:
+            files = {
+                name[len(OF_PLANT) :]: each for name, each in contents.items() if name.startswith(OF_PLANT)
+            }
+            numbers = tuple(int(number) for number in metadata.get("parts", "").split())
+            return PartRead(self.path, beginning_from(contents[BEGINNING], files), numbers, began_ns)
+        except (NoRecord, ValueError) as error:
+            raise NoRecord(f"{self.path} cannot be read as a record: {error}.") from error
+
+    def _refuse_newer(self, metadata: dict[str, str]) -> None:
+        said = metadata.get("format", "")
+        if said.isdecimal() and 0 < len(said) < 10 and int(said) <= FORMAT:
+            return
+        by = quoted(metadata.get("version", "?"), 40)
+        raise NoRecord(
+            f"{self.path} was written by a newer Arboleda ({by}): read it with that version, or a later one."
+        )
+
+    def _pieces(self) -> Iterator[McapRecord]:
+        """All of the file that is whole and of a kind that a plant writes; others than READ are left out."""
+        if self._file.read(len(MAGIC)) != MAGIC:
+            raise NoRecord(f"{self.path} is no MCAP file.")
+        yield from self._rest()
+
+    def _rest(self) -> Iterator[McapRecord]:
+        """What of that is not read yet; what is half written is left for the next time."""
+        begins = self._file.tell()
+        while len(head := self._file.read(HEAD.size)) == HEAD.size:
+            opcode, length = HEAD.unpack(head)
+            if opcode not in KNOWN or length > LARGEST:
+                return
+            body = self._file.read(length)
+            if len(body) < length:
+                break
+            if opcode in READ:
+                try:
+                    yield READ[opcode](ReadDataStream(BytesIO(body)))
+                except TORN:
+                    return
+            begins = self._file.tell()
+        self._file.seek(begins)
+
+
+def _with(first: McapRecord, rest: Iterator[McapRecord]) -> Iterator[McapRecord]:
+    yield first
+    yield from rest
+
+
+def _messages(chunk: Chunk) -> list[Message] | None:
+    """Those of a chunk; None where it is damaged, or larger than a plant writes them."""
+    try:
+        if chunk.uncompressed_size > LARGEST or _unpacked_bytes(chunk) > LARGEST:
+            return None
+        return [each for each in breakup_chunk(chunk, validate_crc=True) if isinstance(each, Message)]
+    except TORN:
+        return None
+
+
+def _unpacked_bytes(chunk: Chunk) -> int:
+    return zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
+
+
+def _opened(path: Path) -> IO[bytes]:
+    try:
+        if not path.is_file():
+            raise NoRecord(f"{path} is {'no file' if path.exists() else 'not there'}.")
+        if not path.stat().st_size:
+            raise NoRecord(f"{path} is empty.")
+        return open(path, "rb")
+    except OSError as error:
+        raise NoRecord(f"{path} cannot be read: {error.strerror}.") from error
+    except ValueError as error:
+        raise NoRecord(f"{quoted(str(path), 200)} is not the name of a file.") from error
+
+
+@dataclass
+class Record:
+    """All there is of one start: its files in order. `missing` is how many of its first ones are gone."""
+
+    paths: list[Path]
+    first: PartRead
+    missing: int = 0
+    broken: str = ""  # why it ends before its end, once all of it was read
+    last: PartRead | None = field(default=None, repr=False)
+    last_ns: int = 0  # when the last step was made that was read
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Those of its parts, as far as they are there one after the other."""
+        return self.first.numbers if len(self.paths) == 1 else tuple(self._follow_on())
+
+    def _follow_on(self) -> Iterator[int]:
+        first = self.first.numbers[0]
+        for number, path in enumerate(self.paths, start=first):
+            part = part_at(path)
+            if part is None or part.number != number:
+                return
+            yield number
+
+    def raw(self) -> Iterator[Raw]:
+        """All messages, in order."""
+        after: tuple[int, ...] = ()
+        for path in self.paths:
+            with closing(PartReader(path)) as reader:
+                if after and reader.read.numbers[:1] != (after[-1] + 1,):
+                    self.broken = f"{path.name} does not follow what is before it"
+                    return
+                after, self.last = reader.read.numbers, reader.read
+                for self.last_ns, data in reader.raw():
+                    yield self.last_ns, data
+            if not self.last.whole and path != self.paths[-1]:
+                self.broken = f"{path.name} is damaged"
+                return
+
+    def steps(self) -> Iterator[Recorded]:
+        """All steps, in order."""
+        for unix_ns, data in self.raw():
+            yield from_json(unix_ns, data)
+
+
+def alone(path: Path) -> Record:
+    """The same for this file alone."""
+    with closing(PartReader(path)) as reader:
+        return Record([path], reader.read)
+
+
+def opened(path: Path) -> Record:
+    """The record that a file is part of: with the others beside it, as a plant writes them; NoRecord."""
+    with closing(PartReader(path)) as reader:
+        read = reader.read
+    part = part_at(path)
+    beside = [each for each in parts_in(path.parent) if part is not None and each.epoch == part.epoch]
+    paths = [each.path for each in beside if _follows(each, read)] or [path]
+    if path != paths[0]:
+        with closing(PartReader(paths[0])) as reader:
+            read = reader.read
+    return Record(paths, read, missing=(read.numbers[0] if read.numbers else 1) - 1)
+
+
+def _follows(part: Part, read: PartRead) -> bool:
+    """Whether the file beside is another part of the same record."""
+    with suppress(NoRecord), closing(PartReader(part.path)) as reader:
+        return reader.read.beginning.epoch == read.beginning.epoch
+    return False

@@ -1,0 +1,146 @@
+"""The thread that writes the record: whoever hands it a step waits for nothing."""
+
+from __future__ import annotations
+
+import logging
+import shutil
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from arboleda.core.plant import Plant
+
+from .beginning import Beginning, Limits
+from .files import PartFile, part_bytes, part_path, prune
+from .state import state_of
+from .steps import Step
+
+LOG = logging.getLogger(__name__)
+PERIOD_S = 0.25  # between two looks at what waits
+SLICE_S, PAUSE_S = 0.0003, 0.001  # of work, and between two slices of it, in which others have Python's lock
+FLUSH_S = 5.0  # what a killed process loses at most
+MOST_WAITING = 20_000  # steps; some minutes of a large plant
+LEAST_FREE = 200_000_000  # bytes that the disk keeps for the plant's memory and for whatever else is on it
+PATIENCE_S = 5.0  # for the rest, at the end
+
+
+class Recorder:
+    """Writes what `stepped` is told to files in `folder`, from `start` to `stop`.
+
+    Where that cannot be, for whatever reason, the record ends: one line in the log says why, `trouble` too,
+    and the plant goes on.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        beginning: Beginning,
+        limits: Limits,
+        *,
+        unix_ns: Callable[[], int] = time.time_ns,
+        least_free: int = LEAST_FREE,
+    ) -> None:
+        self.trouble = ""
+        self._folder = folder
+        self._beginning = beginning
+        self._limits = limits
+        self._unix_ns = unix_ns
+        self._least_free = least_free
+        self._waiting: deque[Step] = deque()
+        self._turn = 0
+        self._over = False
+        self._ending = threading.Event()
+        self._part: PartFile | None = None
+        self._number = 0
+        self._flushed_ns = 0
+        self._thread = threading.Thread(target=self._work, name="recorder", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Write what waits and close the file; a disk that hangs is not waited for. Idempotent."""
+        self._ending.set()
+        if self._thread.ident is not None:
+            self._thread.join(PATIENCE_S)
+
+    def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None:
+        """Take in a step that was made just now; in the plant's thread, and never raises."""
+        if self._over:
+            return
+        try:
+            self._turn += 1
+            step = Step(self._unix_ns(), now, events, messages, state_of(plant, self._turn))
+        except Exception as error:  # noqa: BLE001 - a record that cannot be made must not end the plant
+            self._give_up(f"{type(error).__name__}: {error}")
+            return
+        if len(self._waiting) < MOST_WAITING:
+            self._waiting.append(step)
+        else:
+            self._give_up(f"the disk is too slow: {MOST_WAITING} steps wait for it")
+
+    def _work(self) -> None:
+        try:
+            self._open_next()
+            while not self._ending.wait(PERIOD_S) and not self._over:
+                self._write(pausing=True)
+            self._write(pausing=False)
+            self._close()
+        except OSError as error:
+            self._give_up(error.strerror or str(error))
+        except Exception as error:
+            LOG.debug("the record broke down", exc_info=error)
+            self._give_up(f"{type(error).__name__}: {error}")
+        finally:
+            if self._over and self._part is not None:
+                self._part.drop()
+
+    def _write(self, *, pausing: bool) -> None:
+        """Write what waits, in slices between which whoever needs the processor more may have it."""
+        began = time.perf_counter()
+        while self._waiting and not self._over:
+            assert self._part is not None
+            self._part.put(self._waiting.popleft())
+            if pausing and time.perf_counter() - began > SLICE_S:
+                time.sleep(PAUSE_S)
+                began = time.perf_counter()
+        if self._unix_ns() - self._flushed_ns >= FLUSH_S * 1e9:
+            self._flush()
+
+    def _flush(self) -> None:
+        assert self._part is not None
+        self._refuse_full_disk()
+        self._flushed_ns = self._unix_ns()
+        if self._part.flush() >= part_bytes(self._limits):
+            self._part.close()
+            self._open_next()
+
+    def _refuse_full_disk(self) -> None:
+        free = shutil.disk_usage(self._folder).free
+        if free < self._least_free:
+            raise OSError(f"the disk has less than {self._least_free // 1_000_000} MB left")
+
+    def _open_next(self) -> None:
+        self._folder.mkdir(mode=0o700, exist_ok=True)
+        self._refuse_full_disk()
+        now = self._flushed_ns = self._unix_ns()
+        prune(self._folder, self._limits, now / 1e9)
+        self._number += 1
+        path = part_path(self._folder, self._beginning.epoch, self._number)
+        self._part = PartFile(path, self._beginning, self._number, now)
+
+    def _close(self) -> None:
+        if self._part is not None and not self._over:
+            self._part.close()
+
+    def _give_up(self, why: str) -> None:
+        """End the record, once."""
+        if self._over:
+            return
+        self._over = True
+        self.trouble = why
+        self._waiting.clear()
+        LOG.warning("the record has stopped: %s; the plant goes on without it", why)

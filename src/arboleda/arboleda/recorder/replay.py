@@ -1,0 +1,79 @@
+"""A record executed once more: the plant as it began, stepped with what went into it, and compared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.core.plant import Plant
+from arboleda.model.plant_model import PlantModel
+
+from .beginning import Beginning
+from .plain_data import TYPE
+from .state import state_of
+from .steps import Recorded, hash_of, outcome
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where a replay does something else: in which value, `recorded` and `now`, None where there is none."""
+
+    field: str
+    recorded: Any
+    now: Any
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """A step that was made once more; `number` counts from 1. `difference` where it did something else."""
+
+    number: int
+    recorded: Recorded
+    difference: Difference | None = None
+
+
+def plant_of(beginning: Beginning, model: PlantModel) -> Plant:
+    """The plant as it was at the beginning of a record."""
+    return Plant(
+        model, epoch=beginning.epoch, now=beginning.now, memory=beginning.memory, kept=beginning.kept
+    )
+
+
+def replayed(plant: Plant, steps: Iterable[Recorded]) -> Iterator[Replayed]:
+    """Make each step again, up to the first that does something else: what is after it says nothing."""
+    for number, step in enumerate(steps, start=1):
+        try:
+            said = outcome(plant.step(step.now, step.events), state_of(plant, number))
+        except Exception as error:  # noqa: BLE001 - the plant that was recorded went on: it is a difference
+            yield Replayed(number, step, Difference("step", "made", f"{type(error).__name__}: {error}"))
+            return
+        if hash_of(said) != step.hash:
+            yield Replayed(number, step, first_difference(step.said, said))
+            return
+        yield Replayed(number, step)
+
+
+def first_difference(recorded: Any, now: Any, field: str = "") -> Difference:
+    """The first value that is another one; of what is equal, and only its hash is not, the hash."""
+    return next(_differences(recorded, now, field), Difference("hash", "another", "the same values"))
+
+
+def _differences(recorded: Any, now: Any, field: str) -> Iterator[Difference]:
+    if isinstance(recorded, dict) and isinstance(now, dict):
+        for key in [*recorded, *(key for key in now if key not in recorded)]:
+            inner = f"{field}.{key}" if field else key
+            yield from _differences(recorded.get(key), now.get(key), inner)
+    elif isinstance(recorded, list) and isinstance(now, list):
+        for index in range(max(len(recorded), len(now))):
+            before, after = (each[index] if index < len(each) else None for each in (recorded, now))
+            yield from _differences(before, after, f"{field}[{index}]{_kind(before, after)}")
+    elif repr(recorded) != repr(now):
+        yield Difference(field, recorded, now)
+
+
+def _kind(*pair: Any) -> str:
+    """Of which type a message is, where both are of the same."""
+    kinds = {each.get(TYPE) if isinstance(each, dict) else None for each in pair}
+    kind = kinds.pop()
+    return f" ({kind})" if kind and not kinds else ""

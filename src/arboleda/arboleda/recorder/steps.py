@@ -1,0 +1,89 @@
+"""A step of the core as a message of a record, with the hash of what it did."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import blake2b
+from typing import Any
+
+from arboleda.model.messages import Event
+
+from .errors import NoRecord
+from .plain_data import event_from, plain
+from .state import State, named
+
+TOPIC = "/arboleda/steps"
+SCHEMA_NAME = "arboleda.Step"
+SCHEMA = {
+    "title": SCHEMA_NAME,
+    "description": "One step of the plant: what went in, and what it did.",
+    "type": "object",
+    "properties": {
+        "now": {"type": "number", "description": "seconds on the plant's clock"},
+        "events": {"type": "array", "items": {"type": "object"}, "description": "what went in, in order"},
+        "messages": {"type": "array", "items": {"type": "object"}, "description": "what came out, in order"},
+        "state": {"type": "object", "description": "the plant's counters and one of its cells, by turns"},
+        "hash": {"type": "string", "description": "of messages and state"},
+    },
+    "required": ["now", "events", "messages", "hash"],
+}
+
+
+@dataclass(frozen=True)
+class Step:
+    """What the plant's thread hands over: objects that do not change any more. `unix_ns` is for people."""
+
+    unix_ns: int
+    now: float
+    events: Sequence[Event]
+    messages: Sequence[Any]
+    state: State
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A step as it was read: `said` is what came out and the state, as the hash has them."""
+
+    unix_ns: int
+    now: float
+    events: tuple[Event, ...]
+    said: dict[str, Any]
+    hash: str
+
+
+def outcome(messages: Sequence[Any], state: State) -> dict[str, Any]:
+    """What a step did, as plain data."""
+    return {"messages": plain(messages), "state": plain(named(state))}
+
+
+def hash_of(said: dict[str, Any]) -> str:
+    """Of what a step did: equal only where that is equal to the last bit of every number."""
+    return _hash(_text(said))
+
+
+def as_json(step: Step) -> bytes:
+    """The message of a step."""
+    said = _text(outcome(step.messages, step.state))
+    head = _text({"now": step.now, "events": plain(step.events)})
+    return f'{head[:-1]},{said[1:-1]},"hash":"{_hash(said)}"}}'.encode()
+
+
+def _text(data: dict[str, Any]) -> str:
+    return json.dumps(data, separators=(",", ":"))
+
+
+def _hash(text: str) -> str:
+    return blake2b(text.encode(), digest_size=8).hexdigest()
+
+
+def from_json(unix_ns: int, data: bytes) -> Recorded:
+    """The step of such a message; NoRecord for anything else."""
+    try:
+        rows = json.loads(data)
+        events = tuple(event_from(each) for each in rows["events"])
+        said = {"messages": rows["messages"], "state": rows["state"]}
+        return Recorded(unix_ns, float(rows["now"]), events, said, str(rows["hash"]))
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        raise NoRecord("it has a step that is not as a plant writes it") from error

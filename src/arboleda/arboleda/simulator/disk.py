@@ -1,0 +1,151 @@
+"""What a simulated plant has on its disk: as the store keeps it, and what a power cut leaves of that."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field, replace
+
+from arboleda.core.intake import HISTORY
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import (
+    ENDED,
+    Fact,
+    Failure,
+    Journal,
+    KeptTask,
+    Notice,
+    Remember,
+    TaskChanged,
+    TaskState,
+    outlives_power,
+)
+
+Kept = Remember | Journal | TaskChanged
+
+
+def is_kept(message: object) -> bool:
+    """Whether a plant commits a message before it tells anybody."""
+    if isinstance(message, TaskChanged):
+        return message.state is not TaskState.REFUSED
+    return isinstance(message, Remember | Journal)
+
+
+def is_step(message: object) -> bool:
+    """Whether it says where a task stands."""
+    return isinstance(message, Remember) and message.fact is Fact.STEP
+
+
+class DiskFull(ArboledaError):
+    """Something could not be kept, and is not."""
+
+
+@dataclass(slots=True)
+class Content:
+    """The rows: name to value by kind of fact, and tasks by id in the order of acceptance."""
+
+    facts: dict[Fact, dict[str, str]] = field(default_factory=dict)
+    tasks: dict[str, KeptTask] = field(default_factory=dict)
+
+    def take(self, message: Kept, now: float) -> None:
+        """A commit: a change of a task that is known already stays without effect, as in the store."""
+        if isinstance(message, Remember):
+            self._fact(message)
+        elif isinstance(message, TaskChanged):
+            self._task(message, now)
+
+    def copy(self) -> Content:
+        return Content({fact: dict(rows) for fact, rows in self.facts.items()}, dict(self.tasks))
+
+    def _fact(self, said: Remember) -> None:
+        rows = self.facts.setdefault(said.fact, {})
+        if said.value is None:
+            rows.pop(said.name, None)
+        else:
+            rows[said.name] = said.value
+
+    def _task(self, said: TaskChanged, now: float) -> None:
+        row = self.tasks.get(said.task)
+        if said.state is TaskState.QUEUED:
+            if row is None:
+                self.tasks[said.task] = KeptTask(
+                    id=said.task, text=said.text, cell=said.cell or "", state=said.state
+                )
+        elif row is None:
+            return
+        elif said.state is TaskState.RUNNING:
+            if row.started_at is None:
+                self.tasks[said.task] = replace(row, state=said.state, started_at=now, attempts=1)
+        elif row.ended_at is None:
+            failure = Failure(reason=said.reason, sentence=said.sentence) if said.reason else None
+            self.tasks[said.task] = replace(row, state=said.state, failure=failure, ended_at=now)
+
+
+class Disk:
+    """The memory of a plant over its starts.
+
+    What was committed survives a plant that dies. A power cut undoes the last commits that nothing has
+    synced: those since the last one that had to be, as that one brings all before it along. How often a step
+    was tried again, and what was answered to a task that has ended, is left out: it is for history alone.
+    As long as it is `full`, nothing more is committed; `slow` are the seconds that a synced commit takes.
+    """
+
+    def __init__(self) -> None:
+        self._live = Content()
+        self._synced = Content()
+        self._unsynced: deque[tuple[Kept, float]] = deque()
+        self.cuts = 0  # how often the power was cut
+        self.full = False
+        self.slow: list[float] = []
+
+    @property
+    def facts(self) -> dict[Fact, dict[str, str]]:
+        """Name to value by kind of fact."""
+        return self._live.facts
+
+    @property
+    def tasks(self) -> dict[str, KeptTask]:
+        """All tasks by id, in the order of acceptance."""
+        return self._live.tasks
+
+    @property
+    def unsynced(self) -> int:
+        """How many commits a power cut may undo."""
+        return len(self._unsynced)
+
+    def commit(self, message: Notice, now: float) -> float:
+        """Keep what a plant wants kept; anything else is none of the disk's. It takes so many s; DiskFull."""
+        if not isinstance(message, Remember | Journal | TaskChanged):
+            return 0.0
+        if self.full:
+            raise DiskFull("database or disk is full")
+        self._live.take(message, now)
+        self._unsynced.append((message, now))
+        if not outlives_power(message):
+            return 0.0
+        self._sync(len(self._unsynced))
+        return max(self.slow, default=0.0)
+
+    def cut_power(self, reached: int) -> None:
+        """Of the unsynced commits the first ones had `reached` the disk, the others are gone."""
+        self.cuts += 1
+        self._sync(min(reached, len(self._unsynced)))
+        self._unsynced.clear()
+        self._live = self._synced.copy()
+
+    def found(self) -> Content:
+        """What a start is handed: all facts, the tasks that have not ended, and the last that have."""
+        ended = [task.id for task in self.tasks.values() if task.state in ENDED]
+        forgotten = set(ended[:-HISTORY])
+        found = self._live.copy()
+        for id in forgotten:
+            del found.tasks[id]
+        return found
+
+    def ended(self, id: str) -> KeptTask | None:
+        """The task of an id, where it has ended."""
+        task = self.tasks.get(id)
+        return task if task is not None and task.state in ENDED else None
+
+    def _sync(self, count: int) -> None:
+        for _ in range(count):
+            self._synced.take(*self._unsynced.popleft())

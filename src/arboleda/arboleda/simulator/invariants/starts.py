@@ -1,0 +1,103 @@
+"""What must hold over all starts of a plant that dies: nothing accepted is lost, nothing is done twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from arboleda.core import text
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.errors import TextError
+from arboleda.model.messages import Heartbeat, TaskChanged, TaskRequest, TaskState
+
+from ..recorded.tasks import SURE
+from .invariant import Look, When, invariant
+
+
+@invariant(When.BORN)
+def accepted_is_found_again(look: Look) -> Iterator[str]:
+    """Whatever was told of a task and of a stop is so for the plant that starts next."""
+    starts, found, known = look.record.starts, look.world.found.tasks, look.world.plant.intake.tasks
+    for id, said in [*starts.told.items()][-SURE:]:
+        row, end = found.get(id), starts.ended.get(id)
+        if row is None or id not in known:
+            yield f"task {id} was told to be {said.state.value}, and who starts knows nothing of it"
+        elif end is not None and known[id].state is not end.state:
+            yield f"task {id} was told to have ended as {end.state.value}, and is {known[id].state.value}"
+        elif said.state is TaskState.RUNNING and row.state is TaskState.QUEUED:
+            yield f"task {id} was told to run, and waits again"
+    for name in look.record.lost_stops:
+        yield f"{name} was stopped, and the plant that starts does not know it"
+
+
+@invariant(When.ASKED)
+def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
+    """Whoever asks again for an id that was accepted gets that task, in whichever start."""
+    answers = {each.request: each for each in look.moment.sent if isinstance(each, TaskChanged)}
+    for request in look.moment.asked:
+        if not isinstance(request, TaskRequest) or "#" not in request.text or request.request not in answers:
+            continue
+        id, answer = request.text.rpartition("#")[2], answers[request.request]
+        said = look.record.starts.told.get(id)
+        if said is not None and answer.task != id and not answer.for_now and _asks_for(look, request, said):
+            yield f"task {id} was accepted, and is now {answer.state.value}: {answer.sentence}"
+
+
+def _asks_for(look: Look, request: TaskRequest, said: TaskChanged) -> bool:
+    try:
+        return text.parse(request.text, look.world.model).text == said.text
+    except TextError:
+        return False
+
+
+@invariant(When.UNKEPT)
+def nothing_unkept_leaves(look: Look) -> Iterator[str]:
+    """From the first thing that a plant cannot keep to its next start only stops and its beat leave it."""
+    for message in look.moment.unkept:
+        is_stop = isinstance(message, Stop) and message.mode is not StopMode.CLEAR
+        if not is_stop and not isinstance(message, Heartbeat):
+            yield f"the plant can keep nothing more, and {message} leaves"
+
+
+@invariant(When.TOLD_OTHERWISE)
+def ends_once_over_all_starts(look: Look) -> Iterable[str]:
+    """The end of a task is told once as news, whichever start tells it, and is the same ever after."""
+    return look.record.starts.wrong
+
+
+@invariant(When.DONE_TWICE)
+def no_step_is_done_twice(look: Look) -> Iterable[str]:
+    """What a board has carried out of a task is not carried out again for a later start, but for a way that
+    may have been cut short, and what an operator wants tried again.
+    """
+    return look.record.starts.twice
+
+
+@invariant(When.DEEDS)
+def one_pick_one_place_over_all_starts(look: Look) -> Iterator[str]:
+    """Over all starts at most one part leaves the pick-up for a task, and at most one comes to its place."""
+    for each in look.truth.cells.values():
+        if each.task is None or each.blind or each.earlier == (0, 0):
+            continue
+        picks, places = each.earlier[0] + each.picks, each.earlier[1] + each.places
+        if picks > 1 or places > 1:
+            yield f"task {each.task} has {picks} picks and {places} places over all starts"
+
+
+@invariant(When.COMMANDED)
+def nothing_moves_after_a_restart(look: Look) -> Iterator[str]:
+    """After a start no robot is told to move before an operator gets its cell going, or somebody brings a
+    task to a cell that had nothing to do; but where the plant file says so and no task was at work.
+    """
+    for command in look.record.stirring:
+        yield f"the plant has started, and by itself sends {command}"
+
+
+EVERYWHERE = (
+    accepted_is_found_again,
+    asked_again_is_the_same_task,
+    ends_once_over_all_starts,
+    no_step_is_done_twice,
+    nothing_unkept_leaves,
+    nothing_moves_after_a_restart,
+)
+STARTS = (*EVERYWHERE, one_pick_one_place_over_all_starts)

@@ -1,0 +1,45 @@
+"""The commands of other nodes that a bridge has taken in, until people are told of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.model.commands import Command
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.rejections import ForeignCommand, Rejection
+
+from ..world import Passed
+
+# it may still turn out to be a copy of what the plant says, and that copy then to be the command of another
+UNSURE_S = 1.0
+
+
+class ForeignCommands:
+    """`untold`: those of which nobody was told in time, in this step."""
+
+    def __init__(self) -> None:
+        self.untold: list[Command] = []
+        self._waiting: list[tuple[float, Command]] = []  # until when each must be told
+        self._bridge: object = None
+
+    def look(self, passed: Iterable[Passed], obeyed: list[Command]) -> None:
+        """Take in what bridges did; what one `obeyed` that heard no plant is nothing to tell."""
+        self.untold.clear()
+        for each in passed:
+            if each.bridge is not self._bridge:
+                self._bridge = each.bridge
+                self._waiting.clear()
+            heard = [event for event in each.events if isinstance(event, FromPlant) and event.sender]
+            self._waiting += [
+                (each.now + UNSURE_S, event.message) for event in heard if event.message not in obeyed
+            ]
+            if self._waiting:
+                self._tell(each)
+
+    def _tell(self, passed: Passed) -> None:
+        for told in (each for each in passed.out if isinstance(each, Rejection | ForeignCommand)):
+            first = next((each for each in self._waiting if each[1].robot == told.robot), None)
+            if first is not None:
+                self._waiting.remove(first)
+        self.untold += [command for due, command in self._waiting if due <= passed.now]
+        self._waiting = [each for each in self._waiting if each[0] > passed.now]

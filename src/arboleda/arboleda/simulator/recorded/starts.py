@@ -1,0 +1,149 @@
+"""What was told and carried out of each task over all starts of the plant."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.model.commands import Command, Motion, Query
+from arboleda.model.messages import ENDED, TaskChanged, TaskState
+from arboleda.model.plant_model import PlantModel
+from arboleda.recipes.decorators import Again, Times
+from arboleda.trees.tree_run import path_of
+from arboleda.wire.payloads import Goal
+
+from ..truth.stops import is_order_of
+
+UNDER_WAY = 16  # commands of a robot that may still reach its board
+TASKS = 2000  # that are followed; older ones are of no interest any more
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A command that a step of a task gave: `start` numbers the start of the plant, `path` is where it stands
+    in the tree and in which turn of what repeats it; `retries` is how often an operator had steps of its cell
+    tried again by then.
+    """
+
+    task: str
+    path: str
+    command: Command
+    start: int
+    retries: int
+
+
+class Starts:
+    """`told` is the last word on each accepted task, `ended` its end as it was told first.
+
+    `wrong` are ends that were told otherwise or again in this step, `twice` the steps that a board has begun
+    again although it had done them for an earlier start, or from which their task had gone on in one.
+    """
+
+    def __init__(self, model: PlantModel) -> None:
+        self.told: dict[str, TaskChanged] = {}
+        self.ended: dict[str, TaskChanged] = {}
+        self.wrong: list[str] = []
+        self.twice: list[str] = []
+        self._model = model
+        self._robots = {robot.mqtt: robot for robot in model.robots.values()}
+        self._sent: dict[str, deque[Step]] = {name: deque(maxlen=UNDER_WAY) for name in model.robots}
+        self._done: dict[tuple[str, str], list[Step]] = {}  # (task, robot) -> what its board carried out
+        self._steps: dict[str, Step] = {}  # those that were given and have not ended, by their command
+        self._over: dict[tuple[str, str], Step] = {}  # (task, path) -> a step from which the task went on
+
+    def clear_news(self) -> None:
+        """Nothing has happened yet in the step that begins."""
+        self.wrong.clear()
+        self.twice.clear()
+
+    def hear(self, messages: Iterable[object]) -> None:
+        """What the plant says, its last words too."""
+        for said in messages:
+            if isinstance(said, TaskChanged) and said.state is not TaskState.REFUSED:
+                self._hear(said)
+
+    def gave(self, step: Step) -> None:
+        """A step of a task gave a command."""
+        over = self._over.get((step.task, step.path))
+        if over is not None and over.start < step.start:
+            self._again(step, over)
+        self._steps[step.command.id] = step
+        if not isinstance(step.command, Query):  # to ask once more changes nothing
+            self._sent[step.command.robot].append(step)
+
+    def went_on(self, command: str) -> None:
+        """The task went on from the step of this command, and that was kept."""
+        step = self._steps.pop(command, None)
+        if step is not None:
+            self._over[step.task, step.path] = step
+            if len(self._over) > TASKS:
+                del self._over[next(iter(self._over))]
+
+    def restart(self, *, undone: bool) -> None:
+        """A plant starts; `undone`: what was kept last may be gone."""
+        self._steps.clear()
+        if undone:
+            self._over.clear()
+
+    def carries_out(self, board: str, goal: Goal) -> None:
+        """A board carries out a goal: of the commands that are this one the newest."""
+        robot = self._robots.get(board)
+        if robot is None:
+            return
+        sent = self._sent[robot.name]
+        step = next((each for each in reversed(sent) if is_order_of(goal, robot, each.command)), None)
+        if step is not None:
+            sent.remove(step)
+            self._carry_out(step)
+
+    def _hear(self, said: TaskChanged) -> None:
+        end = self.ended.get(said.task)
+        if end is not None and (said.state is not end.state or said.request is None):
+            self.wrong.append(
+                f"task {said.task} was told to have ended as {end.state.value}, and now as {said.state.value}"
+                if said.state in ENDED
+                else f"task {said.task} had ended as {end.state.value}, and is told to be {said.state.value}"
+            )
+        elif end is None and said.state in ENDED:
+            self.ended[said.task] = said
+        self.told[said.task] = said
+        if len(self.told) > TASKS:
+            oldest = next(iter(self.told))
+            del self.told[oldest]
+            self.ended.pop(oldest, None)
+
+    def _carry_out(self, step: Step) -> None:
+        done = self._done.setdefault((step.task, step.command.robot), [])
+        before = [each for each in done if each.path == step.path and each.start < step.start]
+        if before and not _may_be_repeated(done, before[-1], step):
+            self._again(step, before[-1])
+        done.append(step)
+        if len(self._done) > TASKS:
+            del self._done[next(iter(self._done))]
+
+    def _again(self, step: Step, before: Step) -> None:
+        what = f"{type(step.command).__name__} {step.command.id}"
+        self.twice.append(
+            f"{what} does step {step.path} of task {step.task} again, as {before.command.id} did"
+        )
+
+
+def turn_of(leaf: Behaviour) -> str:
+    """Where a step stands in its tree, and in which turn of each step around it that repeats it."""
+    turns, node = [], leaf.parent
+    while node is not None:
+        if isinstance(node, Times | Again):
+            turns.append(node.done if isinstance(node, Times) else node.tries)
+        node = node.parent
+    return f"{path_of(leaf)} in turn {turns[::-1]}" if turns else path_of(leaf)
+
+
+def _may_be_repeated(done: list[Step], before: Step, again: Step) -> bool:
+    """Whether a step may be done again after a restart: a way on which the robot may have been stopped, and
+    what an operator had tried again.
+    """
+    interrupted = done[-1].path == again.path and isinstance(again.command, Motion)
+    return interrupted or again.retries > before.retries

@@ -1,0 +1,147 @@
+"""What is true of a device: its facts, the work that it carries out, and which zones it is in the way of."""
+
+from __future__ import annotations
+
+from arboleda.model.commands import Command, needs_clear
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Cell, Interlock, Robot
+from arboleda.sim.board import Board
+from arboleda.wire.payloads import Goal, OrderGoal
+
+from ..network import Client
+from .robot import Act, RobotTruth
+
+Facts = dict[str, Value]
+
+
+class MachineTruth(RobotTruth):
+    """`facts` are how it is, `were` how it was before this step; `work` is what it carries out, if anything.
+
+    `zones` are those that it is in the way of. Of this step: `unmet`, the commands that it carries out
+    although what they need is not so, each with what that is; `cut_short`: it ended work that goes on
+    through a stop, and neither its power nor an alarm explains that.
+    """
+
+    SIGNS = ("next_change_us",)
+    PLACE = "facts"
+
+    def __init__(self, robot: Robot, cell: Cell, board: Board, client: Client) -> None:
+        self.facts: Facts = dict(board.body.true_facts)
+        self.were = self.facts
+        self.work: Command | None = None
+        self.unmet: list[tuple[Command, str]] = []
+        self.cut_short = False
+        self._locks: tuple[Interlock, ...] = ()
+        self._finishes = board.body.finishes
+        self._now_us = 0
+        super().__init__(robot, cell, board, client)
+
+    def be_locked(self, locks: tuple[Interlock, ...]) -> None:
+        self._locks = locks
+        self.zones = self._in_the_way()
+
+    @property
+    def held(self) -> bool:
+        """Whether it holds something."""
+        return bool(self.facts.get(self.robot.held_fact or ""))
+
+    @property
+    def let_go(self) -> bool:
+        """Whether in this step it let go by itself of what it held, with its power on and nobody at it."""
+        held = bool(self.were.get(self.robot.held_fact or ""))
+        return held and not self.held and not self.lost_power and not self.by_hand
+
+    @property
+    def falls_open(self) -> bool:
+        """What it held or was switched to is gone with its power, and may be what kept it out of the way."""
+        return self.lost_power
+
+    @property
+    def at_reference(self) -> bool:
+        """It has none to be away from."""
+        return True
+
+    def be_opened(self, at: float) -> None:
+        self.again = self._put_right = True
+
+    def forget(self) -> None:
+        super().forget()
+        self.were, self.unmet, self.cut_short, self.by_hand = self.facts, [], False, False
+
+    def look(self, now_us: int) -> bool:
+        self._now_us = now_us
+        return super().look(now_us)
+
+    @property
+    def _came_home(self) -> bool:
+        return True
+
+    def _boot_up(self, now_us: int) -> None:
+        super()._boot_up(now_us)
+        self.homed, self.work = True, None
+
+    def _moves(self, goal: Goal) -> bool:
+        return isinstance(goal, OrderGoal) and self.body.is_work(goal)
+
+    def _grips(self, goal: Goal) -> bool:
+        """Whether a goal that is no work is forbidden by a stop: all but questions, and what lets go."""
+        command = self._command(goal)
+        return command is not None and needs_clear(command)
+
+    def _command(self, goal: Goal) -> Command | None:
+        command: Command | None = self.body.command(goal) if isinstance(goal, OrderGoal) else None
+        return command
+
+    def _follow(self, was_moving: bool) -> None:
+        before, self.facts = self.facts, dict(self.body.true_facts)
+        self.jumped = self.facts != before and not self.lost_power and not self._ended_in_time
+        self.by_hand = self._put_right
+        self.swerved = False  # of several things that it does, one may end
+        self.zones = self._in_the_way()
+        given = [(act, self._command(act.goal)) for act in self.acts]
+        self._follow_work(was_moving, given)
+        self.unmet = [
+            (command, why)
+            for command in self._at_work(given)
+            if (why := self._why_unmet(command)) is not None
+        ]
+
+    def _follow_work(self, was_moving: bool, given: list[tuple[Act, Command | None]]) -> None:
+        began = [command for act, command in given if act.moves]
+        ended = was_moving and (not self.moving or began)
+        excused = self.lost_power or self.board.faulted or self._ended_in_time
+        self.cut_short = bool(ended and self._finishes and not excused)
+        self._finishes = self.body.finishes
+        if began:
+            self.work, self.worked_from = began[-1], self._now_us / 1e6
+        elif not self.moving:
+            self.work = None
+
+    @property
+    def _ended_in_time(self) -> bool:
+        return self._was_due is not None and self._was_due <= self._now_us
+
+    def _at_work(self, given: list[tuple[Act, Command | None]]) -> list[Command]:
+        """What it begins in this step, and the work that it goes on with."""
+        begins = [command for _, command in given if command is not None and command is not self.work]
+        return begins if self.work is None else [*begins, self.work]
+
+    def _why_unmet(self, command: Command) -> str | None:
+        """What a command needs that neither was so before this step nor is so now."""
+        rows = [(name, value) for name, value in command.needs if self.facts.get(name) != value]
+        if command is not self.work:  # what it sets itself may be what ended what it needs
+            rows = [(name, value) for name, value in rows if self.were.get(name) != value]
+        return next((f"{name} is {self.facts.get(name)}, not {value}" for name, value in rows), None)
+
+    def _in_the_way(self) -> frozenset[str]:
+        return frozenset(
+            lock.zone
+            for lock in self._locks
+            if any(self.facts.get(name) != value for name, value in lock.free_while)
+        )
+
+    def _ends_soon(self, now_us: int) -> bool:
+        return bool(self.body.finishes)  # all other work ends at once
+
+    def _goes_on(self) -> bool:
+        return not self.body.finishes

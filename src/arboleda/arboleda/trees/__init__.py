@@ -1,0 +1,1 @@
+"""Behavior trees: leaves, what recipes are made of, and what is kept of a tree that runs; pure."""

@@ -1,0 +1,164 @@
+"""What of a cell's running task is kept for the next start of the plant, and put back by it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.model.commands import Process
+from arboleda.model.messages import Failure
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.task import Order
+
+from . import fingerprint, trail
+from .context import Context
+from .leaves import Act, Await, Dwell
+from .trail import Begun, Planned, Trail
+from .tree_run import TreeRun
+from .walk_back import Finding, WalkBack
+
+CHANGED = Phrase("walk.changed", "its recipe or the plant file has changed since it began")
+UNREADABLE = Phrase("walk.unreadable", "what was kept of it cannot be read")
+WAS_RECOVERING = Phrase("walk.was_recovering", "its work has failed, and the recovery was cut off")
+NOTHING_KEPT = Trail(
+    begun=Begun(made="", planned=Planned(standing={}, positions={})),
+    statuses="",
+    nodes={},
+    carrier=None,
+    back={},
+    origins=(),
+    used=(),
+    known={},
+    grips={},
+    zones={},
+)
+
+
+class Keeping:
+    """The trail of what runs in a cell; `walk` is that of an earlier start, until a person says more.
+
+    `build` makes the tree of an order.
+    """
+
+    def __init__(self, context: Context, run: TreeRun, build: Callable[[Order, Context], Behaviour]) -> None:
+        self.walk: WalkBack | None = None
+        self._context = context
+        self._run = run
+        self._build = build
+        self._begun = NOTHING_KEPT.begun
+        # what the cell was made of, as far as a recipe's tasks go by it
+        self._cells: dict[str, tuple[str, fingerprint.Seen]] = {}
+        self._kept_of: tuple[object, ...] = ()  # what the trail was made of that was kept last
+
+    def make(self, order: Order) -> Behaviour:
+        """The tree of a task that begins."""
+        self.walk = None
+        return self._grown(order, self._context.planned())
+
+    def revive(self, order: Order, kept: str) -> Sentence | None:
+        """Take over a task that was at work; why it cannot go on at its step."""
+        try:
+            self.walk = WalkBack(Trail.read(kept), ())
+        except ValueError:
+            self.walk = WalkBack(NOTHING_KEPT, ())
+            return UNREADABLE()
+        found = self.walk.trail
+        if found.recovers:
+            self._context.take_over(found)
+            return WAS_RECOVERING()
+        try:
+            self._context.as_planned = found.begun.planned
+            tree = self._grown(order, found.begun.planned)
+            nodes = list(tree.iterate())
+            begun = trail.put_back(nodes, found) if self._begun.made == found.begun.made else None
+        except Exception:  # noqa: BLE001 - a recipe may be user code, and another one than it was
+            begun = None
+        finally:
+            self._context.as_planned = None
+        self._context.take_over(found)
+        if begun is None:
+            return CHANGED()
+        self._run.grow(tree)
+        for step in begun:
+            if isinstance(step, Await | Dwell):
+                step.begin_anew()
+            if isinstance(step, Act) and step.last is not None and step.last["effect"] == trail.SWITCH:
+                self._context.leave_unsettled(step.last["robot"], told=dict(step.last["sets"]))
+        self.walk = WalkBack(found, begun)
+        return found.stranded
+
+    def judge(self) -> Finding:
+        """What the devices say now of the steps at which an earlier start ended."""
+        assert self.walk is not None
+        return self.walk.judge(self._context)
+
+    def go_on(self) -> None:
+        """Go on at the steps at which an earlier start ended, by what the devices say now."""
+        assert self.walk is not None
+        walk, self.walk = self.walk, None
+        self._kept_of = ()
+        found = walk.judge(self._context)
+        self._context.settle()
+        walk.go_on(found)
+
+    def end(self) -> None:
+        """The task has ended, or goes on without its work."""
+        self.walk, self._kept_of = None, ()
+        self._context.settle()
+        self._context.forsake()
+
+    def news(
+        self, *, failure: Failure | None, cancels: bool, holds: bool, stranded: Sentence | None
+    ) -> str | None:
+        """Where the task stands, to be kept; None where that is kept already."""
+        if self.walk is not None:
+            return self._stranded(self.walk, stranded)
+        entries = [act.entry for act in self._run.acts if act.entry is not None]
+        numbers = [entry.number for entry in entries if isinstance(entry.command, Process)]
+        state = (self._run.rested, holds, cancels, stranded, numbers)
+        if state == self._kept_of:
+            return None
+        self._kept_of = state
+        return self._trail(failure, cancels=cancels, stranded=stranded).text()
+
+    def _stranded(self, walk: WalkBack, stranded: Sentence | None) -> str | None:
+        """Until a person has said more, only that the task can no longer go on from there is news."""
+        if stranded is None or walk.trail.stranded is not None or self._run.tree is None:
+            return None
+        walk.trail = walk.trail._replace(stranded=stranded)
+        return walk.trail.text()
+
+    def _trail(self, failure: Failure | None, *, cancels: bool, stranded: Sentence | None) -> Trail:
+        context, recovers = self._context, self._run.recovering
+        nodes = [] if recovers else self._run.nodes
+        names = context.used.union(self._begun.planned.positions, context.numbered)
+        return Trail(
+            begun=self._begun,
+            statuses=trail.statuses(nodes),
+            nodes=trail.kept_of(() if recovers else self._run.keepers),
+            carrier=context.carrier,
+            back={robot: pose.name for robot, pose in context.back.items()},
+            origins=sorted(context.origins),
+            used=sorted(context.used),
+            known={} if recovers else {name: context.known(name) for name in sorted(names)},
+            grips={} if recovers else {name: context.grip(name).value for name in context.cell.holders},
+            zones={name: sorted(context.zones_of(name)) for name in context.cell.interlocked},
+            failure=(failure or context.failure) if recovers else None,
+            recovers=recovers,
+            cancels=cancels,
+            stranded=stranded,
+            answers=tuple(context.answers),
+        )
+
+    def _grown(self, order: Order, planned: Planned) -> Behaviour:
+        """The tree of an order; what it was made of is noted."""
+        cell = self._context.cell
+        if order.recipe not in self._cells:
+            seen: fingerprint.Seen = {}
+            self._cells[order.recipe] = fingerprint.of_cell(cell, order.recipe, seen), seen
+        of_cell, seen = self._cells[order.recipe]
+        tree = self._build(order, self._context)
+        made = fingerprint.joined(of_cell, order.text, fingerprint.of_tree(tree, seen))
+        self._begun = Begun(made=made, planned=planned)
+        return tree

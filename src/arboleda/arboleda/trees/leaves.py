@@ -1,0 +1,476 @@
+"""The few py_trees leaves that every recipe is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.messages import Failure, Notice, Reason
+from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
+
+from .context import Context, Make
+from .trail import Keeps, command_kept
+
+CANCELLED = Phrase("command.cancelled", "cancelled while {doing}")
+AGAIN = Phrase("command.again", "{why}; try {number} of {most} follows")
+NOT_FREE = Phrase("zone.not_free", "{arm}: zone {zones} was not free within {seconds:g} s")
+WAITS_FOR_DEVICE = Phrase("device.waits", "waits for {device}, which {cell} holds")
+WAITS_FOR_TURN = Phrase("device.waits_for_turn", "waits for {device}, which {cell} asked for before")
+DEVICE_NOT_FREE = Phrase("device.not_free", "{cell}: {devices} was not free within {seconds:g} s")
+DEVICE_STILL_HELD = Phrase(
+    "device.still_held", "{cell}: {device}, which {holder} holds, was not free within {seconds:g} s"
+)
+NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to rest")
+NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
+Guard = Callable[[], "Failure | None"]
+RETRYABLE = frozenset(
+    {
+        Reason.LINK_LOST,
+        Reason.REJECTED,
+        Reason.DEADLINE,
+        Reason.STOPPED_SHORT,
+        Reason.NOT_REACHED,
+        Reason.NO_PIECE,
+        Reason.NOT_GRIPPED,
+    }
+)
+
+
+def titled(node: Behaviour, title: Sentence | str) -> Behaviour:
+    """Give a node of py_trees its name as a sentence."""
+    node.title = as_sentence(title)  # type: ignore[attr-defined]
+    return node
+
+
+def title_of(node: Behaviour) -> Sentence:
+    """The name of a node as a sentence; of one that nobody titled its plain name."""
+    return getattr(node, "title", None) or OWN(text=node.name)
+
+
+class Leaf(Keeps, Behaviour):
+    """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
+    its last failure, kept when py_trees has forgotten the status.
+    """
+
+    title: Sentence
+    told: Sentence = NOTHING
+    last_failure: Sentence | None = None
+
+    def __init__(self, name: Sentence | str) -> None:
+        super().__init__(str(name))
+        self.title = as_sentence(name)
+
+    @property
+    def feedback_message(self) -> str:
+        return str(self.told)
+
+    @feedback_message.setter
+    def feedback_message(self, text: str) -> None:
+        self.told = as_sentence(text) if text else NOTHING
+
+    def tick(self) -> Iterator[Behaviour]:
+        """As py_trees ticks a leaf, but without words for a log and without a list of all statuses."""
+        if self.status is not Status.RUNNING:
+            self.initialise()
+        status = self.update()
+        if not isinstance(status, Status):
+            self.logger.error(f"{self.name} returned what is no status: {status}")
+            status = Status.INVALID
+        if status is not Status.RUNNING:
+            self.stop(status)
+        self.status = status
+        yield self
+
+    def stop(self, new_status: Status) -> None:
+        """As py_trees ends a leaf, but without words for a log."""
+        self.terminate(new_status)
+        self.status = new_status
+        self.iterator = self.tick()
+
+    def begin_anew(self) -> None:
+        self.initialise()
+
+    def failed(self, failure: Failure) -> Status:
+        """FAILURE, with its sentence for people."""
+        self.told = self.last_failure = failure.sentence
+        return Status.FAILURE
+
+
+class Act(Leaf):
+    """One command: RUNNING while it is open, SUCCESS when it is done; left early, it is halted.
+
+    A failure that a retry can help is tried again as the cell's `retry` says, after its back-off. A robot
+    that is still moving is waited for, at most `stop_timeout_s`: what it says may be older than the end of
+    its last move.
+    `anew`, where given, makes the command once it has left before. `guard`, where given, is asked at every
+    tick; what it returns fails the command at once. So does an effector that opened unbidden while it held
+    a part. `then`, where given, is called once the command is done. `uses`: its robot, where cells share it.
+    `last` is what an earlier start of the plant has kept of the command; `proven`: it is known to be done.
+    """
+
+    uses: str | None = None
+
+    def __init__(
+        self,
+        name: Sentence | str,
+        context: Context,
+        make: Make,
+        doing: Sentence | str,
+        *,
+        anew: Make | None = None,
+        guard: Guard | None = None,
+        then: Callable[[], None] | None = None,
+    ) -> None:
+        super().__init__(name)
+        self.context = context
+        self.then = then
+        self.make = make
+        self.anew = anew or make
+        self.doing = as_sentence(doing)
+        self.guard = guard
+        self.entry: Entry | None = None
+        self.left = False  # whether its robot may have got the command
+        self.left_before = False  # the same before it was given last
+        self.last: Mapping[str, Any] | None = None
+        self.proven = False
+        self.tries = 0
+        self.again_at: float | None = None
+        self.patient_until = 0.0
+
+    def initialise(self) -> None:
+        self.tries, self.left, self.last, self.proven = 0, False, None, False
+        self.send()
+
+    def kept(self) -> Mapping[str, Any] | None:
+        if self.status is not Status.RUNNING:
+            return None
+        last = self.last if self.entry is None else command_kept(self.entry)
+        return {"tries": self.tries, "left": self.left_before, "last": last}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.tries, self.left, self.last = state["tries"], state["left"], state["last"]
+        self.told = self.doing
+
+    def begin_anew(self) -> None:
+        self.send()
+
+    def send(self) -> None:
+        """Give the command, or give it anew."""
+        self.told, self.last = self.doing, None
+        self.again_at = None
+        self.patient_until = self.context.now + self.context.timing.stop_timeout_s
+        self._give()
+
+    def _give(self) -> None:
+        self.entry = self.context.send(self.anew if self.left else self.make, self.doing)
+        self.left_before, self.left = self.left, self.left or self.entry.left
+        if self.entry.too_early:
+            self.context.wake_at(self.patient_until)
+
+    def update(self) -> Status:
+        if self.proven:
+            return self._done()
+        if self.again_at is not None:
+            return self._wait()
+        if (found := self._obstacle()) is not None:
+            return self._failed(found)
+        if self.entry is not None and self._waits_for_the_robot(self.entry):
+            return Status.RUNNING
+        if self.entry is None or self.entry.open:
+            return Status.RUNNING
+        if self.entry.state is State.DONE:
+            return self._done()
+        cancelled = Failure(reason=Reason.CANCELLED, sentence=CANCELLED(doing=self.doing))
+        failure = self.entry.failure or cancelled
+        retry = self.context.cell.retry
+        if failure.reason in RETRYABLE and self.tries < retry.times:
+            self.tries += 1
+            self.last_failure = failure.sentence
+            self.told = AGAIN(why=failure.sentence, number=self.tries, most=retry.times)
+            self.again_at = self.context.now + retry.backoff_s
+            self.context.wake_at(self.again_at)
+            return Status.RUNNING
+        return self._failed(failure)
+
+    def _done(self) -> Status:
+        if self.then is not None:
+            self.then()
+        return Status.SUCCESS
+
+    def _obstacle(self) -> Failure | None:
+        """Why the command is in vain whatever becomes of it, unless it failed for a cause of its own."""
+        ended = self.entry.failure if self.entry is not None and not self.entry.open else None
+        if ended is not None and ended.reason not in RETRYABLE:
+            return None
+        return (self.guard() if self.guard is not None else None) or self.context.part_gone()
+
+    def _waits_for_the_robot(self, entry: Entry) -> bool:
+        """Whether the robot is still moving, and there is time; one that no longer is gets its command."""
+        if not entry.too_early or self.context.now >= self.patient_until:
+            return False
+        if not self.context.moves(entry.command.robot):
+            self._give()
+        return self.entry is not None and self.entry.too_early
+
+    def _wait(self) -> Status:
+        if self.again_at is not None and self.context.now >= self.again_at:
+            self.send()
+            return self.update()
+        return Status.RUNNING
+
+    def _failed(self, failure: Failure) -> Status:
+        self.context.fail(failure, self)
+        self._halt()
+        return self.failed(failure)
+
+    def _halt(self) -> None:
+        if self.entry is not None and self.entry.open:
+            self.context.cancel(self.entry)
+
+    def terminate(self, new_status: Status) -> None:
+        if new_status is Status.INVALID:
+            self._halt()
+
+
+class Dwell(Leaf):
+    """Wait a fixed time."""
+
+    def __init__(self, name: Sentence | str, context: Context, seconds: float) -> None:
+        super().__init__(name)
+        self.context = context
+        self.seconds = seconds
+        self.until = 0.0
+
+    def initialise(self) -> None:
+        self.until = self.context.now + self.seconds
+        self.context.wake_at(self.until)
+
+    def update(self) -> Status:
+        return Status.SUCCESS if self.context.now >= self.until else Status.RUNNING
+
+
+class Announce(Leaf):
+    """Tell the outside once."""
+
+    def __init__(self, name: Sentence | str, context: Context, notice: Notice) -> None:
+        super().__init__(name)
+        self.context = context
+        self.notice = notice
+
+    def update(self) -> Status:
+        self.context.notify(self.notice)
+        return Status.SUCCESS
+
+
+class Require(Leaf):
+    """A condition: SUCCESS where `obstacle()` returns None, else FAILURE with what it returns."""
+
+    def __init__(self, name: Sentence | str, context: Context, obstacle: Guard) -> None:
+        super().__init__(name)
+        self.context = context
+        self.obstacle = obstacle
+
+    def update(self) -> Status:
+        failure = self.obstacle()
+        if failure is None:
+            return Status.SUCCESS
+        self.context.fail(failure, self)
+        return self.failed(failure)
+
+
+class Unless(Leaf):
+    """SUCCESS where `holds()`, else FAILURE without a cause: the way past a branch that is not needed."""
+
+    def __init__(self, name: Sentence | str, holds: Callable[[], bool]) -> None:
+        super().__init__(name)
+        self.holds = holds
+
+    def update(self) -> Status:
+        return Status.SUCCESS if self.holds() else Status.FAILURE
+
+
+class Await(Leaf):
+    """RUNNING until `arrived()`, at most `seconds`; FAILURE then, `otherwise()` its cause if `final`."""
+
+    def __init__(
+        self,
+        name: Sentence | str,
+        context: Context,
+        arrived: Callable[[], bool],
+        seconds: float,
+        otherwise: Callable[[], Failure],
+        *,
+        final: bool = True,
+    ) -> None:
+        super().__init__(name)
+        self.context = context
+        self.arrived = arrived
+        self.seconds = seconds
+        self.otherwise = otherwise
+        self.final = final
+        self.until = 0.0
+
+    def initialise(self) -> None:
+        self.until = self.context.now + self.seconds
+        self.context.wake_at(self.until)
+
+    def update(self) -> Status:
+        if self.arrived():
+            return Status.SUCCESS
+        if self.context.now < self.until:
+            return Status.RUNNING
+        failure = self.otherwise()
+        if self.final:
+            self.context.fail(failure, self)
+        return self.failed(failure)
+
+
+class Piece(Await):
+    """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there."""
+
+    def __init__(
+        self,
+        name: Sentence | str,
+        context: Context,
+        robot: str,
+        seconds: float,
+        failure: Failure,
+        *,
+        final: bool = True,
+    ) -> None:
+        super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
+        self.robot = robot
+        self.since = 0.0
+
+    def initialise(self) -> None:
+        super().initialise()
+        self.since = self.context.now
+
+    def _seen(self) -> bool:
+        return self.context.piece(self.robot, self.since) is True
+
+
+class Note(Leaf):
+    """Book something of the task, once."""
+
+    def __init__(self, name: Sentence | str, note: Callable[[], None]) -> None:
+        super().__init__(name)
+        self.note = note
+
+    def update(self) -> Status:
+        self.note()
+        return Status.SUCCESS
+
+
+class Carry(Leaf):
+    """Note which robot carries the checked part now; None: it has arrived."""
+
+    def __init__(self, name: Sentence | str, context: Context, robot: str | None) -> None:
+        super().__init__(name)
+        self.context = context
+        self.robot = robot
+
+    def update(self) -> Status:
+        self.context.carrier = self.robot
+        return Status.SUCCESS
+
+
+class TakeZones(Await):
+    """Wait until a robot has all the zones that `needed()` names then; left early, it waits no longer.
+
+    `recovers`: a robot that stands in a zone may go on with what it holds, to get out; one outside keeps its
+    place among the waiting as long as those before it are at work, for who asks anew asks as the last.
+    """
+
+    def __init__(
+        self,
+        name: Sentence | str,
+        context: Context,
+        robot: str,
+        needed: Callable[[], frozenset[str]],
+        *,
+        recovers: bool = False,
+    ) -> None:
+        super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.robot = robot
+        self.needed = needed
+        self.recovers = recovers
+        self.zones: frozenset[str] = frozenset()
+
+    def initialise(self) -> None:
+        super().initialise()
+        self.zones = self.needed()
+
+    def update(self) -> Status:
+        due = self.context.now >= self.until
+        if due and self.recovers and self.context.will_come_free(self.robot):
+            super().initialise()
+        return super().update()
+
+    def _taken(self) -> bool:
+        return self.context.take_zones(self.robot, self.zones, inside=self.recovers)
+
+    def _not_free(self) -> Failure:
+        zones = tuple(sorted(self.zones))
+        sentence = NOT_FREE(arm=self.robot, zones=zones, seconds=self.seconds)
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def terminate(self, new_status: Status) -> None:
+        # py_trees also ends what has long succeeded: the zones are in use then
+        if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
+            self.context.leave_zones(self.robot)
+
+
+class LeaveZones(Await):
+    """Give a robot's zones back once it is seen outside."""
+
+    def __init__(self, name: Sentence | str, context: Context, robot: str) -> None:
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=NOT_OUTSIDE(arm=robot))
+        left = partial(context.leave_zones, robot)
+        super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)
+
+
+class TakeDevices(Await):
+    """Wait until a cell has the devices that it shares, all at once; left early, it waits no longer."""
+
+    def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
+        super().__init__(name, context, self._taken, context.cell.zone_wait_s, self._not_free)
+        self.devices = devices
+
+    def update(self) -> Status:
+        status = super().update()
+        if status is Status.RUNNING and (awaited := self.context.awaited_device(self.devices)):
+            device, holder, holds = awaited
+            self.told = (WAITS_FOR_DEVICE if holds else WAITS_FOR_TURN)(device=device, cell=holder)
+        return status
+
+    def _taken(self) -> bool:
+        return self.context.take_devices(self.devices)
+
+    def _not_free(self) -> Failure:
+        cell, awaited = self.context.cell.name, self.context.awaited_device(self.devices)
+        sentence = DEVICE_NOT_FREE(cell=cell, devices=tuple(sorted(self.devices)), seconds=self.seconds)
+        if awaited and awaited[2]:
+            device, holder, _ = awaited
+            sentence = DEVICE_STILL_HELD(cell=cell, device=device, holder=holder, seconds=self.seconds)
+        return Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+
+    def terminate(self, new_status: Status) -> None:
+        # as with zones: what has long succeeded is in use
+        if new_status is Status.FAILURE or (self.status is Status.RUNNING and new_status is Status.INVALID):
+            self.context.leave_devices(frozenset())
+
+
+class LeaveDevices(Await):
+    """Give back the shared devices that a cell holds, once they are heard and do nothing."""
+
+    def __init__(self, name: Sentence | str, context: Context, devices: frozenset[str]) -> None:
+        sentence = NOT_AT_REST(cell=context.cell.name, devices=tuple(sorted(devices)))
+        failure = Failure(reason=Reason.ZONE_UNAVAILABLE, sentence=sentence)
+        left = partial(context.leave_devices, devices)
+        super().__init__(name, context, left, context.timing.stop_timeout_s, lambda: failure)

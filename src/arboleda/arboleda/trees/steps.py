@@ -1,0 +1,367 @@
+"""The idioms that recipes are made of: a visit, a switched effector, shared zones, and the recovery.
+
+A task is a Selector with memory over its work and its recovery: once the work has failed, the recovery runs
+to its end. Recovered is not delivered: the task has failed all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from py_trees import common, composites
+from py_trees.behaviour import Behaviour
+
+from arboleda.model.commands import Command
+from arboleda.model.messages import Failure, Reason, SystemStart
+from arboleda.model.plant_model import Pose
+from arboleda.model.sentence import Phrase, Sentence
+
+from . import zone_plan
+from .context import Context
+from .leaves import (
+    Act,
+    Announce,
+    Await,
+    Carry,
+    Dwell,
+    LeaveDevices,
+    LeaveZones,
+    Note,
+    Piece,
+    TakeDevices,
+    TakeZones,
+    Unless,
+    titled,
+)
+
+MAIN, RECOVERY = PHASES = ("main", "recovery")
+TITLES = {name: Phrase(f"step.{name}", name) for name in PHASES}
+ANNOUNCE = Phrase("step.announce", "announce")
+SYSTEM_START = Phrase("step.system_start", "system start")
+DWELL = Phrase("step.dwell", "dwell")
+SETTLE = Phrase("step.settle", "settle")
+RISE = Phrase("step.rise", "rise")
+RISING = Phrase("doing.rise", "rising")
+ALL_HOME = Phrase("step.all_home", "all go home")
+HOME_AGAIN = Phrase("step.home_again", "{arm} goes home")
+CARRY_BACK = Phrase("step.carry_back", "carry back")
+PART_BACK = Phrase("step.part_back", "part back")
+HOLDS_NOTHING = Phrase("step.holds_nothing", "holds nothing")
+LETS_GO_OF_NOTHING = Phrase("step.lets_go_of_nothing", "lets go of nothing")
+LET_GO_FIRST = Phrase("step.let_go_first", "end letting go")
+TAKE_ZONES = Phrase("step.take_zones", "take zones")
+LEAVE_ZONES = Phrase("step.leave_zones", "leave zones")
+TAKE_DEVICES = Phrase("step.take_devices", "take {devices}")
+LEAVE_DEVICES = Phrase("step.leave_devices", "give back {devices}")
+MOVE = Phrase("step.move", "move to {pose}")
+MOVING = Phrase("doing.move", "moving to {pose}")
+MOVE_ABOVE = Phrase("step.move_above", "move to above {pose}")
+MOVING_ABOVE = Phrase("doing.move_above", "moving to above {pose}")
+SWITCH = Phrase("step.switch", "switch")
+EFFECTOR_ON = Phrase("step.effector_on", "effector on")
+EFFECTOR_OFF = Phrase("step.effector_off", "effector off")
+HAND_ON = Phrase("step.hand_on", "{device} grips")
+HAND_OFF = Phrase("step.hand_off", "{device} lets go")
+GRIPPING = Phrase("doing.grip_by", "gripping with {device}")
+LETTING_GO = Phrase("doing.let_go_by", "letting go with {device}")
+SWITCHING_ON = Phrase("doing.switch_on", "switching the effector on")
+SWITCHING_OFF = Phrase("doing.switch_off", "switching the effector off")
+PIECE_THERE = Phrase("step.piece_there", "piece there")
+PIECE_GRIPPED = Phrase("step.piece_gripped", "piece gripped")
+GRIP = Phrase("step.grip", "grip")
+TRY = Phrase("step.try", "try {number}")
+ONLY_MISSED = Phrase("step.only_missed", "only missed")
+BACK_OFF = Phrase("step.back_off", "back-off")
+CARRY = Phrase("step.carry", "carry")
+NOTE_ORIGIN = Phrase("step.note_origin", "note where parts come from")
+OVER = Phrase("step.over", "over the place")
+NO_APPROACH = Phrase("step.no_approach", "no approach")
+GO_BACK = Phrase("step.go_back", "go back to where it was taken")
+GOING_BACK = Phrase("doing.go_back", "going back to where it was taken")
+GO_OVER = Phrase("step.go_over", "go over where it was taken")
+GOING_OVER = Phrase("doing.go_over", "going over where it was taken")
+ARRIVED = Phrase("step.arrived", "arrived")
+UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
+NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
+NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
+SETTLE_S = 1.0  # after the last stop was confirmed or given up
+Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do there
+
+
+def task(
+    title: Sentence | str, work: list[Behaviour], context: Context, *, notes_origins: bool = False
+) -> Behaviour:
+    """The work of a task, announced, and the recovery for when it fails.
+
+    `notes_origins`: where a part comes from shows only in the work, so it is looked up when that has failed.
+    """
+    back = recovery(context, notes_origins=notes_origins)
+    return selector(title, sequence(TITLES[MAIN](), start(context), *work), back)
+
+
+def recovery(context: Context, *, notes_origins: bool = False) -> Behaviour:
+    """Wait until all has come to rest; carry what is held back to where it came from; go home.
+
+    Of several robots each goes by itself: one may wait for a zone that another one is still in.
+    """
+    robots = tuple(context.cell.workspaces)
+    settle = _settle(context, robots)
+    ways = [_way_home(context, robot, notes_origins=notes_origins) for robot in robots]
+    if len(ways) < 2:
+        return sequence(TITLES[RECOVERY](), settle, *(step for way in ways for step in way))
+    policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)
+    each = [sequence(HOME_AGAIN(arm=robot), *way) for robot, way in zip(robots, ways, strict=True)]
+    together = composites.Parallel(str(ALL_HOME()), policy=policy, children=each)
+    return sequence(TITLES[RECOVERY](), settle, titled(together, ALL_HOME()))
+
+
+def sequence(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    return titled(composites.Sequence(str(title), memory=True, children=list(children)), title)
+
+
+def selector(title: Sentence | str, *children: Behaviour) -> Behaviour:
+    return titled(composites.Selector(str(title), memory=True, children=list(children)), title)
+
+
+def framed(node: Behaviour) -> Behaviour:
+    """A node that only says when others run: where it runs, screens name the step in it."""
+    node.frame = True  # type: ignore[attr-defined]
+    return node
+
+
+def is_frame(node: Behaviour) -> bool:
+    return getattr(node, "frame", False)
+
+
+def start(context: Context) -> Behaviour:
+    """Tell that a task starts."""
+    announce = Announce(ANNOUNCE(), context, SystemStart(cell=context.cell.name))
+    return sequence(SYSTEM_START(), announce, Dwell(DWELL(), context, context.timing.dwell_s))
+
+
+def visit(context: Context, robot: str, way: Sequence[Pose], visits: Sequence[Visit]) -> list[Behaviour]:
+    """Go from pose to pose and work there, holding the shared zones of each leg of the way."""
+    space = context.cell.workspaces[robot]
+    legs = zone_plan.plan(space, way, context.way_back(robot)) if space.zones else []
+    steps: list[Behaviour] = []
+    for index, (pose, work) in enumerate(visits):
+        steps += [_take(context, robot, leg.zones) for leg in legs if leg.start == index and leg.zones]
+        steps += _at(context, robot, pose, *work)
+        ends = [leg for leg in legs if leg.end == index + 1 and leg.zones]
+        steps += [LeaveZones(LEAVE_ZONES(), context, robot) for _ in ends]
+    return steps
+
+
+def visit_from_anywhere(
+    context: Context, robot: str, pose: Pose, work: Sequence[Behaviour]
+) -> list[Behaviour]:
+    """Go to a pose and work there, planned when it begins, from where the robot stands then.
+
+    It begins and ends outside all zones: from a pose that lies in one the robot goes home. So nobody waits
+    for zones while it holds others, whatever comes before and after.
+    """
+    space = context.cell.reach[robot]
+    origin = Note(NOTE_ORIGIN(), partial(_note_origin, context, robot, pose))
+    steps = _at(context, robot, pose, origin, *work)
+    if not space.zones:
+        return steps
+
+    def needed() -> frozenset[str]:
+        way = (context.standing(robot), pose, *((space.home,) if pose.zones else ()))
+        legs = zone_plan.plan(space, way, context.way_back(robot))
+        return frozenset[str]().union(*(leg.zones for leg in legs))
+
+    out = [_move(context, robot, space.home)] if pose.zones else []
+    leave = LeaveZones(LEAVE_ZONES(), context, robot)
+    return [TakeZones(TAKE_ZONES(), context, robot, needed), *steps, *out, leave]
+
+
+def interlocked(context: Context, command: Command) -> list[Behaviour]:
+    """The steps before a command that makes its device occupy zones: nobody is in them then."""
+    locks = context.cell.interlocks_of(command.robot)
+    zones = frozenset(each.zone for each in locks if each.is_ended_by(command))
+    return [_take(context, command.robot, zones)] if zones else []
+
+
+def with_devices(context: Context, devices: frozenset[str], parts: Sequence[Behaviour]) -> list[Behaviour]:
+    """The steps, with shared devices held from before the first of them until after the last.
+
+    They are taken before any zone: a cell that waits for one has no robot in a zone that waits for the cell,
+    and who holds zones asks for no device. So nobody waits in a ring.
+    """
+    named = tuple(sorted(devices))
+    take = TakeDevices(TAKE_DEVICES(devices=named), context, devices)
+    return [take, *parts, LeaveDevices(LEAVE_DEVICES(devices=named), context, devices)]
+
+
+def _note_origin(context: Context, robot: str, pose: Pose) -> None:
+    """A robot that holds nothing takes here what it will hold: a recovery brings that back."""
+    told = robot in context.back and robot not in context.origins  # the task has said where
+    if context.cell.reach[robot].hand.name not in context.holding and not told:
+        context.back[robot] = pose
+        context.origins.add(robot)
+
+
+def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
+    """Effector on; `check`: the piece sensor has to see the part before and after."""
+    on = effector(context, robot, on=True)
+    if not check:
+        return [on]
+    retry, wait_s = context.cell.retry, context.timing.piece_wait_s
+    none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.said))
+    patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
+    attempts = [_attempt(context, robot, pose, number) for number in range(retry.times + 1)]
+    return [
+        Piece(PIECE_THERE(), context, robot, patience_s, none),
+        selector(GRIP(), *attempts),
+        Carry(CARRY(), context, robot),
+    ]
+
+
+def let_go(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
+    """Effector off; what it held stays at the pose."""
+    off = effector(context, robot, on=False, then=partial(context.store, pose))
+    return [Carry(ARRIVED(), context, None), off] if check else [off]
+
+
+def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
+    space = context.cell.workspaces[robot]
+    steps = [*_opened(context, robot), *_rise(context, robot)]
+    if space.zones:
+        needed = partial(context.recovery_zones, robot)
+        steps.append(TakeZones(TAKE_ZONES(), context, robot, needed, recovers=True))
+    if space.hand.held_fact is not None:
+        steps += _part_back(context, robot, notes_origins=notes_origins)
+    steps.append(_move(context, robot, space.home))
+    return [*steps, LeaveZones(LEAVE_ZONES(), context, robot)] if space.zones else steps
+
+
+def _opened(context: Context, robot: str) -> list[Behaviour]:
+    """A tool that was told to let go and may still do it ends that first, where it was told to."""
+    if context.cell.workspaces[robot].tool is None:
+        return []
+    settled = Unless(LETS_GO_OF_NOTHING(), lambda: context.opening_tool(robot) is None)
+    return [selector(LET_GO_FIRST(), settled, effector(context, robot, on=False))]
+
+
+def _part_back(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
+    """Bring what the robot holds where it came from; where that is known only later, it is looked up then."""
+    hand = context.cell.workspaces[robot].hand.name
+    back = context.back.get(robot) if notes_origins else context.way_back(robot)
+    off = effector(context, robot, on=False)
+    if back is not None:
+        context.back[robot] = back
+        empty = Unless(HOLDS_NOTHING(), lambda: hand not in context.holding)
+        return [selector(PART_BACK(), empty, sequence(CARRY_BACK(), *_at(context, robot, back, off)))]
+
+    found: list[Pose | None] = [None]  # once it lets go, nobody knows any more where that came from
+
+    def origin() -> Pose | None:
+        return found[0]
+
+    def kept() -> bool:
+        found[0] = context.way_back(robot)
+        return hand not in context.holding or found[0] is None
+
+    def flat() -> bool:
+        pose = origin()
+        return pose is None or pose.above is None
+
+    def over() -> Behaviour:
+        return selector(OVER(), Unless(NO_APPROACH(), flat), _go_where(context, robot, origin, above=True))
+
+    keeps = Unless(HOLDS_NOTHING(), kept)
+    there = _go_where(context, robot, origin, above=False)
+    return [selector(PART_BACK(), keeps, sequence(CARRY_BACK(), over(), there, off, over()))]
+
+
+def _go_where(context: Context, robot: str, where: Callable[[], Pose | None], *, above: bool) -> Behaviour:
+    """Go to a pose that is known once the step begins."""
+    device = context.cell.workspaces[robot].robot
+
+    def make(id: str) -> Command:
+        pose = where() or context.cell.workspaces[robot].home
+        goal = pose.above if above and pose.above is not None else pose.q
+        return device.go(id=id, way=device.route(context.position(robot), goal))
+
+    title, doing = (GO_OVER, GOING_OVER) if above else (GO_BACK, GOING_BACK)
+    return Act(title(), context, make, doing())
+
+
+def _rise(context: Context, robot: str) -> list[Behaviour]:
+    """Where poses have an approach height, a robot that may stand low goes straight up first."""
+    space = context.cell.workspaces[robot]
+    if not any(pose.above for pose in space.poses):
+        return []
+
+    def make(id: str) -> Command:
+        return space.robot.go(id=id, way=(context.risen(robot),))
+
+    return [Act(RISE(), context, make, RISING())]
+
+
+def _settle(context: Context, robots: Sequence[str]) -> Behaviour:
+    def settled() -> bool:
+        ending = not all(entry.finishes for entry in context.open_commands())
+        return not ending and not any(context.obstacle(robot) for robot in robots)
+
+    def unsettled() -> Failure:
+        found = (context.obstacle(robot, was=True) for robot in robots)
+        unended = UNENDED(arm=tuple(robots) or context.cell.name)
+        ended = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=unended)
+        return next((failure for failure in found if failure), ended)
+
+    return Await(SETTLE(), context, settled, context.timing.stop_timeout_s + SETTLE_S, unsettled)
+
+
+def _take(context: Context, robot: str, zones: frozenset[str]) -> Behaviour:
+    return TakeZones(TAKE_ZONES(), context, robot, lambda: zones)
+
+
+def _at(context: Context, robot: str, pose: Pose, *work: Behaviour) -> list[Behaviour]:
+    """Go to a pose, do the work there and, where the pose has an approach height, come back up."""
+    go = _move(context, robot, pose)
+    if pose.above is None:
+        return [go, *work]
+    return [_move(context, robot, pose, above=True), go, *work, _move(context, robot, pose, above=True)]
+
+
+def _move(context: Context, robot: str, pose: Pose, *, above: bool = False) -> Behaviour:
+    goal = pose.q if pose.above is None or not above else pose.above
+    device = context.cell.reach[robot].robot
+
+    def make(id: str) -> Command:
+        return device.go(id=id, way=device.route(context.position(robot), goal))
+
+    title, doing = (MOVE_ABOVE, MOVING_ABOVE) if above else (MOVE, MOVING)
+    return Act(title(pose=pose.said), context, make, doing(pose=pose.said), guard=context.part_lost)
+
+
+def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None] | None = None) -> Behaviour:
+    hand = context.cell.workspaces[robot].hand
+    make = hand.grip if on else hand.let_go
+    title, doing = (EFFECTOR_ON, SWITCHING_ON) if on else (EFFECTOR_OFF, SWITCHING_OFF)
+    named = (title(), doing())
+    if not hand.has_effector:
+        title, doing = (HAND_ON, GRIPPING) if on else (HAND_OFF, LETTING_GO)
+        named = (title(device=hand.name), doing(device=hand.name))
+    act = Act(SWITCH(), context, make, named[1], then=then)
+    return sequence(named[0], act, Dwell(DWELL(), context, context.timing.dwell_s))
+
+
+def _attempt(context: Context, robot: str, pose: Pose, number: int) -> Behaviour:
+    """Effector on and the piece seen in it; a later attempt opens the effector first."""
+    retry = context.cell.retry
+    missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.said))
+    final = number == retry.times
+    seen = Piece(PIECE_GRIPPED(), context, robot, context.timing.piece_wait_s, missed, final=final)
+    again = _again(context, robot) if number else []
+    return sequence(TRY(number=number + 1), *again, effector(context, robot, on=True), seen)
+
+
+def _again(context: Context, robot: str) -> list[Behaviour]:
+    """What a further attempt begins with; there is none after another failure than a missed grip."""
+    only_missed = Unless(ONLY_MISSED(), lambda: context.failure is None)
+    back_off = Dwell(BACK_OFF(), context, context.cell.retry.backoff_s)
+    return [only_missed, effector(context, robot, on=False), back_off]

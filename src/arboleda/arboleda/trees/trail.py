@@ -1,0 +1,220 @@
+"""Where a running task stands, as it is kept for the next start: the state of its tree, and what its devices
+had said by then. It is put back into a tree that is made anew, of the same recipe and plant file.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.commands import Command, Motion, Position, Query, Switch, Work
+from arboleda.model.messages import Failure, Reason, Receipt, TaskAnswer
+from arboleda.model.sentence import Sentence, retold
+
+VERSION = 2
+STATUSES = {status.value[0]: status for status in Status}
+MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
+EFFECTS = ((Motion, MOTION), (Work, PROCESS), (Switch, SWITCH), (Query, QUERY), (Command, OTHER))
+REMEMBERS = composites.Sequence | composites.Selector | composites.Parallel
+
+
+class Keeps:
+    """A node of ours: what is kept of it for the next start, and how it goes on then."""
+
+    def kept(self) -> Mapping[str, Any] | None:
+        """What has to be known of it beside its status."""
+        return None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Take over what was kept."""
+
+    def begin_anew(self) -> None:
+        """Begin once more: times count from now."""
+
+
+class Known(NamedTuple):
+    """What was known of a device; `more` commands may have reached it that it had not told of, by the start
+    of the bridge that had the epoch `bridge`.
+    """
+
+    boot: int | None
+    receipt: Receipt | None
+    more: int
+    bridge: int | None = None
+
+    @classmethod
+    def of(cls, belief: Belief, under_way: Iterable[Entry]) -> Known:
+        """As it is now."""
+        more = sum((entry.accepted_at is None) + (entry.cancelled_at is not None) for entry in under_way)
+        return cls(boot=belief.boot_id, receipt=belief.receipt, more=more, bridge=belief.epoch)
+
+    def explains(self, now: Receipt | None) -> bool:
+        """Whether it can have got there by the commands that were under way, and no others."""
+        before = self.receipt
+        if now == before:
+            return True
+        if now is None:
+            return False
+        if before is not None and now.epoch == before.epoch:
+            return 0 <= now.accepted - before.accepted <= self.more
+        # it counted from 1; a later bridge had commands of a later start, whose steps a power cut has undone
+        return now.epoch == self.bridge and now.accepted <= self.more
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planned:
+    """Where robots stood when the tree was made, as its recipe may have planned by it."""
+
+    standing: Mapping[str, str]  # the zone-free poses of those with shared zones, by name
+    positions: Mapping[str, Position]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Begun:
+    """What stays the same while a task runs; `made` is what its tree was made of."""
+
+    made: str
+    planned: Planned
+
+    @cached_property
+    def text(self) -> str:
+        """It as it is kept, written once and not at every step."""
+        return ENCODE([VERSION, self.made, self.planned.standing, self.planned.positions])
+
+    @classmethod
+    def read(
+        cls, version: int, made: str, standing: Mapping[str, str], positions: Mapping[str, Any]
+    ) -> Begun:
+        """It as it was kept."""
+        if version != VERSION:
+            raise ValueError("it is of another version")
+        stood = {name: _position(each) for name, each in positions.items()}
+        return cls(made=made, planned=Planned(standing=standing, positions=stood))
+
+
+class Trail(NamedTuple):
+    """`statuses` has a letter for each node, the root last, `nodes` what else is kept of some, by number.
+    `used` are the devices that the task has told to do something.
+
+    `failure` is that of the work, where what runs `recovers` from it; `cancels`: it ends as cancelled.
+    """
+
+    begun: Begun
+    statuses: str
+    nodes: Mapping[int, Mapping[str, Any]]
+    carrier: str | None
+    back: Mapping[str, str]
+    origins: Sequence[str]
+    used: Sequence[str]
+    known: Mapping[str, Known]
+    grips: Mapping[str, str]
+    zones: Mapping[str, Sequence[str]]  # those that its machines held, by the word of the tree
+    failure: Failure | None = None
+    recovers: bool = False
+    cancels: bool = False
+    stranded: Sentence | None = None
+    answers: Sequence[TaskAnswer] = ()
+
+    def text(self) -> str:
+        """It as it is kept: how the task began, and where it stands."""
+        return f"[{self.begun.text},{ENCODE(self[1:])}]"
+
+    @classmethod
+    def read(cls, text: str) -> Trail:
+        """It as it was kept; ValueError for what this version did not write."""
+        try:
+            begun, now = json.loads(text)
+            said = dict(zip(cls._fields[1:], now, strict=True))
+            failure, stranded = said["failure"], said["stranded"]
+            said |= {
+                "nodes": {int(number): each for number, each in said["nodes"].items()},
+                "known": {name: _known(*each) for name, each in said["known"].items()},
+                "failure": None if failure is None else _read_failure(*failure),
+                "stranded": None if stranded is None else retold(*stranded),
+                "answers": [TaskAnswer(**each) for each in said["answers"]],
+            }
+            return cls(begun=Begun.read(*begun), **said)
+        except (AttributeError, KeyError, TypeError) as error:
+            raise ValueError(f"what was kept of a task is damaged ({error})") from error
+
+
+def statuses(nodes: Iterable[Behaviour]) -> str:
+    """A letter for each node."""
+    return "".join([node.status._value_[0] for node in nodes])  # `value` takes several times as long
+
+
+def kept_of(nodes: Iterable[tuple[int, Keeps]]) -> dict[int, Mapping[str, Any]]:
+    """What is kept of nodes beside their status, by number."""
+    return {number: state for number, node in nodes if (state := node.kept())}
+
+
+def put_back(nodes: Sequence[Behaviour], trail: Trail) -> list[Keeps]:
+    """Give the nodes of a new tree the state that is kept; those of ours that were under way.
+
+    ValueError where a node was under way of which nobody knows how it goes on.
+    """
+    if len(trail.statuses) != len(nodes):
+        raise ValueError("the tree has another number of nodes")
+    for node, letter in zip(nodes, trail.statuses, strict=True):
+        node.status = STATUSES[letter]
+    for number, state in trail.nodes.items():
+        node = nodes[number]
+        if isinstance(node, Keeps):
+            node.restore(state)
+    under_way = [node for node in nodes if node.status is Status.RUNNING]
+    for node in under_way:
+        if isinstance(node, REMEMBERS):
+            going = (child for child in node.children if child.status is Status.RUNNING)
+            node.current_child = next(going, node.children[0])
+        elif not isinstance(node, Keeps):
+            raise ValueError(f"nobody knows how a step of the kind {type(node).__name__} goes on")
+    return [node for node in under_way if isinstance(node, Keeps)]
+
+
+def command_kept(entry: Entry | None) -> dict[str, Any] | None:
+    """What is kept of the last command of a step; None where none may have left."""
+    if entry is None or not entry.left:
+        return None
+    command = entry.command
+    return {
+        "robot": command.robot,
+        "effect": next(name for kind, name in EFFECTS if isinstance(command, kind)),
+        "goal": entry.way[-1] if entry.way else None,
+        "sets": entry.sets,
+        "before": entry.before,
+        "number": entry.number,
+        "done": entry.state is State.DONE,
+    }
+
+
+def _plain(said: Failure | Sentence | TaskAnswer) -> Any:
+    if isinstance(said, TaskAnswer):
+        return vars(said)
+    if isinstance(said, Failure):
+        return [said.reason.value, *_plain(said.sentence)]
+    return [str(said), said.data()]
+
+
+ENCODE = json.JSONEncoder(separators=(",", ":"), default=_plain).encode
+
+
+def _read_failure(reason: str, english: str, data: Any) -> Failure:
+    return Failure(reason=Reason(reason), sentence=retold(english, data))
+
+
+def _known(boot: int | None, receipt: Sequence[int] | None, more: int, bridge: int | None = None) -> Known:
+    told = None if receipt is None else Receipt(*receipt)
+    return Known(boot=boot, receipt=told, more=more, bridge=bridge)
+
+
+def _position(said: Any) -> Position:
+    return tuple(said) if isinstance(said, list) else int(said)

@@ -1,0 +1,143 @@
+"""The tree that runs in a cell: built, ticked until it rests, dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.dispatch.ledger import State
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Failure, InternalError, Reason
+from arboleda.model.sentence import Phrase, Sentence
+
+from . import steps
+from .context import Context
+from .leaves import Act, title_of
+from .trail import Keeps
+
+BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
+IN_RECOVERY = Phrase("step.in_recovery", "recovery: {step}")
+TICK_BOUND = 20  # ticks in one step; more means a tree that never comes to rest
+
+
+class TreeRun:
+    """At most one tree; whatever is raised in it is a failure of it, and named in the context."""
+
+    def __init__(self, context: Context) -> None:
+        self.tree: Behaviour | None = None
+        self.nodes: list[Behaviour] = []  # of the tree, its root last
+        self.keepers: list[tuple[int, Keeps]] = []  # those of which more than the status is kept, by number
+        self._acts: list[Act] = []
+        self._recoveries: list[Behaviour] = []
+        self.rested: tuple[object, ...] = ()  # as what it came to rest last; another one, another state
+        self._context = context
+
+    @property
+    def recovering(self) -> bool:
+        """Whether the recovery is what runs."""
+        return any(node.status is Status.RUNNING for node in self._recoveries)
+
+    def begin(self, make: Callable[[], Behaviour]) -> Status:
+        """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""
+        try:
+            self.grow(make())
+        except Exception as error:  # noqa: BLE001 - a recipe may be user code: it ends its task, not the plant
+            return self._raised(error)
+        return self.tick()
+
+    def grow(self, tree: Behaviour) -> None:
+        """Take a tree, as it is."""
+        self.tree, self.nodes = tree, list(tree.iterate())
+        keepers = [(number, node) for number, node in enumerate(self.nodes) if isinstance(node, Keeps)]
+        self.keepers = [(number, node) for number, node in keepers if type(node).kept is not Keeps.kept]
+        self._acts = [node for node in self.nodes if isinstance(node, Act)]
+        self._recoveries = [node for node in self.nodes if node.name == steps.RECOVERY]
+
+    def tick(self) -> Status:
+        """Tick until neither a status nor a command changes any more; the status of the tree then."""
+        try:
+            return self._tick_to_rest()
+        except Exception as error:  # noqa: BLE001 - a leaf may be user code: it ends its task, not the plant
+            return self._raised(error)
+
+    def drop(self) -> None:
+        """End what runs; whatever moves for it is halted."""
+        tree, self.tree = self.tree, None
+        self.nodes, self.keepers, self._acts, self._recoveries = [], [], [], []
+        try:
+            if tree is not None:
+                tree.stop(Status.INVALID)
+        except Exception as error:  # noqa: BLE001 - a leaf may be user code: whatever moves is halted all the same
+            self._tell(error)
+        self._context.cancel_all()  # py_trees does not terminate a leaf that raised
+
+    @property
+    def acts(self) -> list[Act]:
+        """The commands that are under way."""
+        return [act for act in self._acts if act.status is Status.RUNNING]
+
+    def interrupted(self) -> list[Act]:
+        """The steps that were under way and have ended without being done."""
+        acts = [node for node in self._running() if isinstance(node, Act)]
+        return [act for act in acts if act.entry and not act.entry.open and act.entry.state is not State.DONE]
+
+    def _running(self) -> list[Behaviour]:
+        nodes = self.tree.iterate() if self.tree else ()
+        return [node for node in nodes if node.status is Status.RUNNING]
+
+    def _tick_to_rest(self) -> Status:
+        tree = self.tree
+        assert tree is not None
+        before = self._signature()
+        for _ in range(TICK_BOUND):
+            tree.tick_once()
+            if tree.status is not Status.RUNNING:
+                return tree.status
+            before, last = self._signature(), before
+            if before == last:
+                self.rested = before
+                return tree.status
+        raise ArboledaError(f"the tree did not come to rest in {TICK_BOUND} ticks")
+
+    def _signature(self) -> tuple[object, ...]:
+        return (self._context.sent, [node.status for node in self.nodes])
+
+    def _raised(self, error: Exception) -> Status:
+        cell, kind = self._context.cell.name, type(error).__name__
+        sentence = BROKE_IN_TREE(cell=cell, kind=kind, error=str(error))
+        self._context.fail(Failure(reason=Reason.INTERNAL, sentence=sentence))
+        self._tell(error)
+        return Status.FAILURE
+
+    def _tell(self, error: Exception) -> None:
+        self._context.notify(InternalError(cell=self._context.cell.name, error=error))
+
+
+def path_of(node: Behaviour) -> str:
+    """The path of a node in its tree, as tasks and screens name it: child numbers, e.g. `0.2.1`."""
+    numbers = []
+    while node.parent is not None:
+        numbers.append(node.parent.children.index(node))
+        node = node.parent
+    return ".".join(str(number) for number in reversed(numbers)) or "root"
+
+
+def step_of(tree: Behaviour | None) -> Sentence | None:
+    """The name of the step that runs, not of its parts nor of what frames it; a recovery's steps say so."""
+    running = [node for node in tree.iterate() if node.status is Status.RUNNING] if tree else []
+    if not running:
+        return None
+    step = running[0]
+    while step.parent is not None and not _frames(step.parent):
+        step = step.parent
+    phase = step.parent
+    while phase is not None and phase.name not in steps.PHASES:
+        phase = phase.parent
+    title = title_of(step)
+    return IN_RECOVERY(step=title) if phase is not None and phase.name == steps.RECOVERY else title
+
+
+def _frames(node: Behaviour) -> bool:
+    return node.name in steps.PHASES or steps.is_frame(node)

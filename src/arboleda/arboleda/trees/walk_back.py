@@ -1,0 +1,198 @@
+"""What became of the step at which a plant stopped, judged by what its devices say now.
+
+Only a board that numbers commands can prove it: of the same boot, it has taken none that this plant does not
+know of, so whatever was done before is as it was left. Its last command is done, was never taken, or was a
+move that stopped on its way, which is given anew as after a hold. Anything else is for a person to judge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from arboleda.dispatch.belief import Belief
+from arboleda.model.grips import Grip
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import Phrase, Sentence
+
+from .context import Context
+from .leaves import Act
+from .trail import MOTION, OTHER, QUERY, SWITCH, Keeps, Trail
+
+STILL_MOVING = Phrase("walk.still_moving", "{robot} is still moving")
+NOT_SAID = Phrase("walk.not_said", "{robot} has not said yet what became of its last command")
+BOOTED = Phrase("walk.booted", "{robot} has booted since then, and may stand elsewhere")
+MOVED = Phrase("walk.moved", "{robot} no longer stands where the task began")
+NO_NUMBERS = Phrase("walk.no_numbers", "{robot} does not number its commands, and proves nothing; look at it")
+UNPROVEN = Phrase(
+    "walk.unproven", "{robot} proves neither that it has done this nor that it has not; look at it"
+)
+MORE = Phrase("walk.more", "{robot} has taken commands of which this plant knows nothing")
+LOST = Phrase("walk.lost", "{robot} held a part then, and holds none now")
+HOLDS = Phrase("walk.holds", "{robot} held nothing then, and says that it holds something")
+NO_PART = Phrase("part.gone", "{arm} has no part to go on with")
+NOBODY_KNOWS = Phrase("walk.nobody_knows", "nobody knows how far it came")
+
+
+class Fate(Enum):
+    """What became of a command."""
+
+    DONE = "done"
+    UNTAKEN = "untaken"
+    CUT_SHORT = "cut_short"
+    UNPROVEN = "unproven"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What the devices say: what is still waited for, or why a person has to judge; `stranded` where nothing
+    can go on from there. `fates` are those of the steps that were under way, as far as they are known.
+    """
+
+    waits: Sentence | None = None
+    failure: Failure | None = None
+    stranded: Sentence | None = None
+    fates: Mapping[Keeps, Fate]
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """Why a device keeps a task from going on by itself."""
+
+    reason: Reason
+    sentence: Sentence
+    stranded: Sentence | None = None
+
+
+class WalkBack:
+    """A task between its trail and the word of a person; `begun` are the steps that were under way.
+
+    `due`: when it has to be judged anew although no device says more, s of the plant's time.
+    """
+
+    def __init__(self, trail: Trail, begun: Sequence[Keeps]) -> None:
+        self.trail = trail
+        self.begun = begun
+        self.due: float | None = None
+        self._heard_since: float | None = None  # since when all of its devices are heard and stand still
+
+    def judge(self, context: Context) -> Finding:
+        """By what the devices of the task say now."""
+        names = [name for name in self.trail.known if context.has(name)]
+        beliefs = {name: context.belief(name) for name in names}
+        troubles: dict[str, Trouble] = {}
+        self.due = None
+        for name, belief in beliefs.items():
+            obstacle = context.obstacle(name)
+            if obstacle is not None or belief.moves:
+                waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
+                self._heard_since = None
+                return Finding(waits=waits, fates={})
+            if (trouble := self._changed(belief)) is not None:
+                troubles[name] = trouble
+        if self._heard_since is None:
+            self._heard_since = context.plant_now
+        settled_at = self._heard_since + context.timing.effector_timeout_s
+        early = context.plant_now < settled_at
+        fates: dict[Keeps, Fate] = {}
+        for step in self.begun:
+            if isinstance(step, Act) and step.last is not None:
+                name = str(step.last["robot"])
+                fates[step] = Fate.UNPROVEN if name in troubles else fate(step.last, context.belief(name))
+                if fates[step] is Fate.UNPROVEN and early and name not in troubles:
+                    self.due = settled_at
+                    return Finding(waits=NOT_SAID(robot=name), fates={})
+                if fates[step] is Fate.UNPROVEN:
+                    troubles.setdefault(name, Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name)))
+        worst = sorted(troubles.values(), key=lambda each: each.stranded is None)
+        if not worst:
+            return Finding(fates=fates)
+        failure = Failure(reason=worst[0].reason, sentence=worst[0].sentence)
+        return Finding(failure=failure, stranded=worst[0].stranded, fates=fates)
+
+    def go_on(self, finding: Finding) -> None:
+        """Go on after what is done; all else that was under way begins anew."""
+        for step in self.begun:
+            known = finding.fates.get(step)
+            if isinstance(step, Act):
+                step.proven = known is Fate.DONE
+                step.left = step.left or known not in (None, Fate.UNTAKEN)
+            if known is not Fate.DONE:
+                step.begin_anew()
+
+    def _changed(self, belief: Belief) -> Trouble | None:
+        """Why what a device had done by then may be so no more."""
+        name = belief.robot.name
+        grip, holds = self.trail.grips.get(name), belief.held_in(belief)
+        if grip == Grip.ON and holds is False:
+            return Trouble(Reason.PART_LOST, LOST(robot=name), NO_PART(arm=name))
+        if name not in self.trail.used:
+            return self._moved(belief) or self._told_more(belief)
+        if not self._is_numbered(belief):
+            return Trouble(Reason.INTERRUPTED, NO_NUMBERS(robot=name))
+        if (more := self._told_more(belief)) is not None:
+            return more
+        if grip is not None and holds is None:
+            return Trouble(Reason.INTERRUPTED, UNPROVEN(robot=name))
+        if grip == Grip.OFF and holds:
+            return Trouble(Reason.INTERRUPTED, HOLDS(robot=name))
+        return None
+
+    def _is_numbered(self, belief: Belief) -> bool:
+        """Whether a device numbered its commands when this was kept, and does so now."""
+        return belief.numbers_commands and self.trail.known[belief.robot.name].boot is not None
+
+    def _told_more(self, belief: Belief) -> Trouble | None:
+        """Why one may have been told something of which this plant knows nothing, by its numbers.
+
+        Of one that was not used, too: after a power cut the steps that used it may not have been kept.
+        """
+        name, known = belief.robot.name, self.trail.known[belief.robot.name]
+        if not self._is_numbered(belief):
+            return None
+        if belief.boot_id != known.boot:
+            belief.displaced = belief.displaced or not belief.robot.says_homed
+            return Trouble(Reason.REBOOTED, BOOTED(robot=name))
+        if not known.explains(belief.receipt):
+            return Trouble(Reason.INTERRUPTED, MORE(robot=name), NOBODY_KNOWS())
+        return None
+
+    def _moved(self, belief: Belief) -> Trouble | None:
+        """Why one that the task has not used yet may not be where the task was planned from."""
+        begun, here = self.trail.begun.planned.positions.get(belief.robot.name), belief.known_position
+        if begun is None:
+            return None
+        if here is not None and belief.robot.stands_at(here, begun):
+            return None
+        return Trouble(Reason.INTERRUPTED, MOVED(robot=belief.robot.name), NOBODY_KNOWS())
+
+
+def fate(last: Mapping[str, Any], belief: Belief) -> Fate:
+    """What became of a command to a robot that stands still, and has taken none but those that are known."""
+    if last["effect"] == QUERY:
+        return Fate.CUT_SHORT  # to ask once more changes nothing
+    if last["done"]:
+        return Fate.DONE
+    now, before = belief.receipt, last["before"]
+    as_told = all(belief.fact(name) == value for name, value in last["sets"])
+    if last["effect"] == SWITCH and last["sets"] and as_told:
+        return Fate.DONE
+    if (None if now is None else now[:2]) == (None if before is None else tuple(before[:2])):
+        return Fate.UNTAKEN
+    if now is None or last["effect"] == OTHER:
+        return Fate.UNPROVEN
+    number = None if last["number"] is None else tuple(last["number"])
+    ended = now.done is not None and (now.epoch, now.done) == (number or (now.epoch, now.accepted))
+    if last["effect"] == MOTION and (last["goal"] is not None or last["sets"]):
+        return Fate.DONE if ended and as_told and _at(last["goal"], belief) else Fate.CUT_SHORT
+    return Fate.DONE if ended and as_told and number is not None else Fate.UNPROVEN
+
+
+def _at(goal: Any, belief: Belief) -> bool:
+    """Whether a robot is where its command led; of one that led nowhere its facts say that."""
+    if goal is None:
+        return True
+    place = tuple(goal) if isinstance(goal, list) else goal
+    return belief.known_position is not None and belief.robot.stands_at(belief.known_position, place)

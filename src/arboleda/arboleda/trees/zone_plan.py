@@ -1,0 +1,73 @@
+"""Which shared zones a way of a robot needs, and from where to where it must hold them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from arboleda.model.commands import Position
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import Pose, Workspace
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leg:
+    """From one zone-free pose of a way to the next, by index: `zones` are taken before the first move.
+
+    They are kept until the work at the end pose is done, for recovery may start there.
+    """
+
+    start: int
+    end: int
+    zones: frozenset[str]
+
+
+def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
+    """The legs of a way from a zone-free pose to a zone-free pose, in order; ConfigError for another way.
+
+    A recovery would bring the part to `back`, where there is one.
+    """
+    for pose in (way[0], way[-1]):
+        if pose.zones:
+            raise ConfigError((f"{space.robot.name}: {lying(pose)}, so no way may start or end there",))
+    free = [index for index, pose in enumerate(way) if not pose.zones]
+    left = max((index for index, pose in enumerate(way) if pose.name != space.home.name), default=0)
+    return [
+        Leg(start=start, end=end, zones=_zones(space, way[start : end + 1], back if start < left else None))
+        for start, end in pairwise(free)
+    ]
+
+
+def entered(space: Workspace, start: Pose | None, goal: Position) -> frozenset[str]:
+    """The zones that one motion gets into: where its goal lies and, from a known pose, those crossed."""
+    ends = [pose for pose in space.poses if goal in (pose.q, pose.above)]
+    inside = frozenset[str]().union(*(pose.zones for pose in ends))
+    return inside if start is None else inside | _crossed(space, [(start, end) for end in ends])
+
+
+def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:
+    """What the way from `start` to `back` and home needs; None: from wherever the robot may be."""
+    way = (back, space.home) if back else (space.home,)
+    starts = space.poses if start is None else (start,)
+    moves = [(pose, goal) for pose in starts for goal in way]
+    return _zones(space, way, back) | _crossed(space, moves)
+
+
+def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozenset[str]:
+    """Zones of the poses, of the moves between them and of the moves of a recovery from any of them."""
+    recovery = (back, space.home) if back else (space.home,)
+    moves = [*pairwise(poses), *combinations(recovery, 2)]
+    moves += [(pose, goal) for pose in poses for goal in recovery]
+    inside = (pose.zones for pose in (*poses, *recovery))
+    return _crossed(space, moves).union(*inside)
+
+
+def _crossed(space: Workspace, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[str]:
+    ends = [{a.name, b.name} for a, b in moves] if space.crossings else []
+    return frozenset[str]().union(*(each.zones for each in space.crossings if {each.a, each.b} in ends))
+
+
+def lying(pose: Pose) -> str:
+    """Which zones a pose lies in, for a sentence."""
+    return f"{pose.name} lies in zone {', '.join(sorted(pose.zones))}"

@@ -1,0 +1,49 @@
+"""A chromium that shows nothing on a screen, and makes no more of a window than its page."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+# What each window makes beforehand though nobody sees it: the suggestions below its address bar, as pages of
+# their own, and a process for the page that may come next. Together they are more work than the page itself.
+IN_VAIN = ("WebUIOmniboxPopup", "WebUIOmniboxAimPopup", "SpareRendererForSitePerProcess")
+# Of two such lists chromium takes the last, so this one has to hold what Playwright switches off, too.
+BY_PLAYWRIGHT = (
+    "AvoidUnnecessaryBeforeUnloadCheckSync",
+    "DestroyProfileOnBrowserClose",
+    "HttpsUpgrades",
+    "HttpsFirstBalancedModeAutoEnable",
+    "LensOverlay",
+    "MediaRouter",
+    "PaintHolding",
+    "ThirdPartyStoragePartitioning",
+    "AvoidCorsURLLoaderRestartOnRedirect",
+    "OptimizationHints",
+    "NetworkTimeServiceQuerying",
+    "AimEnabled",
+    "PreconnectToSearch",
+)
+# In software, each picture of the twin takes a core a twentieth of a second: no more than a few in a second.
+FEW_FRAMES = """
+window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 150);
+window.cancelAnimationFrame = clearTimeout;
+"""
+
+
+@contextmanager
+def browsers() -> Iterator[Any]:
+    """`launch(*options)`: a browser; all of them are closed at the end."""
+    from playwright.sync_api import sync_playwright
+
+    without = f"--disable-features={','.join(BY_PLAYWRIGHT + IN_VAIN)}"
+    with sync_playwright() as playwright:
+
+        def launch(*options: str) -> Any:
+            return playwright.chromium.launch(
+                executable_path=shutil.which("chromium"), args=["--no-sandbox", without, *options]
+            )
+
+        yield launch

@@ -1,0 +1,187 @@
+"""Alarms as they arrive: over HTTP at a real server, over MQTT at real brokers, from a plant that runs."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters import webhook
+from arboleda.adapters.webhook import Hook, NotTaken, Refused, Webhook
+from arboleda.app.alarm_options import AlarmOptions
+from arboleda.app.build import App, Options, build
+from arboleda.app.parts.alarms import OnTopic
+from arboleda.app.parts.broker import OtherBroker
+from arboleda.model.messages import Verb
+from arboleda.testing import shipped
+
+from .conftest import PATIENCE_S, Inbox
+
+ALARM = {"id": "lab-1-1", "sentence": "sis_a is held", "dropped": 0}
+
+
+class Hooked:
+    """An HTTP server that keeps what is posted and answers what it is told to."""
+
+    def __init__(self) -> None:
+        self.posts: Inbox = Inbox()
+        self.answers: list[int] = []
+        self.headers: dict[str, str] = {}
+        self.gate = threading.Event()
+        self.gate.set()
+        hooked = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                posted = self.rfile.read(int(self.headers["Content-Length"]))
+                hooked.gate.wait(PATIENCE_S)
+                hooked.headers = dict(self.headers) | {"path": self.path}
+                self.send_response(hooked.answers.pop(0) if hooked.answers else 204)
+                self.end_headers()
+                hooked.posts.put(json.loads(posted))
+
+            def log_message(self, *_: object) -> None: ...
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.server.daemon_threads = True
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def hook(self, **options: Any) -> Hook:
+        return Hook(url=f"http://127.0.0.1:{self.server.server_port}/hooks/SECRET", **options)
+
+    def close(self) -> None:
+        self.gate.set()
+        self.server.shutdown()
+        self.server.server_close()
+
+
+@pytest.fixture
+def hooked() -> Iterator[Hooked]:
+    made = Hooked()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def post(hooked: Hooked) -> Iterator[Callable[[], None]]:
+    posting = Webhook(hooked.hook(token="T0KEN"), timeout_s=0.5)
+    yield lambda: posting.post(ALARM)
+    posting.close()
+
+
+def test_an_alarm_is_posted_as_json_with_its_token(hooked: Hooked, post: Callable[[], None]) -> None:
+    post()
+    assert list(hooked.posts) == [ALARM]
+    assert hooked.headers["path"] == "/hooks/SECRET" and hooked.headers["Authorization"] == "Bearer T0KEN"
+    assert hooked.headers["Content-Type"] == "application/json"
+
+
+@pytest.mark.parametrize(
+    ("status", "error", "why"),
+    [
+        (422, Refused, "it answers 422"),
+        (500, NotTaken, "it answers 500"),
+        (403, NotTaken, f"it answers 403: see ${webhook.TOKEN}"),
+        (301, NotTaken, f"it answers 301: name the address that it leads to in ${webhook.URL}"),
+    ],
+)
+def test_an_answer_that_is_no_yes_says_what_to_do(
+    hooked: Hooked, post: Callable[[], None], status: int, error: type[Exception], why: str
+) -> None:
+    hooked.answers = [status]
+    with pytest.raises(error) as said:
+        post()
+    assert str(said.value) == why
+
+
+def test_who_does_not_answer_or_is_not_there_is_told_of_in_words(
+    hooked: Hooked, post: Callable[[], None]
+) -> None:
+    hooked.gate.clear()
+    with pytest.raises(NotTaken, match=r"^no answer within 0.5 s$"):
+        post()
+    hooked.close()
+    with pytest.raises(NotTaken) as said:
+        post()
+    assert "refused" in str(said.value) and "SECRET" not in str(said.value)
+
+
+def test_over_mqtt_an_alarm_is_taken_once_the_broker_has_it(broker: Any, peer: Callable[..., Any]) -> None:
+    reader = peer("reader", broker.address, subscriptions=["arboleda/alarms"]).up()
+    topic = OnTopic(shipped(), OtherBroker(broker.address, None), "arboleda/alarms")
+    topic.post(ALARM)
+    reader.inbox.wait(lambda inbox: inbox.payloads)
+    assert [json.loads(each) for each in reader.inbox.payloads] == [ALARM]
+    topic.close()
+
+
+def test_over_mqtt_an_alarm_waits_for_the_broker_and_comes_again_after_it(
+    stopped_broker: Any, peer: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
+    topic = OnTopic(shipped(), OtherBroker(stopped_broker.address, None), "arboleda/alarms")
+    with pytest.raises(NotTaken, match="is not connected"):
+        topic.post(ALARM)
+    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", PATIENCE_S)
+    stopped_broker.start()
+    topic.post(ALARM)
+    stopped_broker.stop()
+    monkeypatch.setattr("arboleda.app.parts.alarms.TAKES_S", 0.3)
+    with pytest.raises(NotTaken):
+        topic.post(ALARM)
+    topic.close()
+
+
+@pytest.fixture
+def plant(hooked: Hooked, tmp_path: Path) -> Iterator[App]:
+    """The shipped plant on virtual boards, with its API, whose alarms go to both."""
+    alarms = AlarmOptions(hook=hooked.hook(), topic="arboleda/alarms")
+    options = Options(state_dir=tmp_path / "state", page=False, rate=10.0, alarms=alarms)
+    app = build(shipped("sis_a"), {"broker", "devices", "bridge", "orchestrator", "web"}, options)
+    app.start()
+    yield app
+    app.stop()
+
+
+def at(app: App, state: str) -> None:
+    """Wait until its cell is in this state."""
+    end = time.monotonic() + 4 * PATIENCE_S
+    while (cell := app.snapshot()["cells"][0])["state"] != state or cell["not_ready"]:
+        assert time.monotonic() < end, (cell["state"], cell["not_ready"])
+        time.sleep(0.05)
+
+
+def test_a_stop_of_a_plant_that_runs_arrives_by_both_ways(
+    plant: App, hooked: Hooked, peer: Callable[..., Any]
+) -> None:
+    address = plant._broker.address
+    reader = peer("reader", address, subscriptions=["arboleda/alarms"]).up()
+    at(plant, "idle")
+    plant.submit("sis_a 0B 7 #t1").result(PATIENCE_S)
+    at(plant, "execute")
+    plant.operate(Verb.STOP).result(PATIENCE_S)
+    hooked.posts.wait(lambda posts: len(posts) == 2)
+    by_kind = {post["kind"]: post for post in hooked.posts}
+    assert by_kind.keys() == {"task_failed", "cell_held"}
+    failed, held = by_kind["task_failed"], by_kind["cell_held"]
+    assert failed["task"] == {"id": "t1", "text": "sis_a 0B 7"} and failed["reason"] == "stopped"
+    assert held["state"] == "aborted" and held["plant"] == plant.model.name and held["advice"]
+    reader.inbox.wait(lambda inbox: len(inbox.payloads) == 2)
+    told = [json.loads(each) for each in reader.inbox.payloads]
+    assert {each["id"] for each in told} == {failed["id"], held["id"]}
+
+
+def test_a_receiver_that_hangs_costs_the_plant_nothing(plant: App, hooked: Hooked) -> None:
+    hooked.gate.clear()
+    at(plant, "idle")
+    plant.operate(Verb.STOP).result(PATIENCE_S)
+    began = time.monotonic()
+    plant.operate(Verb.CLEAR).result(PATIENCE_S)
+    plant.operate(Verb.STOP).result(PATIENCE_S)
+    assert time.monotonic() - began < webhook.TIMEOUT_S / 2

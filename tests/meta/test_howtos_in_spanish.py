@@ -1,0 +1,53 @@
+"""A how-to page that is there in Spanish, too, says there what it says in English."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "docs/how-to"
+PAGES = sorted(path.name.removesuffix(".es.md") for path in FOLDER.glob("*.es.md"))
+BOXES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+WORDS = re.compile(r"`([^`\n]+)`")
+
+
+def both(page: str) -> tuple[str, str]:
+    english, spanish = ((FOLDER / f"{page}{ending}").read_text("utf-8") for ending in (".md", ".es.md"))
+    return english, spanish
+
+
+def shape(text: str) -> list[str]:
+    """Its headings, rows of tables and points of lists, without their words."""
+    return re.findall(r"^(#+ |\||- |\d\. )", BOXES.sub("", text), re.MULTILINE)
+
+
+def links(text: str) -> list[str]:
+    """Where it leads, whatever the language."""
+    return [target.replace(".es.md", ".md") for target in re.findall(r"\]\((\S+?)\)", text)]
+
+
+def test_drivers_and_boards_of_ones_own_are_there() -> None:
+    assert {"make-a-board", "write-a-driver"} <= set(PAGES)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_both_languages_have_the_same_parts_code_and_links(page: str) -> None:
+    english, spanish = both(page)
+    assert shape(english) and shape(spanish) == shape(english)
+    assert BOXES.findall(spanish) == BOXES.findall(english)
+    assert links(spanish) == links(english)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_both_languages_name_the_same_keys_and_files(page: str) -> None:
+    english, spanish = (set(WORDS.findall(BOXES.sub("", text))) for text in both(page))
+    assert {word for word in english ^ spanish if not word.startswith("NotSent(")} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_each_leads_to_the_other_and_nowhere_else_that_is_not_there(page: str) -> None:
+    english, spanish = both(page)
+    assert f"]({page}.es.md)" in english and f"]({page}.md)" in spanish
+    assert [to for to in links(spanish) if not (FOLDER / to.partition("#")[0]).exists()] == []

@@ -1,0 +1,117 @@
+"""The engine, the simulator and the screens ask what a device can do, never which kind of device it is."""
+
+import ast
+import inspect
+import pkgutil
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import arboleda
+import arboleda.kinds
+import arboleda.recipes
+from arboleda.app.plant_file.registry import COME_WITH_IT
+from arboleda.model.plant_model import Cell, Robot
+from arboleda.recipes.storage_cell import StorageCell
+
+ROOT = Path(arboleda.__file__).parent
+ENGINE = ("model", "dispatch", "trees", "core")
+PACKAGES = (*ENGINE, "wire", "views", "adapters", "sim", "simulator", "dashboard", "app", "testing")
+NAMED_AS_ROLES = {
+    "app/plant_file/robot_models.py",  # of the files of models that come with it
+    "app/plant_file/robots.py",
+    "app/plant_file/shapes.py",
+    "app/plant_file/yaml_model.py",
+    "dashboard/twin/parts.py",  # the twin of a cell of storage
+    "dashboard/twin/scene.py",
+    "dashboard/twin/twin.py",
+    "simulator/invariants/rows.py",  # what only storage knows
+    "simulator/invariants/screens.py",
+    "simulator/plants/cells.py",  # plant files of cells of storage
+    "simulator/plants/draw.py",
+    "simulator/plants/smaller.py",
+    "simulator/plants/timing.py",
+}
+"""Where the two robots of a cell of storage are called by their roles, or the model of one by its name."""
+REGISTRY = "app/plant_file/registry.py"  # where kinds that come with it get their names
+FACT = "effector"  # also what an arm says of itself
+
+
+def _concrete() -> set[str]:
+    """The names of every kind of robot and of cell that comes with it."""
+    modules = [
+        import_module(info.name)
+        for package in (arboleda.kinds, arboleda.recipes)
+        for info in pkgutil.iter_modules(package.__path__, f"{package.__name__}.")
+    ]
+    classes = [each for module in modules for each in vars(module).values() if inspect.isclass(each)]
+    return {each.__name__ for each in classes if issubclass(each, Robot | Cell)} - {"Robot", "Cell"}
+
+
+def _questions(code: str, names: set[str]) -> Iterator[str]:
+    """Each place where a value is compared with one of these classes."""
+    for node in ast.walk(ast.parse(code)):
+        asks = isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("isinstance", "issubclass")
+        compares = isinstance(node, ast.Compare) and "type(" in ast.unparse(node)
+        if (asks or compares) and any(getattr(part, "id", "") in names for part in ast.walk(node)):
+            yield f"line {node.lineno}: {ast.unparse(node)}"
+
+
+def test_the_kinds_are_found():
+    assert {"Arm", "Mobile", "Person", "Device", "StorageCell"} <= _concrete()
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "isinstance(robot, Arm)",
+        "isinstance(a.b, (Arm, Mobile))",
+        "type(robot) is Arm",
+        "issubclass(x, Arm | Mobile)",
+    ],
+)
+def test_a_question_is_found(code):
+    assert list(_questions(code, {"Arm", "Mobile"}))
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_no_module_asks_which_kind_a_device_is(package):
+    found = [
+        f"{path.relative_to(ROOT)} {each}"
+        for path in sorted((ROOT / package).rglob("*.py"))
+        for each in _questions(path.read_text(), _concrete())
+    ]
+    assert not found, (
+        f"ask for what it can do (`has_joints`, `on_grid`, `verb_names`, a table by class): {found}"
+    )
+
+
+def _names_of_kinds(package: str) -> dict[str, set[str]]:
+    """By its file, the names of kinds that the code of a package has as a text of their own."""
+    names = {
+        str(path.relative_to(ROOT)): {
+            node.value
+            for node in ast.walk(ast.parse(path.read_text()))
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        }
+        & (COME_WITH_IT.keys() - {FACT})
+        for path in sorted((ROOT / package).rglob("*.py"))
+    }
+    return {file: found for file, found in names.items() if found and file != REGISTRY}
+
+
+@pytest.mark.parametrize("package", [*ENGINE, "app", "dashboard", "simulator"])
+def test_no_module_names_a_kind(package: str) -> None:
+    roles = set(StorageCell.keyed_roles)
+    found = {
+        file: names - roles if file in NAMED_AS_ROLES else names
+        for file, names in _names_of_kinds(package).items()
+    }
+    assert not any(found.values()), f"ask for what it can do: {found}"
+
+
+def test_every_module_that_calls_robots_by_their_roles_does_so() -> None:
+    found = {file for package in ("app", "dashboard", "simulator") for file in _names_of_kinds(package)}
+    assert found == NAMED_AS_ROLES

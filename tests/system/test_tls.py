@@ -1,0 +1,111 @@
+"""A plant that speaks TLS everywhere, with the certificates that `arboleda certs` made for it."""
+
+from __future__ import annotations
+
+import ssl
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from .conftest import PATIENCE_S, paths
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("cryptography")]
+Typed = Callable[..., tuple[int, str]]
+
+
+@pytest.fixture
+def certs(start: Callable[..., Any], tmp_path: Path) -> Path:
+    """The folder that the command wrote."""
+    folder = tmp_path / "certs"
+    main = "from arboleda.app.cli import main; main()"
+    made = start(sys.executable, "-c", main, "certs", str(folder), env={"PYTHONPATH": paths()})
+    assert made.wait() == 0, made.output
+    return folder
+
+
+@pytest.fixture
+def shown(certs: Path) -> tuple[str, ...]:
+    return "--tls-cert", str(certs / "plant.crt"), "--tls-key", str(certs / "plant.key")
+
+
+def test_page_boards_and_commands_speak_tls(
+    arboleda: Callable[..., Any],
+    typed: Typed,
+    certs: Path,
+    shown: tuple[str, ...],
+    free_port: int,
+    browser: Any,
+    require: Callable[[str], str],
+    tmp_path: Path,
+) -> None:
+    users = tmp_path / "users.txt"
+    users.write_text("ra_9:secret\n")
+    broker = (
+        "--broker-host",
+        "127.0.0.1",
+        "--broker-users",
+        str(users),
+        "--broker-tls",
+        "--boards",
+        "virtual",
+    )
+    web = ("--host", "0.0.0.0", "--port", str(free_port))
+    up = arboleda("up", "--no-ros", "--rate", "10", *broker, *web, *shown)
+    up.wait_for(f"Page: https://127.0.0.1:{free_port}")
+    up.wait_for("MQTT broker: mqtts://127.0.0.1:8883")
+    assert "travels in clear" not in up.output
+    assert typed("submit", "--wait", "sis_a 0B 7")[0] == 0
+    token = typed("token", "operator")[1]
+    believing = ssl.create_default_context(cafile=certs / "ca.crt")
+    asks = {"verify": believing, "trust_env": False, "headers": {"authorization": f"Bearer {token}"}}
+    assert (
+        httpx.get(f"https://localhost:{free_port}/api/plant", timeout=PATIENCE_S, **asks).status_code == 200
+    )
+    page = browser.new_page(ignore_https_errors=True)
+    try:
+        page.goto(f"https://127.0.0.1:{free_port}/?lang=en")
+        page.fill("input[name=token]", token)
+        page.click("button")
+        page.wait_for_selector("text=sis_a", timeout=1000 * PATIENCE_S)
+        cookie = next(each for each in page.context.cookies() if each["name"].startswith("arboleda_"))
+        assert cookie["secure"]
+        assert typed("submit", "sis_b 0B 7 #over_tls")[0] == 0
+        row = '[data-rows=tasks] [data-row="over_tls"]'  # the websocket brings it
+        page.wait_for_selector(row, state="attached", timeout=1000 * PATIENCE_S)
+    finally:
+        page.close()
+    assert up.interrupt() == 0, up.output
+    assert "Traceback" not in up.output
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--tls-key", "x"), "--tls-key needs a certificate: --tls-cert FILE"),
+        (("--broker-tls",), "--broker-tls needs a certificate: --tls-cert FILE"),
+        (("--broker-ca", "x"), "--broker-ca is for boards that speak TLS: it needs --broker-tls"),
+        (("--broker-tls", "--shown"), "--broker-tls is for boards of other machines: it needs --broker-host"),
+        (("--tls-cert", "none.crt"), "none.crt and its key in it are of no use (No such file or directory)"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(
+    typed: Typed, shown: tuple[str, ...], words: tuple[str, ...], said: str
+) -> None:
+    given = [each for word in words for each in (shown if word == "--shown" else (word,))]
+    status, output = typed("run", "sis_a 0B 7", "--no-ros", *given)
+    plain = " ".join(output.replace("│", " ").split())
+    assert status in (1, 2) and said in plain
+
+
+def test_the_firmwares_boards_are_refused_where_the_own_broker_speaks_tls(
+    typed: Typed, shown: tuple[str, ...], tmp_path: Path
+) -> None:
+    users = tmp_path / "users.txt"
+    users.write_text("ra_9:secret\n")
+    broker = ("--broker-host", "127.0.0.1", "--broker-users", str(users), "--broker-tls")
+    status, said = typed("run", "sis_a 0B 7", "--no-ros", "--boards", "linux", *broker, *shown)
+    assert status == 1 and "the firmware's boards speak no TLS" in said

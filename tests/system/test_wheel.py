@@ -1,0 +1,94 @@
+"""The wheel is whole: what a checkout has of the packages is in it, and it works outside a checkout."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+from packaging.metadata import Metadata
+
+from arboleda import __version__
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("src/arboleda/arboleda", "src/arboleda_ros/arboleda_ros", "bench/arboleda_bench")
+DESCRIPTION = "src/arboleda_description/arboleda_description"
+RUN = "from arboleda.app.command import main; main()"
+Command = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Built from a clone, as a release is: nothing that lies about here can slip into it."""
+    folder = tmp_path_factory.mktemp("release")
+    subprocess.run(["git", "clone", "--quiet", ROOT, folder / "clone"], check=True)
+    building = f"from setuptools import build_meta; build_meta.build_wheel({str(folder)!r})"
+    subprocess.run([sys.executable, "-c", building], cwd=folder / "clone", check=True, capture_output=True)
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+@pytest.fixture
+def installed(wheel: Path, tmp_path: Path) -> Command:
+    """The command out of the unpacked wheel, in an empty folder."""
+    with ZipFile(wheel) as opened:
+        opened.extractall(tmp_path / "site")
+    (tmp_path / "here").mkdir()
+
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        environment = {"PYTHONPATH": str(tmp_path / "site"), "XDG_STATE_HOME": str(tmp_path), "HOME": "/"}
+        return subprocess.run(
+            [sys.executable, "-c", RUN, *words],
+            cwd=tmp_path / "here",
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+    return run
+
+
+def tracked(package: str) -> set[str]:
+    """The files of a package, by their paths in a wheel."""
+    listed = subprocess.run(
+        ["git", "ls-files", package], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    return {str(Path(file).relative_to(Path(package).parent)) for file in listed}
+
+
+def test_it_holds_the_packages_and_nothing_else(wheel: Path) -> None:
+    wanted = set().union(*(tracked(each) for each in (*PACKAGES, DESCRIPTION)))
+    wanted.remove("arboleda/examples")  # leads to the folder of the examples
+    # The lessons stay in the checkout, beside their pages.
+    examples = {file for file in tracked("examples") if file.count("/") > 1}
+    with ZipFile(wheel) as opened:
+        held = {name for name in opened.namelist() if ".dist-info/" not in name}
+    assert held == wanted | {f"arboleda/{file}" for file in examples}
+
+
+def test_what_it_says_of_itself_is_valid_and_its_version_is_that_of_the_package(wheel: Path) -> None:
+    with ZipFile(wheel) as opened:
+        (name,) = (each for each in opened.namelist() if each.endswith(".dist-info/METADATA"))
+        said = Metadata.from_email(opened.read(name))
+    assert str(said.version) == __version__
+    assert said.description_content_type == "text/markdown" and "ros" in (said.provides_extra or ())
+
+
+@pytest.mark.system
+def test_it_runs_a_plant_where_nothing_else_is(installed: Command) -> None:
+    ran = installed("run", "sis_a 0B 7", "--no-ros", "--rate", "10")
+    assert ran.returncode == 0, ran.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("new", "my_plant"), ("examples", "machine_tending"), ("examples", "own_driver")]
+)
+def test_what_it_writes_is_a_good_plant(installed: Command, words: tuple[str, ...]) -> None:
+    assert installed(*words).returncode == 0
+    checked = installed("check", f"{words[-1]}/plant.yaml")
+    assert checked.returncode == 0, checked.stdout + checked.stderr

@@ -1,0 +1,307 @@
+"""Drivers in threads of their own: whatever one of them does, the plant hears of it and goes on."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from arboleda.app.parts.drivers import DriversPart
+from arboleda.drivers import Clock, Command, Hear, NotSent
+from arboleda.model.messages import Report, Undelivered
+from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
+
+from ..kinds.station import STATION, plant
+
+WAIT_S = 10.0
+EPOCH = 9
+GO = STATION.command(id="9-1", robot="station", verb="go", values={})
+
+
+class Tame:
+    """A driver that does as it is told, and writes down what that was."""
+
+    def __init__(self) -> None:
+        self.sent: queue.Queue[Command] = queue.Queue()
+        self.stopped = threading.Event()
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        (self.device,) = devices
+        self.hear, self.clock = hear, clock
+        self.speak()
+
+    def speak(self) -> None:
+        self.hear(Report(at=self.clock(), robot=self.device.name, state=MotionState.STOPPED))
+
+    def send(self, command: Command) -> None:
+        self.sent.put(command)
+
+    def stop(self) -> None:
+        self.stopped.set()
+
+
+class Plant:
+    """What a plant hears of a part with one driver."""
+
+    def __init__(self, *drivers: Any, stale_after_s: float = 60.0) -> None:
+        self.made: list[Any] = []
+        waiting = list(drivers)
+
+        def make() -> Any:
+            self.made.append(waiting.pop(0) if waiting else drivers[-1])
+            return self.made[-1]
+
+        use = DriverUse(name="plc", make=make)
+        model = plant()
+        cells = tuple(
+            cell.with_robots(lambda robot: replace(robot, link=Link.DRIVER, driver=use))
+            for cell in model.cells
+        )
+        timing = Timing(stale_after_s=stale_after_s)
+        self.crashes: list[BaseException] = []
+        model = PlantModel(name="lab", cells=cells, timing=timing)
+        self.part = DriversPart(model, EPOCH, lambda name, error: self.crashes.append(error))
+        self.heard: queue.Queue[Report | Undelivered] = queue.Queue()
+        self.part.connect(self.heard.put)
+
+    def hears(self, holds: Callable[[Any], bool]) -> Any:
+        """The next of what it hears of which this is true."""
+        while not holds(event := self.heard.get(timeout=WAIT_S)):
+            pass
+        return event
+
+    def is_up(self) -> None:
+        self.hears(lambda event: isinstance(event, Report) and event.state is MotionState.STOPPED)
+
+    def is_lost(self) -> str:
+        """Why its device has no link, once a driver has caused that."""
+        lost = self.hears(
+            lambda event: "driver plc" in str(getattr(event, "lost", "")) and not is_begin(event)
+        )
+        assert lost.state is MotionState.NO_LINK
+        return str(lost.lost)
+
+
+def is_begin(report: Report) -> bool:
+    return "was started" in str(report.lost)
+
+
+@pytest.fixture
+def running() -> Iterator[Callable[..., Plant]]:
+    """Starts plants, and stops them at the end: none of them has broken down itself."""
+    made: list[Plant] = []
+
+    def start(*drivers: Any, **options: Any) -> Plant:
+        made.append(Plant(*drivers, **options))
+        made[-1].part.start()
+        return made[-1]
+
+    yield start
+    for each in made:
+        each.part.stop()
+        assert each.crashes == []
+
+
+def test_a_command_is_sent_by_the_driver_and_it_is_stopped_at_the_end(running: Callable[..., Plant]) -> None:
+    driver = Tame()
+    there = running(driver)
+    there.is_up()
+    there.part.send(GO)
+    assert driver.sent.get(timeout=WAIT_S) == GO
+    there.part.stop()
+    assert driver.stopped.is_set()
+
+
+def test_a_driver_that_cannot_start_is_started_again(running: Callable[..., Plant]) -> None:
+    class Refused(Tame):
+        def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+            raise ConnectionRefusedError("nobody is there")
+
+    first, second = Refused(), Tame()
+    there = running(first, second)
+    why = "its driver plc cannot start (ConnectionRefusedError: nobody is there), and tries again"
+    assert there.is_lost() == why
+    there.is_up()
+    assert there.made == [first, second] and first.stopped.is_set()
+
+
+@pytest.mark.parametrize("error", [ValueError("no such register"), SystemExit(3)])
+def test_what_send_raises_is_not_sent_and_has_lost_the_link(
+    running: Callable[..., Plant], error: BaseException
+) -> None:
+    class Rude(Tame):
+        def send(self, command: Command) -> None:
+            raise error
+
+    there = running(Rude())
+    there.is_up()
+    there.part.send(GO)
+    undelivered = there.hears(lambda event: isinstance(event, Undelivered))
+    assert undelivered.id == "9-1" and type(error).__name__ in str(undelivered.sentence)
+    assert type(error).__name__ in there.is_lost()
+    there.made[0].speak()
+    there.is_up()
+
+
+def test_a_polite_refusal_leaves_the_link_as_it_is(running: Callable[..., Plant]) -> None:
+    class Polite(Tame):
+        def send(self, command: Command) -> None:
+            raise NotSent("the valve is shut")
+
+    there = running(Polite())
+    there.is_up()
+    there.part.send(GO)
+    event = there.heard.get(timeout=WAIT_S)
+    assert isinstance(event, Undelivered)
+    assert str(event.sentence) == "its driver plc could not send a command (the valve is shut)"
+    there.made[0].speak()
+    assert isinstance(there.heard.get(timeout=WAIT_S), Report)
+
+
+class Threaded(Tame):
+    """Its own thread ends as it is told to."""
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        super().start(devices, hear, clock)
+        self.go = threading.Event()
+        self.thread = threading.Thread(target=self.read, daemon=True)
+        self.thread.start()
+
+    def read(self) -> None:
+        self.go.wait(WAIT_S)
+        raise EOFError("the line is cut")
+
+    def stop(self) -> None:
+        self.go.set()
+        self.thread.join()
+        super().stop()
+
+
+class Helper:
+    def read(self, go: threading.Event) -> None:
+        go.wait(WAIT_S)
+        raise EOFError("the line is cut")
+
+
+def test_a_thread_of_a_driver_that_dies_has_lost_the_link_and_the_driver_is_started_again(
+    running: Callable[..., Plant],
+) -> None:
+    first = Threaded()
+    there = running(first, Tame())
+    there.is_up()
+    first.go.set()
+    why = "its driver plc broke down (a thread of it died: EOFError: the line is cut), and is started again"
+    assert there.is_lost() == why
+    there.is_up()
+    assert first.stopped.is_set()
+
+
+def test_a_thread_that_works_elsewhere_in_the_drivers_file_is_one_of_it(
+    running: Callable[..., Plant],
+) -> None:
+    class Handing(Threaded):
+        def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+            Tame.start(self, devices, hear, clock)
+            self.go = threading.Event()
+            self.thread = threading.Thread(target=Helper().read, args=(self.go,), daemon=True)
+            self.thread.start()
+
+    first = Handing()
+    there = running(first, Tame())
+    there.is_up()
+    first.go.set()
+    assert "a thread of it died: EOFError" in there.is_lost()
+
+
+def test_a_thread_that_ends_with_an_error_while_the_driver_stops_is_nothing(
+    running: Callable[..., Plant], caplog: pytest.LogCaptureFixture
+) -> None:
+    there = running(Threaded())
+    there.is_up()
+    there.part.stop()
+    assert there.heard.empty() and caplog.records == []
+
+
+def test_who_hears_of_dead_threads_gives_that_back(running: Callable[..., Plant]) -> None:
+    before = threading.excepthook
+    there = running(Tame())
+    assert threading.excepthook != before
+    there.part.stop()
+    assert threading.excepthook == before
+
+
+def test_a_driver_that_hangs_loses_its_device_and_holds_up_nobody(
+    running: Callable[..., Plant], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go = threading.Event()
+
+    class Hanging(Tame):
+        def send(self, command: Command) -> None:
+            go.wait(WAIT_S)
+
+    monkeypatch.setattr("arboleda.app.parts.drivers.PATIENCE_S", 0.0)
+    there = running(Hanging(), stale_after_s=0.3)
+    there.is_up()
+    there.part.send(GO)
+    speaker = threading.Thread(target=speak, args=(there.made[0], go))
+    speaker.start()
+    try:
+        assert there.is_lost() == "its driver plc has not come back from send for 0.3 s"
+        there.part.stop()
+        assert "the driver plc does not end and is left behind" in caplog.text
+    finally:
+        go.set()
+        speaker.join()
+    assert there.made[0].stopped.wait(WAIT_S)
+
+
+def speak(driver: Tame, until: threading.Event) -> None:
+    """The driver's device is heard all the while."""
+    while not until.wait(0.05):
+        driver.speak()
+
+
+def test_nonsense_is_a_line_in_the_log(
+    running: Callable[..., Plant], caplog: pytest.LogCaptureFixture
+) -> None:
+    there = running(Tame())
+    there.is_up()
+    there.made[0].hear({"state": "stopped"})
+    there.made[0].speak()
+    there.is_up()
+    assert "the driver plc reported nonsense: {'state': 'stopped'} is no Report" in caplog.text
+
+
+def test_devices_with_the_same_driver_and_equal_settings_share_one() -> None:
+    (robot,) = plant().robots.values()
+
+    def driven(name: str, settings: object) -> Robot:
+        use = DriverUse(name="plc", settings=settings, make=lambda: Noting(starts))
+        return replace(robot, name=name, link=Link.DRIVER, driver=use)
+
+    starts: queue.Queue[tuple[str, ...]] = queue.Queue()
+    names = {"a": 1, "b": 2, "c": 1}
+    members = tuple((name, driven(name, settings)) for name, settings in names.items())
+    (cell,) = plant().cells
+    model = PlantModel(name="lab", cells=(replace(cell, members=members),))
+    part = DriversPart(model, EPOCH, lambda name, error: None)
+    part.start()
+    try:
+        assert {starts.get(timeout=WAIT_S), starts.get(timeout=WAIT_S)} == {("a", "c"), ("b",)}
+    finally:
+        part.stop()
+
+
+class Noting(Tame):
+    """Notes which devices it was started for."""
+
+    def __init__(self, starts: queue.Queue[tuple[str, ...]]) -> None:
+        super().__init__()
+        self.starts = starts
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        self.starts.put(tuple(device.name for device in devices))

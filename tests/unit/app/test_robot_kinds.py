@@ -1,0 +1,150 @@
+"""Kinds that read by themselves what a plant file says of a device: anybody's stand beside those shipped."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import config
+from arboleda.app.plant_file.registry import COME_WITH_IT
+from arboleda.model.errors import ConfigError
+from arboleda.testing import Sim
+
+CART = """\
+from arboleda.app.plant_file.robot_kind import RobotKind
+from arboleda.app.plant_file.robots import mobile
+from arboleda.app.plant_file.shapes import MobileDeviceShape
+from arboleda.kinds.mobile import Mobile
+
+
+class Cart(Mobile):
+    @property
+    def kind_name(self):
+        return "cart"
+
+
+class CartShape(MobileDeviceShape):
+    loaded: bool = False
+
+
+def read(document, place):
+    driven = mobile(document, place, CartShape)
+    if driven is None:
+        return None
+    return Cart(**vars(driven)).at_rate(0.5 if document.value((*place, "loaded")) else 1.0)
+
+
+cart = RobotKind(name="cart", read=read, goes=True)
+"""
+RECIPES = """\
+from arboleda.recipes import Target, recipe, work
+
+
+@recipe("fetch")
+def fetch(cell, at: Target):
+    return work(cell.device("cart").visit(at))
+"""
+PLANT = """\
+name: yard
+uses: [cart.py, recipes.py]
+cells:
+  bay:
+    devices:
+      cart: {kind: cart, loaded: true, speed_mm_s: 100}
+      eye: {kind: camera}
+    targets:
+      home: {cart: {node: 0}}
+      dock: {cart: {node: 8}}
+"""
+ENTRY = "[arboleda.kinds]\ncart = acme_carts:cart\n"
+
+
+def write(folder: Path, plant: str = PLANT, cart: str = CART) -> Path:
+    (folder / "cart.py").write_text(cart, "utf-8")
+    (folder / "recipes.py").write_text(RECIPES, "utf-8")
+    file = folder / "plant.yaml"
+    file.write_text(plant, "utf-8")
+    return file
+
+
+def problems(file: Path) -> list[str]:
+    with pytest.raises(ConfigError) as refusal:
+        config.load(file)
+    return [each.removeprefix(f"{file.parent}/") for each in refusal.value.problems]
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder for an installed package, which is forgotten after the test."""
+    folder = tmp_path / "site"
+    folder.mkdir()
+    monkeypatch.syspath_prepend(folder)
+    yield folder
+    sys.modules.pop("acme_carts", None)
+
+
+def install(site: Path, entry: str = ENTRY) -> None:
+    (site / "acme_carts.py").write_text(CART, "utf-8")
+    about = site / "acme_carts-1.2.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: acme_carts\nVersion: 1.2\n", "utf-8")
+    (about / "entry_points.txt").write_text(entry, "utf-8")
+
+
+def test_a_robot_of_a_kind_of_ones_own_goes_to_targets(tmp_path: Path, sim: Sim) -> None:
+    plant = sim.plant(write(tmp_path))
+    assert plant.robots["cart"].kind_name == "cart"
+    task = sim.submit("bay dock")
+    sim.run(until=lambda: task.ended)
+    assert task.history == ["queued", "running", "done"]
+
+
+def test_an_installed_package_brings_such_a_kind(tmp_path: Path, site: Path) -> None:
+    install(site)
+    cart = config.load(write(tmp_path, PLANT.replace("cart.py, ", ""))).robots["cart"]
+    assert (cart.kind_name, cart.goes, cart.on_grid) == ("cart", True, True)
+
+
+def test_its_own_keys_are_read_and_others_are_named_with_their_place(tmp_path: Path) -> None:
+    slow = config.load(write(tmp_path)).robots["cart"]
+    quick = config.load(write(tmp_path, PLANT.replace("true", "false"))).robots["cart"]
+    assert slow.travel_s(0, (0, 1)) == 2 * quick.travel_s(0, (0, 1))
+    (found,) = problems(write(tmp_path, PLANT.replace("loaded", "loadd")))
+    assert found.startswith('plant.yaml:6:26: cells.bay.devices.cart: the key "loadd" is not known;')
+
+
+def test_a_kind_of_a_file_with_a_problem_is_not_taken_for_another(tmp_path: Path) -> None:
+    """Its name is like that of the camera, which nobody meant."""
+    (found,) = problems(write(tmp_path, PLANT.replace("100", "900")))
+    assert found.startswith("plant.yaml:6:52: cells.bay.devices.cart.speed_mm_s: must be at most 200 mm/s")
+
+
+def test_what_goes_cannot_be_shared_whosever_kind_it_is(tmp_path: Path) -> None:
+    shared = PLANT.replace("cart: {kind: cart, loaded: true, speed_mm_s: 100}", "cart: {shared: wagon}")
+    told = problems(write(tmp_path, shared.replace("cells:", "shared: {wagon: {kind: cart}}\ncells:")))
+    assert any("a robot that goes from place to place belongs to one cell" in each for each in told)
+
+
+def test_what_such_a_kind_raises_is_told_at_its_line(tmp_path: Path) -> None:
+    (found,) = problems(write(tmp_path, cart=CART.replace("    driven =", "    1 / 0\n    driven =")))
+    assert found == "cart.py:18:1: cart: ZeroDivisionError: division by zero"
+
+
+def test_a_kind_that_reads_no_robot_is_told(tmp_path: Path) -> None:
+    nonsense = CART.replace("    driven =", '    return "a cart"\n    driven =')
+    (found,) = problems(write(tmp_path, cart=nonsense))
+    assert found == "cart.py:17:1: cart reads 'a cart'; a kind that reads by itself makes a Robot"
+
+
+@pytest.mark.parametrize("name", ["arm", "mobile", "person"])
+def test_a_package_cannot_take_the_name_of_a_shipped_robot(tmp_path: Path, site: Path, name: str) -> None:
+    install(site, ENTRY.replace("cart =", f"{name} ="))
+    told = problems(write(tmp_path, PLANT.replace("{kind: camera}", f"{{kind: {name}}}")))
+    assert f'the kind "{name}" comes with Arboleda, and acme_carts 1.2 registers another one' in told[0]
+
+
+def test_every_shipped_kind_is_in_one_list() -> None:
+    robots, devices = ["arm", "mobile", "person"], ["gripper", "effector", "conveyor", "camera", "sensor"]
+    assert [*COME_WITH_IT] == [*robots, *devices]

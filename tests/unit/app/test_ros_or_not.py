@@ -1,0 +1,75 @@
+"""`arboleda up` and `run` speak ROS 2 where it is there; where it is missing they say so."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.app import build, cli, session
+from arboleda.app.build import App
+
+BY_HAND = Path(__file__).parents[3] / "examples" / "plants" / "by_hand.yaml"
+Started = Callable[..., "tuple[App | None, str]"]
+
+
+class Missing:
+    """The entry point of the ROS 2 link on a machine without ROS 2."""
+
+    def load(self) -> Any:
+        raise ImportError("No module named 'rclpy'")
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Started:
+    """The plant that a command line starts on a machine without ROS 2, and what it complains of."""
+    apps: list[App] = []
+
+    class Unrun:
+        def __init__(self, app: App, *_: Any, stay: bool) -> None:
+            apps.append(app)
+
+        def run(self) -> int:
+            return 0
+
+    monkeypatch.setattr(session, "Session", Unrun)
+    monkeypatch.setattr(build, "PARTS", tuple(part for part in build.PARTS if part != "web"))
+    monkeypatch.setattr(session, "entry_points", lambda **_: [Missing()])
+
+    def start(*words: str) -> tuple[App | None, str]:
+        monkeypatch.setattr(sys, "argv", ["arboleda", *words, "--state", str(tmp_path / "state")])
+        with pytest.raises(SystemExit):
+            cli.main()
+        return (apps[0] if apps else None), capsys.readouterr().err
+
+    return start
+
+
+@pytest.mark.parametrize("command", [("up",), ("run", "sis_a 0B 1")])
+def test_a_plant_runs_without_ros_where_it_is_missing_and_says_so(
+    started: Started, command: tuple[str, ...]
+) -> None:
+    app, said = started(*command)
+    assert app and not said
+    (note,) = (note for note in app.notes if "ROS 2" in note)
+    assert note.startswith("Without ROS 2, over MQTT alone: ") and "No module named 'rclpy'" in note
+
+
+def test_who_wants_no_ros_is_not_told_that_it_is_missing(started: Started) -> None:
+    app, _ = started("up", "--no-ros")
+    assert app and not [note for note in app.notes if "ROS 2" in note]
+
+
+@pytest.mark.parametrize("option", ["--ros", "--ros-lan"])
+def test_who_wants_ros_is_told_how_to_get_it(started: Started, option: str) -> None:
+    app, said = started("up", option)
+    assert app is None
+    assert said.startswith("arboleda: ROS 2 for Python is not installed here") and said.count("\n") == 1
+
+
+def test_a_robot_that_speaks_ros_needs_it(started: Started) -> None:
+    app, said = started("up", "--boards", "real", "--plant", str(BY_HAND))
+    assert app is None and "ROS 2 for Python is not installed here" in said

@@ -1,0 +1,158 @@
+"""`arboleda service`: what systemd is given and asked, and what is said where it does not do it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from arboleda.app.cli import main
+from arboleda.app.service_unit import unit
+
+Typed = Callable[..., tuple[int, str, str]]
+SYSTEMCTL = """#!/bin/sh
+echo "$*" >>"$ASKED"
+case "$*" in
+*"$FAILS"*) echo "System has not been booted with systemd" >&2; exit 1 ;;
+esac
+"""
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[], list[str]]:
+    """What a systemctl was asked that does all but what FAILS names."""
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    (tools / "systemctl").write_text(SYSTEMCTL)
+    (tools / "systemctl").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tools}:/usr/bin:/bin")
+    monkeypatch.setenv("ASKED", str(tmp_path / "asked"))
+    monkeypatch.setenv("FAILS", "nothing")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
+    return lambda: (tmp_path / "asked").read_text().splitlines()
+
+
+@pytest.fixture
+def typed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Typed:
+    """Exit status, output and complaint of `arboleda service`."""
+
+    def run(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["arboleda", "service", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return (int(ended.value.code or 0), *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Path:
+    return tmp_path / ".config/systemd/user/arboleda-arboleda.service"
+
+
+def test_a_plant_is_installed_and_started(
+    asked: Callable[[], list[str]], typed: Typed, written: Path, tmp_path: Path
+) -> None:
+    status, said, _ = typed("install", "--", "--no-ros", "--rate", "2")
+    assert status == 0 and str(written) in said and "loginctl enable-linger" in said
+    assert [line for line in written.read_text().splitlines() if line.startswith("ExecStart=")] == [
+        f"ExecStart={Path(sys.executable).with_name('arboleda')} up "
+        f"--state {tmp_path}/.local/state/arboleda/arboleda --no-ros --rate 2"
+    ]
+    assert (tmp_path / ".local/state/arboleda/arboleda").is_dir()
+    assert asked() == [
+        "--user daemon-reload",
+        "--user enable arboleda-arboleda.service",
+        "--user restart arboleda-arboleda.service",
+    ]
+
+
+def test_what_was_installed_is_looked_at_and_removed(
+    asked: Callable[[], list[str]], typed: Typed, written: Path
+) -> None:
+    typed("install")
+    assert typed("status")[0] == 0
+    status, said, _ = typed("remove")
+    assert status == 0 and not written.exists() and "state directory is as it was" in said
+    assert asked()[3:] == [
+        "--user status --no-pager arboleda-arboleda.service",
+        "--user disable --now arboleda-arboleda.service",
+        "--user daemon-reload",
+    ]
+
+
+@pytest.mark.parametrize("fails", ["daemon-reload", "enable", "restart"])
+@pytest.mark.parametrize("before", [None, "[Unit]\nDescription=an older one\n"])
+def test_where_systemd_refuses_all_is_as_it_was(
+    asked: object,
+    typed: Typed,
+    written: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    fails: str,
+    before: str | None,
+) -> None:
+    if before is not None:
+        written.parent.mkdir(parents=True)
+        written.write_text(before)
+    monkeypatch.setenv("FAILS", fails)
+    status, _, said = typed("install")
+    assert status == 1 and said.count("\n") == 1
+    assert f"systemctl {fails}" in said and "System has not been booted with systemd" in said
+    assert (written.read_text() if written.exists() else None) == before
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--", "--bords", "real"), "No such option: --bords"),
+        (("--", "--state", "x"), "--state stands before --"),
+        (("--plant", "/nowhere.yaml"), "/nowhere.yaml: there is no such file"),
+    ],
+)
+def test_bad_input_is_refused_before_anything_is_written(
+    asked: object, typed: Typed, written: Path, words: tuple[str, ...], sentence: str
+) -> None:
+    status, _, said = typed("install", *words)
+    assert status == 2 and sentence in said
+    assert not written.exists()
+
+
+@pytest.mark.parametrize("verb", ["status", "remove"])
+def test_a_plant_that_is_no_service_is_named(asked: object, typed: Typed, verb: str) -> None:
+    status, _, said = typed(verb)
+    assert status == 1 and said.startswith("arboleda: arboleda is no service here") and said.count("\n") == 1
+
+
+def test_a_machine_without_systemd_is_told_what_else_there_is(
+    typed: Typed, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    status, _, said = typed("install", "--state", str(tmp_path / "state"))
+    assert status == 1 and "this machine has no systemd" in said and "`arboleda up`" in said
+
+
+def test_a_user_that_is_not_there_is_refused(asked: object, typed: Typed) -> None:
+    status, _, said = typed("install", "--print", "--system", "--user", "nobody-here")
+    assert status == 1 and "no user nobody-here" in said
+
+
+@pytest.mark.requires("systemd-analyze")
+@pytest.mark.parametrize("user", [None, "root"])
+def test_systemd_reads_the_unit_as_it_is_meant(tmp_path: Path, user: str | None) -> None:
+    strange = tmp_path / "a plant, 100 % $mine"
+    strange.mkdir()
+    command = ["/bin/true", "up", "--state", str(strange), 'say "no"']
+    file = tmp_path / "arboleda-lab.service"
+    file.write_text(unit(plant="lab", command=command, state=strange, user=user))
+    verified = subprocess.run(
+        [str(shutil.which("systemd-analyze")), "verify", "--man=no", str(file)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert verified.returncode == 0 and str(file.name) not in verified.stderr, verified.stderr

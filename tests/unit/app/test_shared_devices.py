@@ -1,0 +1,165 @@
+"""Devices that cells share, in the plant file: what is read, what is refused, and how screens show them."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from arboleda.app import config
+from arboleda.app.screen import table
+from arboleda.core.plant import Plant
+from arboleda.dashboard.chronicle import Chronicle
+from arboleda.model.errors import ConfigError
+from arboleda.model.plant_model import PlantModel
+from arboleda.views import view
+from arboleda.views.view import devices_once
+
+TEXT = """name: shop
+kinds:
+  lift:
+    facts: {at: [low, high]}
+    verbs:
+      up:   {effect: motion, sets: {at: high}, takes_s: 2}
+      down: {effect: motion, sets: {at: low}, takes_s: 2}
+      hug:  {effect: switch, with: {on: bool}, sets: {at: high}}
+  lamp:
+    facts: {lit: bool}
+    verbs:
+      light: {effect: switch, with: {on: bool}, sets: {lit: $on}}
+shared:
+  lift: {kind: lift, evidence: facts}
+  porter: {kind: person}
+cells:
+  below:
+    devices:
+      lamp: {kind: lamp, name: lamp_1}
+      lift: {shared: lift}
+      porter: {shared: porter}
+  above:
+    devices:
+      lamp: {kind: lamp, name: lamp_2}
+      hoist: {shared: lift}
+      porter: {shared: porter}
+"""
+MISTAKES = {
+    "a name that there is not": (
+        "hoist: {shared: lift}",
+        "hoist: {shared: left}",
+        "25:23: cells.above.devices.hoist.shared: must be lift or porter",
+        'did you mean "lift"?',
+    ),
+    "more than its name": (
+        "hoist: {shared: lift}",
+        "hoist: {shared: lift, evidence: ids}",
+        "25:",
+        'the key "evidence" is not known',
+    ),
+    "nobody has it": (
+        "  porter: {kind: person}",
+        "  porter: {kind: person}\n  bell: {kind: lamp}",
+        "16:3: shared.bell: ",
+        "no cell has it",
+    ),
+    "twice in a cell": (
+        "hoist: {shared: lift}",
+        "hoist: {shared: lift}\n      jack: {shared: lift}",
+        "26:7: cells.above.devices.jack: ",
+        "lift is in this cell already",
+    ),
+    "a cell without any of its own": (
+        "      lamp: {kind: lamp, name: lamp_2}\n",
+        "",
+        "23:5: cells.above.devices: ",
+        "at least one of its own",
+    ),
+    "an arm": (
+        "{kind: lift, evidence: facts}",
+        "{kind: arm, model: scara}",
+        "14:16: shared.lift.kind: ",
+        "belongs to one cell",
+    ),
+    "another name": (
+        "{kind: lift, evidence: facts}",
+        "{kind: lift, name: elevator}",
+        "14:22: shared.lift.name: ",
+        "its key is its name",
+    ),
+    "a tool": (
+        "{kind: lift, evidence: facts}",
+        "{kind: lift, tool_of: lamp}",
+        "14:22: shared.lift.tool_of: ",
+        "go with a robot of one cell",
+    ),
+    "what holds a part": (
+        "sets: {lit: $on}}\nshared:\n  lift: {kind: lift, evidence: facts}",
+        "sets: {lit: $on}, holds: part}\nshared:\n  lift: {kind: lamp}",
+        "14:16: shared.lift.kind: ",
+        "holds no part",
+    ),
+    "the name of a cell": (
+        "\n  lift: {kind: lift, evid",
+        "\n  below: {kind: lift, evid",
+        "14:3: shared.below: ",
+        'the name "below" is already that of cells.below',
+    ),
+    "no section": (
+        "shared:\n  lift: {kind: lift, evidence: facts}\n  porter: {kind: person}\n",
+        "",
+        "17:22: cells.below.devices.lift.shared: ",
+        'there is no "shared" at the top of the file',
+    ),
+}
+
+
+def load(tmp_path: Path, text: str = TEXT) -> PlantModel:
+    (tmp_path / "plant.yaml").write_text(text, "utf-8")
+    return config.load(tmp_path / "plant.yaml", recipes=False)
+
+
+def test_one_device_is_in_two_cells_in_roles_of_their_own(tmp_path: Path) -> None:
+    model = load(tmp_path)
+    assert model.shared == ("lift", "porter")
+    assert model.cell("below").roles["lift"] is model.cell("above").roles["hoist"]
+    assert [cell.name for cell in model.cells_of["lift"]] == ["below", "above"]
+    assert list(model.robots) == ["lamp_1", "lift", "porter", "lamp_2"]
+    assert model.cell("above").own == ("lamp_2",)
+
+
+@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_named_with_its_line(tmp_path: Path, mistake: tuple[str, str, str, str]) -> None:
+    old, new, start, words = mistake
+    assert old in TEXT
+    with pytest.raises(ConfigError) as refusal:
+        load(tmp_path, TEXT.replace(old, new, 1))
+    found = [each.removeprefix(f"{tmp_path}/plant.yaml:") for each in refusal.value.problems]
+    assert [each for each in found if each.startswith(start) and words in each], found
+
+
+def test_screens_show_it_once_and_who_has_it(tmp_path: Path) -> None:
+    plant = Plant(load(tmp_path), epoch=1, now=0.0)
+    plant.zones.request("above", frozenset({"lift"}))
+    snapshot = view.snapshot(plant)
+    rows = {row["name"]: row["holder"] for row in snapshot["robots"]}
+    assert len(snapshot["robots"]) == len(rows)
+    assert rows == {"lamp_1": None, "lift": "above", "porter": None, "lamp_2": None}
+    assert {"zone": "lift", "state": "held", "robot": "above", "waiting": []} in snapshot["zones"]
+    once = [(cell, device["name"]) for cell, device in devices_once(snapshot["cells"])]
+    assert once == [("below", "lamp_1"), ("below", "lift"), ("below", "porter"), ("above", "lamp_2")]
+    out = StringIO()
+    Console(file=out, width=200).print(table(snapshot))
+    (line,) = [each for each in out.getvalue().splitlines() if " lift " in each and "below, above" in each]
+    assert "held by above" in line
+
+
+def test_the_time_line_tells_once_that_it_is_not_heard(tmp_path: Path) -> None:
+    snapshot = view.snapshot(Plant(load(tmp_path), epoch=1, now=0.0))
+    online = {**snapshot, "robots": [{**each, "online": True} for each in snapshot["robots"]]}
+    chronicle = Chronicle()
+    chronicle.see(online, 0.0)
+    before = len(chronicle.events)
+    chronicle.see(snapshot, 1.0)
+    told = [each["subject"] for each in list(chronicle.events)[before:]]
+    assert told.count("lift") == 1

@@ -1,0 +1,91 @@
+"""What a dispatcher sends, and what it refuses to send."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+
+from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.ledger import State
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.commands import Home, Stop
+from arboleda.model.messages import Reason, Report
+from arboleda.model.plant_model import MotionState
+from arboleda.testing import shipped
+
+EPOCH = 7
+
+
+STILL = {"robot": "ra1", "state": MotionState.STOPPED, "q": (0.0, 0.0, 0.0), "homed": True}
+
+
+@pytest.fixture
+def dispatcher() -> Dispatcher:
+    """An arm that stands still, as it said twice."""
+    dispatcher = Dispatcher(shipped("sis_a"), EPOCH, {})
+    for at in (99.9, 100.0):
+        dispatcher.report(Report(at=at, **STILL), at)
+    return dispatcher
+
+
+@pytest.fixture
+def latched(dispatcher: Dispatcher) -> Dispatcher:
+    """The same, stopped by an operator."""
+    dispatcher.latch("ra1")
+    return dispatcher
+
+
+def test_a_halt_is_proven_only_by_what_is_said_after_it(dispatcher: Dispatcher) -> None:
+    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
+    dispatcher.cancel(move, 100.2)
+    states = []
+    for at in (100.3, 100.4):
+        dispatcher.report(Report(at=at, **STILL), at)
+        states.append(move.state)
+    assert states == [State.CANCELLING, State.CANCELLED]
+
+
+def test_a_robot_that_is_back_is_stopped_once_and_not_by_a_word_of_only_where_it_stands(
+    latched: Dispatcher,
+) -> None:
+    latched.report(Report(at=100.1, robot="ra1", state=MotionState.NO_LINK), 100.1)
+    latched.outbox.clear()
+    for at in (100.2, 100.3):
+        latched.report(Report(at=at, robot="ra1", q=(0.0, 0.0, 0.0)), at)
+    assert latched.outbox == []
+    for at in (100.4, 100.5):
+        latched.report(Report(at=at, **STILL), at)
+    assert [type(message) for message in latched.outbox] == [Stop]
+
+
+@pytest.mark.parametrize("make", [partial(SetEffector, on=True), Home], ids=["effector", "home"])
+def test_a_stopped_robot_is_sent_nothing_by_a_task(latched: Dispatcher, make: type) -> None:
+    entry = latched.send(partial(make, robot="ra1"), "sis_a", "doing", 100.1)
+    assert entry.state is State.FAILED and entry.failure and entry.failure.reason is Reason.STOPPED
+
+
+def test_a_stopped_robot_lets_its_part_go_by_hand(latched: Dispatcher) -> None:
+    let_go = partial(SetEffector, robot="ra1", on=False)
+    assert latched.send(let_go, "sis_a", "doing", 100.1, by_hand=True).failure is None
+
+
+def test_a_robot_that_moves_takes_no_second_motion_and_opens_nothing(dispatcher: Dispatcher) -> None:
+    move = partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0))
+    dispatcher.send(move, "sis_a", "moving", 100.1)
+    second = dispatcher.send(move, "sis_a", "moving", 100.2)
+    failures = [second.failure, dispatcher.obstacle_to_opening("ra1")]
+    assert [failure and str(failure.sentence) for failure in failures] == [
+        "ra1 had an open motion command: no moving",
+        "ra1 has an open motion command",
+    ]
+
+
+@pytest.mark.parametrize("lost", [{"state": MotionState.NO_LINK}, {"state": MotionState.NOT_HOMED}], ids=str)
+def test_where_a_robot_is_is_known_while_it_is_heard_and_homed(
+    dispatcher: Dispatcher, lost: dict[str, MotionState]
+) -> None:
+    belief = dispatcher.beliefs["ra1"]
+    assert belief.known_q == belief.known_position == STILL["q"]
+    dispatcher.report(Report(at=100.1, robot="ra1", **lost), 100.1)
+    assert belief.known_q is None and belief.known_position is None

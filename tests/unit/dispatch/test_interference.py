@@ -1,0 +1,30 @@
+"""Until when a command of somebody else may be why something happened."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.dispatch.interference import Interferences
+from arboleda.model.messages import Report
+
+
+@pytest.mark.parametrize(("after_s", "named"), [(0.0, True), (5.0, True), (5.1, False)])
+def test_a_robot_reports_within_five_seconds_what_an_obeyed_command_did(after_s: float, named: bool) -> None:
+    known = Interferences()
+    known.note("ra1", "ra1: effector_cmd 0 of another node was obeyed", 10.0, obeyed=True)
+    assert (known.lately_obeyed("ra1", 10.0 + after_s) is not None) is named
+
+
+def test_what_was_refused_has_done_nothing() -> None:
+    known = Interferences()
+    known.note("ra1", "ra1: effector_cmd 0 of another node was refused", 10.0, obeyed=False)
+    assert known.lately_obeyed("ra1", 10.0) is None
+
+
+@pytest.mark.parametrize("kind", ["refused", "obeyed"])
+def test_a_count_is_news_when_it_rises_and_says_nothing_of_the_other(kind: str) -> None:
+    known, said = Interferences(), {"foreign": "ra1: home_cmd of /teleop", f"foreign_{kind}": 1}
+    news = (kind == "refused", kind == "obeyed")
+    assert known.rise(Report(at=1.0, robot="ra1", epoch=1, **said)) == news
+    assert known.rise(Report(at=2.0, robot="ra1", epoch=1, **said)) == (False, False)
+    assert known.rise(Report(at=3.0, robot="ra1", epoch=2, **said)) == news

@@ -1,0 +1,54 @@
+"""Which commands may still be on their way to an arm that shares zones."""
+
+from __future__ import annotations
+
+from arboleda.app.simulate.request import shared
+from arboleda.dispatch.evidence import QUIET_S
+from arboleda.dispatch.underway import PATIENCE_S, UnderWay
+from arboleda.kinds.arm import MoveJoints
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Evidence
+from arboleda.testing import shipped
+
+MODEL = shared()
+ARM = next(cell.arm.name for cell in MODEL.cells if cell.zones)
+MUTE = next(each.name for cell in MODEL.cells for each in cell.robots if each.evidence is Evidence.JOINTS)
+MOVES = [MoveJoints(id=f"7-{number}", robot=ARM, q=(0.0, 0.0, 0.0)) for number in (1, 2)]
+
+
+def test_what_left_is_under_way_until_it_or_a_later_one_is_named() -> None:
+    under_way = UnderWay(MODEL)
+    for move in MOVES:
+        under_way.left(move)
+    under_way.hear(Report(at=1.0, robot=ARM), 1.0)
+    assert under_way.ids == {ARM: ["7-1", "7-2"]}
+    under_way.hear(Report(at=1.1, robot=ARM, accepted="7-2"), 1.1)
+    assert under_way.ids == {}
+
+
+def test_what_a_heard_arm_does_not_name_in_time_was_lost() -> None:
+    under_way = UnderWay(MODEL)
+    under_way.left(MOVES[0])
+    under_way.hear(Report(at=1.0, robot=ARM), 1.0)
+    assert not under_way.is_overdue(ARM, 1.0)
+    assert under_way.is_overdue(ARM, 1.0 + PATIENCE_S)
+
+
+def test_an_arm_that_shares_nothing_is_not_followed() -> None:
+    under_way = UnderWay(shipped("sis_a"))
+    under_way.left(MoveJoints(id="7-1", robot="ra1", q=(0.0, 0.0, 0.0)))
+    assert under_way.ids == {}
+
+
+def test_work_of_an_arm_that_names_no_command_is_under_way_until_its_end_or_the_time_of_an_answer() -> None:
+    under_way = UnderWay(MODEL)
+    move = MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0))
+    under_way.left(move)
+    for at in (1.0, 1.0 + QUIET_S / 2):
+        under_way.hear(Report(at=at, robot=MUTE), at)
+        assert under_way.ids == {MUTE: ["7-1"]}
+    under_way.hear(Report(at=1.0 + QUIET_S, robot=MUTE), 1.0 + QUIET_S)
+    assert under_way.ids == {}
+    under_way.left(move)
+    under_way.ended(move)
+    assert under_way.ids == {}

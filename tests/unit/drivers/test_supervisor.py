@@ -1,0 +1,272 @@
+"""What the plant hears of devices behind drivers, whatever the drivers do; time is moved by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from arboleda.drivers import lost
+from arboleda.drivers.supervisor import (
+    FIRST_RETRY_S,
+    Asked,
+    Begin,
+    Broken,
+    End,
+    Event,
+    Give,
+    Leaving,
+    Life,
+    Message,
+    Refused,
+    Said,
+    Supervisor,
+    Taken,
+)
+from arboleda.model.commands import Command, Stop, StopMode
+from arboleda.model.messages import Report, Undelivered
+from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.model.sentence import OWN
+
+from ..kinds.station import STATION, plant
+
+STALE_S, EPOCH = 1.5, 9
+GO = STATION.command(id="9-1", robot="station", verb="go", values={})
+LIGHT = STATION.command(id="9-2", robot="station", verb="light", values={"on": True})
+LATCH, CLEAR = (
+    Stop(id=f"9-{n}", robot="station", mode=mode) for n, mode in ((3, StopMode.LATCH), (4, StopMode.CLEAR))
+)
+
+
+class Driven:
+    """A supervisor with one driver of one station, and all that came out of it."""
+
+    def __init__(self, evidence: Evidence = Evidence.IDS) -> None:
+        (station,) = plant(evidence=evidence).robots.values()
+        self.machine = Supervisor([("plc", [station])], epoch=EPOCH, stale_after_s=STALE_S)
+        self.life = Life(driver=0, number=1)
+        self.now = 10.0
+
+    def step(self, *events: Event, after: float = 0.0) -> list[Message]:
+        self.now += after
+        return self.machine.step(self.now, events)
+
+    def says(self, *, after: float = 0.0, late: float = 0.0, **said: object) -> list[Message]:
+        """The station reports something, stopped where nothing else is said."""
+        at = self.now + after
+        report = Report(at=at - late, robot="station", **{"state": MotionState.STOPPED, **said})  # type: ignore[arg-type]
+        return self.step(Said(at=at, life=self.life, report=report), after=after)
+
+    def asks(self, command: Command) -> list[Message]:
+        return self.step(Asked(at=self.now, command=command))
+
+    def gives(self, command: Command) -> None:
+        """The plant commands it, and the driver sends that."""
+        assert self.asks(command) == [Give(life=self.life, command=command)]
+        assert self.step(Taken(at=self.now, life=self.life, command=command)) == []
+
+
+@pytest.fixture
+def driven() -> Driven:
+    """A driver that was started, and whose station is heard."""
+    made = Driven()
+    made.step()
+    made.says()
+    return made
+
+
+def reports(messages: list[Message]) -> list[Report]:
+    return [each for each in messages if isinstance(each, Report)]
+
+
+def test_a_driver_begins_at_once_and_its_devices_are_unheard_until_they_speak() -> None:
+    driven = Driven()
+    unheard, begin = driven.step()
+    assert begin == Begin(life=driven.life)
+    assert isinstance(unheard, Report) and unheard.state is MotionState.NO_LINK
+    assert str(unheard.lost) == "its driver plc was started and has said nothing yet"
+    (refused,) = driven.asks(GO)
+    assert isinstance(refused, Report)
+    assert (refused.rejected, refused.refusal, refused.lost) == ("9-1", "no_link", unheard.lost)
+
+
+def test_a_report_is_that_of_this_start_of_the_plant(driven: Driven) -> None:
+    (heard,) = driven.says(epoch=3, plant=3, foreign_obeyed=7)
+    assert isinstance(heard, Report)
+    assert (heard.epoch, heard.plant, heard.foreign_obeyed) == (EPOCH, EPOCH, None)
+
+
+def test_a_command_leaves_once(driven: Driven) -> None:
+    driven.gives(GO)
+    assert driven.asks(GO) == []
+
+
+def test_ids_that_it_was_not_given_are_not_told(driven: Driven) -> None:
+    driven.gives(GO)
+    (heard,) = driven.says(accepted="9-1", done="8-77", failed="8-78", failure="atasco")
+    assert isinstance(heard, Report)
+    assert (heard.accepted, heard.done, heard.failed, heard.failure) == ("9-1", None, None, None)
+
+
+def test_silence_loses_the_link_and_what_comes_after_brings_it_back(driven: Driven) -> None:
+    assert driven.machine.next_deadline == pytest.approx(driven.now + STALE_S)
+    (gone,) = driven.step(after=STALE_S)
+    assert isinstance(gone, Report) and gone.state is MotionState.NO_LINK
+    assert str(gone.lost) == "its driver plc has said nothing for 1.5 s"
+    assert driven.machine.next_deadline is None
+    (back,) = driven.says(after=5.0)
+    assert isinstance(back, Report) and back.state is MotionState.STOPPED
+    assert driven.asks(GO) == [Give(life=driven.life, command=GO)]
+
+
+def test_silence_means_nothing_at_state() -> None:
+    driven = Driven(Evidence.STATE)
+    driven.step()
+    driven.says()
+    assert driven.machine.next_deadline is None
+
+
+def test_a_driver_that_knows_says_why_there_is_no_link(driven: Driven) -> None:
+    report = lost("station", at=driven.now, why="the cable is out")
+    (gone,) = driven.step(Said(at=driven.now, life=driven.life, report=report))
+    assert isinstance(gone, Report)
+    assert (gone.state, str(gone.lost)) == (MotionState.NO_LINK, "the cable is out")
+    assert driven.step(Said(at=driven.now, life=driven.life, report=report)) == []  # that is no news
+
+
+def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None:
+    driven.asks(GO)
+    (undelivered,) = driven.step(Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="cut")))
+    assert isinstance(undelivered, Undelivered) and (undelivered.id, undelivered.robot) == ("9-1", "station")
+    assert str(undelivered.sentence) == "its driver plc could not send a command (cut)"
+    assert driven.asks(LIGHT) == [Give(life=driven.life, command=LIGHT)]
+
+
+def test_a_defect_in_send_also_loses_the_link_until_the_device_is_heard(driven: Driven) -> None:
+    driven.asks(GO)
+    broken = Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="KeyError: 'go'"), broken=True)
+    undelivered, gone = driven.step(broken)
+    assert isinstance(undelivered, Undelivered) and isinstance(gone, Report)
+    assert gone.lost == undelivered.sentence
+    driven.says()
+    assert driven.asks(LIGHT) == [Give(life=driven.life, command=LIGHT)]
+
+
+def test_a_driver_that_does_not_come_back_from_send_has_lost_its_devices(driven: Driven) -> None:
+    driven.asks(GO)
+    driven.says(after=1.0)
+    (gone,) = driven.step(after=0.5)
+    assert isinstance(gone, Report)
+    assert str(gone.lost) == "its driver plc has not come back from send for 1.5 s"
+    assert driven.says() == []  # its own thread still reads, but commands would not leave
+    driven.step(Taken(at=driven.now, life=driven.life, command=GO))
+    assert len(reports(driven.says())) == 1
+
+
+def test_a_driver_that_broke_down_is_ended_and_started_again_later_and_later(driven: Driven) -> None:
+    waits = []
+    for _ in range(3):
+        gone, end = driven.step(Broken(at=driven.now, life=driven.life, error="ValueError: no"))
+        assert isinstance(gone, Report) and end == End(life=driven.life)
+        assert str(gone.lost) == "its driver plc broke down (ValueError: no), and is started again"
+        due = driven.machine.next_deadline
+        assert due is not None
+        waits.append(due - driven.now)
+        (begin,) = driven.step(after=waits[-1])
+        assert isinstance(begin, Begin)
+        driven.life = begin.life
+    assert waits == pytest.approx([FIRST_RETRY_S, 2 * FIRST_RETRY_S, 4 * FIRST_RETRY_S])
+
+
+def test_an_earlier_life_of_a_driver_counts_no_more(driven: Driven) -> None:
+    driven.step(Broken(at=driven.now, life=driven.life, error="ValueError: no", started=False))
+    assert driven.says() == []
+    (begin,) = driven.step(after=FIRST_RETRY_S)
+    assert driven.says() == []
+    assert isinstance(begin, Begin)
+    driven.life = begin.life
+    assert len(reports(driven.says())) == 1
+
+
+def test_a_latch_is_told_again_to_who_comes_back_or_boots(driven: Driven) -> None:
+    driven.says(boot_id=1)
+    driven.gives(LATCH)
+    assert len(driven.says(boot_id=1)) == 1
+    again = Stop(id="", robot="station", mode=StopMode.LATCH)
+    _, give = driven.says(boot_id=2)
+    assert give == Give(life=driven.life, command=again)
+    driven.step(Taken(at=driven.now, life=driven.life, command=again))
+    (refused,) = driven.asks(GO)
+    assert isinstance(refused, Report) and refused.refusal == "paro"
+    driven.gives(CLEAR)
+    driven.step(after=STALE_S)
+    assert len(driven.says()) == 1
+
+
+def test_an_answer_to_the_plants_own_repetition_is_passed_over(driven: Driven) -> None:
+    driven.gives(LATCH)
+    driven.says(boot_id=1)
+    (heard,) = driven.says(boot_id=1, accepted="", rejected="", refusal="paro")
+    assert isinstance(heard, Report)
+    assert (heard.accepted, heard.rejected, heard.refusal) == (None, None, None)
+
+
+def test_a_stop_that_reached_nobody_is_told_to_who_comes_back(driven: Driven) -> None:
+    driven.step(after=STALE_S)
+    (refused,) = driven.asks(LATCH)
+    assert isinstance(refused, Report) and refused.refusal == "no_link"
+    _, give = driven.says()
+    assert isinstance(give, Give) and isinstance(give.command, Stop)
+
+
+def test_reports_that_were_overtaken_or_lay_somewhere_prove_nothing(driven: Driven) -> None:
+    driven.says(after=1.0)
+    assert driven.says(late=0.5) == []
+    (gone,) = driven.says(after=3.0, late=STALE_S + 0.1)
+    assert isinstance(gone, Report) and gone.state is MotionState.NO_LINK
+
+
+def test_nobody_has_heard_of_what_is_to_come(driven: Driven) -> None:
+    (heard,) = driven.says(late=-60.0)
+    assert isinstance(heard, Report) and heard.at == driven.now
+
+
+@pytest.mark.parametrize(
+    ("report", "why"),
+    [
+        ("stopped", "'stopped' is no Report"),
+        (Report(at=0.0, robot="mill"), "'mill' is none of its devices (station)"),
+        (Report(at=0.0, robot="station", state=1), "state of station is 1; it must be a MotionState"),  # type: ignore[arg-type]
+        (Report(at=0.0, robot="station", done=7), "done of station is 7; it must be a word or an id"),  # type: ignore[arg-type]
+        (Report(at=float("nan"), robot="station"), "at of station is nan; it must be what the clock said"),
+        (Report(at=0.0, robot="station", rejected="9-1"), "rejected and refusal of station go together"),
+        (Report(at=0.0, robot="station", facts={"at": "left"}), "it must be a tuple of pairs"),  # type: ignore[arg-type]
+        (
+            Report(at=0.0, robot="station", facts=(("lamp", "lit"),)),
+            "lamp is 'lit'; station knows true or false",
+        ),
+        (Report(at=0.0, robot="station", q=(0.0,)), "q was said; station is a station and has none"),
+    ],
+)
+def test_nonsense_is_told_in_the_log_and_changes_nothing(driven: Driven, report: object, why: str) -> None:
+    if isinstance(report, Report) and report.at == 0.0:
+        report = replace(report, at=driven.now)
+    (refused,) = driven.step(Said(at=driven.now, life=driven.life, report=report))
+    assert isinstance(refused, Refused)
+    assert str(refused.sentence).startswith("the driver plc reported nonsense: ") and why in str(
+        refused.sentence
+    )
+
+
+def test_whoever_still_works_is_halted_before_the_driver_ends(driven: Driven) -> None:
+    driven.gives(GO)
+    halt, end = driven.step(Leaving(at=driven.now))
+    assert isinstance(halt, Give) and halt.command == Stop(id="", robot="station", mode=StopMode.HALT)
+    assert end == End(life=driven.life)
+    assert driven.machine.next_deadline is None and driven.says() == []
+
+
+def test_whose_work_has_ended_is_not_halted(driven: Driven) -> None:
+    driven.gives(GO)
+    driven.says(accepted="9-1", done="9-1")
+    assert driven.step(Leaving(at=driven.now)) == [End(life=driven.life)]

@@ -1,0 +1,228 @@
+"""The record is bounded, whole up to its last chunk, and never in the way of the plant."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import shutil
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+from arboleda.recorder import files, reader, recorder
+from arboleda.recorder.beginning import Limits
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.files import PartFile, parts_in, prune
+
+from .recorded import Site
+
+PATIENCE_S = 30.0
+STOPPED = "the record has stopped: {}; the plant goes on without it"
+
+
+def until(condition: object, what: str) -> None:
+    """Wait for another thread."""
+    ends = time.monotonic() + PATIENCE_S
+    while not condition():  # type: ignore[operator]
+        assert time.monotonic() < ends, what
+        time.sleep(0.01)
+
+
+def told(caplog: pytest.LogCaptureFixture) -> list[str]:
+    return [each.getMessage() for each in caplog.records if each.levelno >= logging.WARNING]
+
+
+def test_a_full_disk_stops_the_record_and_not_the_plant(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    site = Site(tmp_path, monkeypatch, least_free=10**18)
+    site.work("sis_a 0B 7")
+    site.end()
+    why = "the disk has less than 1000000000000 MB left"
+    assert site.recorders[0].trouble == why
+    assert told(caplog) == [STOPPED.format(why)]
+    assert site.rig.changes[-1].state.value == "done"
+
+
+def test_a_disk_that_fills_up_later_leaves_what_was_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    site = Site(tmp_path, monkeypatch)
+    writes = PartFile.flush
+
+    def full(part: PartFile) -> int:
+        if site.rig.now > 140.0:
+            raise OSError(28, os.strerror(28))
+        return writes(part)
+
+    monkeypatch.setattr(PartFile, "flush", full)
+    until(lambda: site.files, "no file is made")  # what comes later is more than a flush away
+    site.work(s=10.0)
+    until(lambda: site.files and site.files[0].stat().st_size > 5000, "nothing was written")
+    site.work(s=60.0)
+    site.end()
+    assert told(caplog) == [STOPPED.format("No space left on device")]
+    assert sum(1 for _ in reader.opened(site.files[0]).steps()) > 10
+
+
+def test_a_folder_that_cannot_be_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / files.FOLDER).write_text("in the way")
+    site = Site(tmp_path, monkeypatch)
+    until(lambda: site.recorders[0].trouble, "the recorder goes on")
+    site.work("sis_a 0B 7", s=5.0)
+    site.end()
+    assert told(caplog) == [STOPPED.format("File exists")]
+
+
+def test_a_disk_that_hangs_holds_up_no_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    hangs = threading.Event()
+    monkeypatch.setattr(recorder, "MOST_WAITING", 50)
+    monkeypatch.setattr(PartFile, "put", lambda part, step: hangs.wait(PATIENCE_S))
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7")
+    assert site.rig.changes[-1].state.value == "done"
+    assert told(caplog) == [STOPPED.format("the disk is too slow: 50 steps wait for it")]
+    hangs.set()
+    site.end()
+
+
+def test_a_state_that_cannot_be_taken_stops_the_record_and_not_the_plant(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(recorder, "state_of", lambda plant, turn: {}["odd"])
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7")
+    site.end()
+    assert site.rig.changes[-1].state.value == "done"
+    assert told(caplog) == [STOPPED.format("KeyError: 'odd'")]
+
+
+def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "PART_BYTES", (10_000, 10_000))
+    monkeypatch.setattr(recorder, "FLUSH_S", 0.0)
+    site = Site(tmp_path, monkeypatch, Limits(megabytes=0.05))
+    for turn in range(2):
+        seen = len(site.files)
+        site.work(f"sis_a 0B 7 #{turn}", "sis_b 1C 3", "sis_c 2A 5")
+        until(lambda seen=seen: len(site.files) != seen or site.files[0].name != "1000-0001.mcap", "one file")
+    site.end()
+    parts = parts_in(site.folder)
+    assert sum(part.bytes for part in parts) <= 65_000
+    numbers = [part.number for part in parts]
+    assert numbers[0] > 1 and numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    record = reader.opened(site.files[-1])
+    assert record.missing == numbers[0] - 1 and record.numbers == tuple(numbers)
+    times = [step.now for step in record.steps()]
+    assert times == sorted(times) and not record.broken
+
+
+def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:
+    for name in ("900-0001.mcap", "1000-0001.mcap", "notes.txt"):
+        (tmp_path / name).write_bytes(b"x" * 100)
+        os.utime(tmp_path / name, (500_000.0, 500_000.0 if name != "1000-0001.mcap" else 900_000.0))
+    prune(tmp_path, Limits(days=2.0), unix_s=900_000.0)
+    assert {path.name for path in tmp_path.iterdir()} == {"1000-0001.mcap", "notes.txt"}
+
+
+def test_what_a_killed_process_left_is_read_up_to_its_last_chunk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recorder, "FLUSH_S", 0.0)
+    site = Site(tmp_path, monkeypatch)
+    for _ in range(3):
+        before = site.files[0].stat().st_size if site.files else 0
+        site.work("sis_a 0B 7", s=30.0)
+        until(lambda before=before: site.files[0].stat().st_size > before + 3000, "nothing is written")
+    killed = tmp_path / "killed.mcap"
+    shutil.copy(site.files[0], killed)
+    site.end()
+    whole = [step.hash for step in reader.opened(site.files[0]).steps()]
+    record = reader.opened(killed)
+    left = [step.hash for step in record.steps()]
+    assert 20 < len(left) <= len(whole) and left == whole[: len(left)]
+    assert record.last is not None and not record.last.whole
+
+
+def test_any_cut_of_a_file_gives_whole_steps_or_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "CHUNK_BYTES", 20_000)
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    content = site.files[0].read_bytes()
+    whole = [step.hash for step in reader.opened(site.files[0]).steps()]
+    cut, counts = tmp_path / "cut.mcap", set()
+    for length in range(1, len(content), max(1, len(content) // 25)):
+        cut.write_bytes(content[:length])
+        try:
+            left = [step.hash for step in reader.opened(cut).steps()]
+        except NoRecord as refusal:
+            assert str(refusal).startswith(str(cut)) and "\n" not in str(refusal)
+            continue
+        assert left == whole[: len(left)]
+        counts.add(len(left))
+    assert len(counts) > 2
+
+
+def test_a_damaged_byte_ends_the_record_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "CHUNK_BYTES", 20_000)
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    content = site.files[0].read_bytes()
+    whole = [step.hash for step in reader.opened(site.files[0]).steps()]
+    broken, counts = tmp_path / "broken.mcap", []
+    for eighth in range(2, 8):
+        at = len(content) * eighth // 8
+        broken.write_bytes(content[:at] + bytes([content[at] ^ 0xFF]) + content[at + 1 :])
+        left = [step.hash for step in reader.opened(broken).steps()]
+        assert left == whole[: len(left)]
+        counts.append(len(left))
+    assert 0 < min(counts) < len(whole)
+
+
+def test_a_file_that_grows_is_read_on_where_its_reader_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    content = site.files[0].read_bytes()
+    whole = [data for _, data in reader.opened(site.files[0]).raw()]
+    grows = tmp_path / "grows.mcap"
+    grows.write_bytes(content[: len(content) // 3])
+    opened = reader.PartReader(grows)
+    got = [data for _, data in opened.raw()]
+    for end in range(len(content) // 3, len(content), 5000):
+        grows.write_bytes(content[:end])
+        got += [data for _, data in opened.raw()]
+    assert not opened.read.whole
+    grows.write_bytes(content)
+    got += [data for _, data in opened.raw()]
+    opened.close()
+    assert got == whole and opened.read.whole
+
+
+def test_other_tools_find_what_is_in_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    count = sum(1 for _ in reader.opened(site.files[0]).raw())
+    with site.files[0].open("rb") as file:
+        summary = make_reader(file).get_summary()
+        assert summary is not None and summary.statistics is not None
+        assert summary.statistics.message_count == count
+        (schema,) = summary.schemas.values()
+        assert schema.encoding == "jsonschema" and json.loads(schema.data)["title"] == schema.name
+        _, channel, message = next(make_reader(file).iter_messages())
+    assert (channel.topic, channel.message_encoding) == ("/arboleda/steps", "json")
+    assert set(json.loads(schema.data)["required"]) <= json.loads(message.data).keys()

@@ -1,0 +1,115 @@
+"""A record, executed again, does the same to the last bit; where it does not, the first value is named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.messages import Fact, TaskState, Verb
+from arboleda.recorder import reader
+from arboleda.recorder.replay import Difference, Replayed, first_difference, plant_of, replayed
+from arboleda.testing.plants import shipped
+
+from .recorded import FILES, Site
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
+    return Site(tmp_path, monkeypatch)
+
+
+def again(file: Path, **changes: object) -> list[Replayed]:
+    """All steps of a record, made once more."""
+    record = reader.opened(file)
+    model = replace(shipped(), **changes)  # type: ignore[arg-type]
+    steps = list(replayed(plant_of(record.first.beginning, model), record.steps()))
+    assert steps[-1].difference or (record.last is not None and record.last.whole and not record.broken)
+    return steps
+
+
+def test_tasks_done_failed_and_operated_are_the_same_again(site: Site) -> None:
+    rig = site.rig
+    site.work("sis_a 0B 7", "sis_b 1C 3 #lot", "nonsense", s=5.0)
+    assert rig.operate(Verb.HOLD, "sis_b") is None
+    rig.wait(3.0)
+    assert rig.operate(Verb.RESUME, "sis_b") is None
+    rig.power_off("ra_1")
+    rig.wait(20.0)
+    rig.power_on("ra_1")
+    assert rig.operate(Verb.STOP, "") is None
+    rig.wait(1.0)
+    for verb in (Verb.CLEAR, Verb.RESET):
+        rig.operate(verb, "")
+        rig.wait(20.0)
+    site.work("sis_c 2A 5", s=60.0)
+    site.end()
+    states = {change.state for change in rig.changes}
+    assert {TaskState.DONE, TaskState.FAILED, TaskState.REFUSED} <= states
+    (file,) = site.files
+    steps = again(file)
+    assert len(steps) > 200 and [each.number for each in steps] == list(range(1, len(steps) + 1))
+    assert not any(each.difference for each in steps)
+
+
+def test_a_task_walked_back_after_a_crash_is_the_same_again(site: Site) -> None:
+    site.work("sis_a 0B 7 #lot-1", s=6.0)
+    site.rig.crash()
+    site.rig.wait(5.0)
+    assert site.rig.operate(Verb.RESUME, "sis_a") is None
+    site.rig.wait(60.0)
+    site.end()
+    assert [change.state for change in site.rig.changes][-1] is TaskState.DONE
+    _, second = site.files
+    beginning = reader.opened(second).first.beginning
+    assert beginning.memory[Fact.STEP].keys() == {"lot-1"} and [each.id for each in beginning.kept] == [
+        "lot-1"
+    ]
+    assert not any(each.difference for file in site.files for each in again(file))
+
+
+def test_the_first_value_that_is_another_one_is_named(site: Site) -> None:
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    timing = replace(shipped().timing, dwell_s=0.5)
+    steps = again(site.files[0], timing=timing)
+    *before, last = steps
+    assert not any(each.difference for each in before)
+    assert last.difference is not None
+    assert last.difference.field == "messages[1] (Remember).value"  # of which recipe its tree is
+    assert [type(each).__name__ for each in last.recorded.events] == ["TaskRequest"]
+
+
+def test_a_step_that_raises_is_a_difference(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    site.work(s=1.0)
+    site.end()
+    record = reader.opened(site.files[0])
+    plant = plant_of(record.first.beginning, shipped())
+    monkeypatch.setattr(plant, "step", lambda now, events: 1 / 0)
+    (only,) = replayed(plant, record.steps())
+    assert only.difference == Difference("step", "made", "ZeroDivisionError: division by zero")
+
+
+def test_the_files_of_the_plant_are_in_the_record(site: Site) -> None:
+    site.end()
+    assert reader.opened(site.files[0]).first.beginning.files == FILES
+
+
+@pytest.mark.parametrize(
+    ("recorded", "now", "found"),
+    [
+        ({"a": 1.0}, {"a": 1}, Difference("a", 1.0, 1)),
+        ({"a": [0.0]}, {"a": [-0.0]}, Difference("a[0]", 0.0, -0.0)),
+        ({"a": [1]}, {"a": [1, 2]}, Difference("a[1]", None, 2)),
+        ({"a": {"b": 1}}, {"a": {"b": 1, "c": 2}}, Difference("a.c", None, 2)),
+        (
+            {"m": [{"type": "Stop", "mode": 1}]},
+            {"m": [{"type": "Stop", "mode": 2}]},
+            Difference("m[0] (Stop).mode", 1, 2),
+        ),
+        ({"a": 1}, {"a": 1}, Difference("hash", "another", "the same values")),
+    ],
+)
+def test_a_difference_says_where_and_what(recorded: object, now: object, found: Difference) -> None:
+    assert repr(first_difference(recorded, now)) == repr(found)

@@ -1,0 +1,105 @@
+"""The simulated disk keeps what the store keeps; a power cut undoes what nothing has synced."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from arboleda.adapters.store import Store
+from arboleda.app.memory import kept_tasks, remembered
+from arboleda.core.intake import HISTORY
+from arboleda.model.messages import Fact, Reason, Remember, TaskChanged, TaskState
+from arboleda.model.sentence import OWN
+from arboleda.simulator.disk import Disk, is_kept
+
+
+def said(id: str, state: TaskState = TaskState.QUEUED, **why: object) -> TaskChanged:
+    return TaskChanged(task=id, text="sis_a 0B 1", cell="sis_a", state=state, **why)  # type: ignore[arg-type]
+
+
+def fact(kind: Fact, value: str | None, name: str = "ra1") -> Remember:
+    return Remember(fact=kind, name=name, value=value)
+
+
+LIFE = (
+    said("a"),
+    fact(Fact.LATCH, "on"),
+    said("a", TaskState.RUNNING),
+    said("b"),
+    fact(Fact.EFFECTOR, "switching"),
+    fact(Fact.EFFECTOR, "on"),
+    said("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")),
+    said("a", TaskState.DONE),
+    said("a"),
+    said("c", TaskState.RUNNING),
+    said("", TaskState.REFUSED),
+    fact(Fact.LATCH, None),
+    said("c"),
+    said("c", TaskState.RUNNING),
+)
+
+
+def test_it_has_what_the_store_has_after_the_same_commits() -> None:
+    disk = Disk()
+    with Store(Path(":memory:")) as store:
+        for number, message in enumerate(LIFE):
+            if isinstance(message, Remember):
+                store.keep(message)
+            else:
+                store.task(message, "storage", float(number))
+            if is_kept(message):
+                disk.commit(message, float(number))
+        found = disk.found()
+        assert {kind: found.facts.get(kind, {}) for kind in Fact} == remembered(store)
+        assert list(found.tasks.values()) == kept_tasks(store, clock_s=0.0, unix_s=0.0)
+
+
+def test_a_start_finds_the_open_tasks_and_the_last_that_ended() -> None:
+    disk = Disk()
+    disk.commit(said("open"), 0.0)
+    for number in range(HISTORY + 3):
+        disk.commit(said(f"e{number}"), 1.0)
+        disk.commit(said(f"e{number}", TaskState.DONE), 2.0)
+    assert list(disk.found().tasks) == ["open", *(f"e{number}" for number in range(3, HISTORY + 3))]
+    assert disk.ended("e0") is not None and disk.ended("open") is None
+
+
+def test_a_power_cut_undoes_the_last_commits_that_nothing_has_synced() -> None:
+    for reached, effector, zones in ((0, "switching", ["mesa"]), (1, "off", ["mesa"]), (2, "off", [])):
+        disk = Disk()
+        disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), 1.0)
+        disk.commit(fact(Fact.EFFECTOR, "switching"), 1.0)
+        disk.commit(fact(Fact.EFFECTOR, "off"), 2.0)
+        disk.commit(fact(Fact.QUARANTINE, None, "mesa"), 3.0)
+        assert disk.unsynced == 2
+        disk.cut_power(reached)
+        assert disk.facts[Fact.EFFECTOR] == {"ra1": effector}
+        assert [*disk.facts[Fact.QUARANTINE]] == zones
+        assert disk.unsynced == 0
+
+
+def test_a_power_cut_does_not_undo_that_an_effector_has_gripped() -> None:
+    disk = Disk()
+    disk.commit(fact(Fact.EFFECTOR, "switching"), 1.0)
+    disk.commit(fact(Fact.EFFECTOR, "on"), 2.0)
+    disk.cut_power(0)
+    assert disk.facts[Fact.EFFECTOR] == {"ra1": "on"}
+
+
+def test_a_commit_that_is_synced_brings_all_before_it_along() -> None:
+    disk = Disk()
+    disk.commit(fact(Fact.QUARANTINE, "ra1", "mesa"), 1.0)
+    disk.commit(fact(Fact.QUARANTINE, None, "mesa"), 2.0)
+    disk.commit(said("a"), 3.0)
+    disk.cut_power(0)
+    assert disk.facts[Fact.QUARANTINE] == {}
+    assert disk.found().tasks["a"].state is TaskState.QUEUED
+
+
+def test_what_is_committed_after_a_power_cut_is_kept_as_before() -> None:
+    disk = Disk()
+    disk.commit(said("a"), 1.0)
+    disk.cut_power(0)
+    disk.commit(replace(said("a"), state=TaskState.RUNNING), 2.0)
+    disk.cut_power(0)
+    assert disk.tasks["a"].started_at == 2.0

@@ -1,0 +1,75 @@
+"""What a task was made of: the same in every start, another one after any change that matters."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import pytest
+
+from arboleda.testing import shipped
+from arboleda.trees import fingerprint, steps
+from arboleda.trees.leaves import Unless
+
+SHOWN = """
+from arboleda.trees import fingerprint
+from arboleda.testing import shipped
+print(fingerprint.of_cell(shipped().cells[0], "storage", {}))
+"""
+
+
+def of(holds: Callable[[], bool], name: str = "a") -> str:
+    return fingerprint.of_tree(steps.sequence("work", Unless(name, holds)), {})
+
+
+def waits(seconds: float) -> Callable[[], bool]:
+    return lambda: seconds > 0
+
+
+def later(at: Any) -> bool:
+    return bool(at)
+
+
+def test_it_is_the_same_in_another_process() -> None:
+    said = [
+        subprocess.run([sys.executable, "-c", SHOWN], capture_output=True, text=True, check=True).stdout
+        for _ in range(2)
+    ]
+    assert said[0] == said[1] and len(said[0].strip()) == 32
+
+
+def test_a_tree_made_again_is_the_same() -> None:
+    assert of(waits(1.0)) == of(waits(1.0))
+    assert of(partial(later, (1, {"a": [2.0]}))) == of(partial(later, (1, {"a": [2.0]})))
+    assert of(partial(later, frozenset({"b", "a"}))) == of(partial(later, frozenset({"a", "b"})))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        of(waits(2.0)),
+        of(waits(1.0), "b"),
+        of(lambda: True),
+        of(partial(later, 1.0)),
+        of(partial(later, 2.0)),
+    ],
+)
+def test_what_a_step_has_taken_in_makes_another_tree(other: str) -> None:
+    assert other != of(waits(1.0))
+
+
+def test_what_a_cell_is_made_of_counts_and_what_only_its_queue_needs_does_not() -> None:
+    cell = shipped("sis_a").cells[0]
+
+    def made(**changes: Any) -> str:
+        return fingerprint.of_cell(replace(cell, **changes), "storage", {})
+
+    same = made()
+    assert made(queue_limit=99, goes_on=True) == same
+    assert made(arm=replace(cell.arm, timeout_s=77.0)) != same
+    assert made(home=replace(cell.home, q=(0.1, 0.1, 0.0))) != same
+    assert fingerprint.of_cell(cell, "palletizing", {}) != same
