@@ -28,7 +28,9 @@ class Site:
         self.plant = self._start()
 
     def kill(self) -> None:
+        """kill -9 and a new start; meanwhile the usual port may be that of another plant's broker."""
         self.plant.kill()
+        self.boards.leave()
         self.plant = self._start()
 
     def until(self, what: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
