@@ -126,6 +126,14 @@ class ArmBody(Robotic):
         drift[joint] += steps
         self._drift = tuple(drift)
 
+    def place(self, told: Told, *, holds: bool) -> None:
+        if told.q is not None:
+            self.put_at_reference()
+            for axis, steps in zip(self._axes, self._steps(told.q), strict=True):
+                axis.shift(steps)
+        self.effector = self.effector if told.effector is None else told.effector
+        self.holding = holds
+
     def put_at_reference(self) -> None:
         self._axes = tuple(_axis(joint) for joint in self._joints)
         self._drift = (0,) * len(self._joints)

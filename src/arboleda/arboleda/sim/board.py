@@ -114,6 +114,12 @@ class Board:
         self.body.put_at_reference()
         self.homed = self.homed or not self._numbered
 
+    def place(self, told: Told, *, holds: bool, homed: bool | None, latched: bool) -> None:
+        """Have the still robot be as another one has told of itself, `told` in SI units."""
+        self.body.place(told, holds=holds)
+        self.homed = self.homed if homed is None else homed
+        self.latched = latched
+
     def fail(self, now_us: int) -> None:
         """A driver reports an alarm: the board ramps to a stop and moves nothing until `repair`."""
         self.advance(now_us)

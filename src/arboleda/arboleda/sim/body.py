@@ -112,6 +112,9 @@ class Body(Protocol):
 
     def switch_effector(self, on: bool) -> None: ...
 
+    def place(self, told: Told, *, holds: bool) -> None:
+        """Be, still, as somebody else's body has told of itself; what it has not told stays as it is."""
+
     def set_by_hand(self, facts: Facts) -> None:
         """Somebody makes facts so at the machine, which does nothing meanwhile."""
 

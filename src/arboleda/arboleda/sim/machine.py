@@ -88,6 +88,9 @@ class MachineBody:
         if not self._deeds:
             self.facts.update(facts)
 
+    def place(self, told: body.Told, *, holds: bool) -> None:
+        self.facts.update(told.facts or ())
+
     @property
     def true_place(self) -> None:
         """It stands where it is."""

@@ -141,8 +141,8 @@ class World:
     every pass with what happened in `moment`.
 
     `carriers` turn what somebody publishes into what the network gets, `partings` a robot's report into
-    several, stamped with when they come; `disk` is what the plant kept, `found` what of
-    it was there when it started last; `starts` counts that.
+    several, stamped with when they come; `make_plant` makes the plant of each start. `disk` is what the plant
+    kept, `found` what of it was there when it started last; `starts` counts that.
     Processes and their lines are named by `PLANT`, `BRIDGE` and the boards' MQTT names.
     """
 
@@ -155,7 +155,9 @@ class World:
         watchers: Iterable[Callable[[], None]] = (),
         carriers: Iterable[Carry] = (),
         recipes: Builders | None = None,
+        make_plant: Callable[..., Plant] | None = None,
     ) -> None:
+        self._make_plant = make_plant
         self.model = model
         self.now = now
         self.moment = Moment()
@@ -665,7 +667,8 @@ class World:
 
     def _new_plant(self) -> Plant:
         self.found = self.disk.found()
-        return Plant(
+        make = self._make_plant or Plant
+        return make(
             self.model,
             epoch=next(self._epochs),
             now=self.now,

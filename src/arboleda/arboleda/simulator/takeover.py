@@ -1,0 +1,157 @@
+"""A plant that is at work, handed over to virtual robots: they go on from where it believes the real ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from arboleda.core.plant import HEARTBEAT_S, Plant
+from arboleda.dispatch.belief import Belief
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.commands import Command, Position, Stop, StopMode
+from arboleda.model.messages import Heartbeat, Report
+from arboleda.model.plant_model import MotionState, PlantModel, Robot
+from arboleda.sim.body import Told
+from arboleda.wire.hop import FromPlant
+from arboleda.wire.transport import Publication
+
+from .world import BRIDGE, World
+
+Given = tuple[float, Command | Heartbeat]
+APART_S = 0.3  # a virtual robot is where the real one was heard if that gets there in so long
+
+
+def taken_over(plant: Plant, model: PlantModel) -> World:
+    """A world at the time of the plant's last step, in which virtual boards do what is under way.
+
+    `model` is the plant's own, with a board on MQTT for everybody who has one in simulations. They do it anew
+    from where and when it began, so that they are in the middle of it. Where that leads somewhere else than
+    the real one was heard last, they do the rest of it from there.
+    """
+    entries = list(plant.dispatcher.ledger.entries.values())
+    world = _played(plant, model, entries, {entry.command.robot: entry.origin for entry in entries})
+    astray = {name for name in plant.dispatcher.beliefs if _is_astray(world, plant, name)}
+    if astray:
+        rest = [_rest_of(plant, entry) if entry.command.robot in astray else entry for entry in entries]
+        began = {entry.command.robot: entry.origin for entry in rest}
+        world = _played(plant, model, rest, began)
+    _finish(world, plant)
+    return world
+
+
+def _played(
+    plant: Plant, model: PlantModel, entries: Iterable[Entry], began: dict[str, Position | None]
+) -> World:
+    """Boards that were given these commands at their times; the plant of this world only beats."""
+    given = sorted(_given(plant, entries), key=lambda each: each[0])
+    world = World(model, now=min([plant.now, *(at for at, _ in given)]), epoch=plant.epoch)
+    world.stop_plant()
+    for robot in model.robots.values():
+        if robot.mqtt in world.boards:
+            _place(world, plant, robot, began.get(robot.name))
+    world.settle()
+    for at, message in given:
+        world.advance(max(0.0, at - world.now))
+        _give(world, message)
+        world.settle()
+    world.advance(max(0.0, plant.now - world.now))
+    return world
+
+
+def _place(world: World, plant: Plant, robot: Robot, began: Position | None) -> None:
+    """Where it was when it began what is under way, else where it was heard last."""
+    belief, board = plant.dispatcher.beliefs[robot.name], world.boards[robot.mqtt]
+    q = began if isinstance(began, tuple) else belief.q
+    node = began if isinstance(began, int) else belief.node
+    told = Told(q, node, belief.effector, belief.piece, tuple(belief.facts.items()) or None)
+    holds = (
+        robot.held_fact is not None
+        and plant.dispatcher.grips.holding(robot.name)
+        and belief.piece is not False
+    )
+    latched = belief.state is MotionState.STOP_LATCHED
+    board.place(told, holds=holds, homed=not belief.says_unhomed, latched=latched)
+    world.wake(robot.mqtt)
+
+
+def _given(plant: Plant, entries: Iterable[Entry]) -> Iterator[Given]:
+    """What robots were told and have not ended, with the stops that they were told since, and the beats.
+
+    The ids of these stops are of the plant, which fences others off, and no others: it counts from 1.
+    """
+    first = plant.now
+    for entry in entries:
+        first = min(first, entry.sent_at)
+        yield entry.sent_at, entry.command
+        if entry.state is State.CANCELLING and entry.halts and entry.cancelled_at is not None:
+            halt = Stop(id=f"{plant.epoch}-0", robot=entry.command.robot, mode=StopMode.HALT)
+            yield entry.cancelled_at, halt
+    for robot in sorted(plant.dispatcher.latched):
+        yield plant.now, Stop(id=f"{plant.epoch}-00", robot=robot, mode=StopMode.LATCH)
+    while first < plant.now:
+        yield first, Heartbeat(epoch=plant.epoch)
+        first += HEARTBEAT_S
+
+
+def _give(world: World, message: Command | Heartbeat) -> None:
+    """Have the bridge tell a board; what it answers is nobody's news."""
+    assert world.bridge is not None
+    bridge = world.broker.clients[BRIDGE]
+    for said in world.bridge.step(world.now, [FromPlant(at=world.now, message=message)]):
+        if isinstance(said, Publication):
+            world.publish(said, bridge)
+
+
+def _is_astray(world: World, plant: Plant, name: str) -> bool:
+    """Whether a virtual robot is not where the real one was heard last, or could be soon."""
+    belief, robot = plant.dispatcher.beliefs[name], plant.model.robots[name]
+    board = world.boards.get(robot.mqtt)
+    place = None if board is None else board.body.true_place
+    if place is None or belief.position is None:
+        return False
+    apart_s = plant.now - belief.position_at + APART_S
+    return not robot.can_have_moved(belief.position, place, apart_s)
+
+
+def _rest_of(plant: Plant, entry: Entry) -> Entry:
+    """The same command, given now where its robot was heard last."""
+    rest = Entry(
+        entry.command, cell=entry.cell, doing=entry.doing, sent_at=plant.now, deadline=entry.deadline
+    )
+    rest.state, rest.cancelled_at = entry.state, plant.now
+    rest.origin = plant.dispatcher.beliefs[entry.command.robot].position
+    return rest
+
+
+def _finish(world: World, plant: Plant) -> None:
+    """Have the boards speak to this plant from now on, in place of the real ones."""
+    for name, belief in plant.dispatcher.beliefs.items():
+        world.partings[name] = Dress(belief)
+        if belief.state is MotionState.FAULT and belief.robot.mqtt in world.boards:
+            world.boards[belief.robot.mqtt].fail(round(world.now * 1e6))
+            world.wake(belief.robot.mqtt)
+    world.plant = plant
+    world.start_plant()
+
+
+class Dress:
+    """Makes a virtual robot's reports those of the robot in whose place it is: its bridge, its boot.
+
+    Later ones of the virtual ones are as many later ones of the others.
+    """
+
+    def __init__(self, belief: Belief) -> None:
+        self._epoch, self._boot_id = belief.epoch, belief.boot_id
+        self._first: Report | None = None
+
+    def __call__(self, report: Report) -> list[Report]:
+        if self._first is None and report.state is not MotionState.NO_LINK:
+            self._first = report
+        first = self._first or report
+        epoch = _later(self._epoch, first.epoch, report.epoch)
+        return [replace(report, epoch=epoch, boot_id=_later(self._boot_id, first.boot_id, report.boot_id))]
+
+
+def _later(ours: int | None, first: int | None, now: int | None) -> int | None:
+    """As much later than ours as `now` is than the first."""
+    return now if None in (ours, first, now) else ours + now - first  # type: ignore[operator]
