@@ -11,11 +11,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from arboleda.app import config, logs_command, replay_command
+from arboleda.app import config, logs_command, recorded_plant, replay_command
 from arboleda.app.build import Options, build
 from arboleda.app.cli import cli
 from arboleda.model.errors import ConfigError
 from arboleda.recorder import copying, files, reader
+from arboleda.recorder.beginning import PlantFiles
 from arboleda.recorder.errors import NoRecord
 
 SHIPPED = config.load_recorded()[1]
@@ -153,13 +154,13 @@ def test_a_record_whose_first_files_are_gone_is_read_and_not_replayed(state: Pat
         said("replay", str(target))
 
 
-def test_a_plant_with_files_of_its_own_is_replayed_with_those(tmp_path: Path) -> None:
+def test_a_plant_with_files_of_its_own_is_replayed_with_those() -> None:
     source = Path(__file__).parents[3] / "examples" / "lab_bench"
     _, recording = config.load_recorded(source / "plant.yaml")
     assert recording is not None
     contents = recording.files.contents
     assert recording.files.plant == "plant.yaml" and any(name.endswith(".py") for name in contents)
-    again, first = replay_command._loaded(recording.files, tmp_path), config.load(source / "plant.yaml")
+    again, first = recorded_plant.loaded(recording.files), config.load(source / "plant.yaml")
     assert [(cell.name, [each.name for each in cell.recipes]) for cell in again.cells] == [
         (cell.name, [each.name for each in cell.recipes]) for cell in first.cells
     ]
@@ -168,7 +169,7 @@ def test_a_plant_with_files_of_its_own_is_replayed_with_those(tmp_path: Path) ->
 @pytest.mark.parametrize("name", ["/etc/passwd", "../up.yaml", "a/../../up", ""])
 def test_a_path_that_leads_out_of_the_record_is_refused(name: str) -> None:
     with pytest.raises(NoRecord, match="has a path that no plant writes"):
-        replay_command._inside(name)
+        recorded_plant.loaded(PlantFiles(plant=name))
 
 
 @pytest.mark.parametrize(

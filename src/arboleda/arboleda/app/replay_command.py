@@ -7,8 +7,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -17,20 +16,21 @@ from arboleda import __version__
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import Link, PlantModel
-from arboleda.recorder.beginning import Beginning, PlantFiles
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.beginning import Beginning
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.plain_data import sentence_from
 
-from . import config
-from .rate import at_rate
 from .record_command import File, changes, last_of, moment
+from .recorded_plant import model_of
 from .where import StateFolder
 
 if TYPE_CHECKING:
     from arboleda.recorder.reader import Record
     from arboleda.recorder.replay import Replayed
     from arboleda.recorder.steps import Recorded
+
+    from .fork.command import Options
 
 DIFFERS = 1
 ENDS = {state.value for state in ENDED}
@@ -41,7 +41,10 @@ HOW = (
     "The plant file of the record and the files of Python that it uses are those that are run: replay only "
     "records that you trust."
 )
-EXIT = "Exit status: 0 all steps are equal, 1 one is not, 2 no record, or one that cannot be replayed."
+EXIT = (
+    "Exit status: 0 all steps are equal, or all of a fork happens as recorded; 1 something does not; "
+    "2 no record, or one that cannot be replayed."
+)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ def replay(
         typer.Option(metavar="TIME", help="Up to 2026-11-22T03:15:00, or 03:15:00 of its first day."),
     ] = None,
     task: Annotated[
-        str | None, typer.Option(metavar="ID", help="Show this task only, up to its end.")
+        str | None,
+        typer.Option(metavar="ID", help="Show this task only, up to its end; a fork begins as it does."),
     ] = None,
     speed: Annotated[
         float | None,
@@ -76,9 +80,24 @@ def replay(
         typer.Option(
             "--plant",
             metavar="FILE",
-            help="Another plant file: where it first does otherwise.",
+            help="Another plant file: where it first does otherwise, or what it does in a fork.",
         ),
     ] = None,
+    fork_at: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="From there on with virtual devices: what is otherwise."),
+    ] = None,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A fork with another value: timing.stale_after_s=3"),
+    ] = None,
+    recipe: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A fork whose new tasks have the recipes of this file of Python."),
+    ] = None,
+    healthy: Annotated[
+        bool, typer.Option("--healthy", help="A fork in which nothing befalls devices any more.")
+    ] = False,
     state: StateFolder = None,
 ) -> None:
     from arboleda.recorder import reader
@@ -90,10 +109,41 @@ def replay(
         raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
     for line in _notes(beginning, plant):
         _say(line)
-    end_ns = None if until is None else _time(until, record.first.began_ns)
+    began_ns = record.first.began_ns
+    end_ns = None if until is None else _time("--until", until, began_ns)
+    if fork_at or setting or recipe or healthy:
+        from .fork import command
+
+        options = command.Options(
+            at_ns=None if fork_at is None else _time("--fork-at", fork_at, began_ns),
+            task=task,
+            settings=tuple(setting or ()),
+            plant=plant,
+            recipe=recipe,
+            healthy=healthy,
+            until_ns=end_ns,
+        )
+        _fork(record, options)
+        return
     chosen = Chosen(end_ns, task, speed)
-    last = _run(record, _model(beginning, plant), chosen)
+    last = _run(record, model_of(beginning, plant), chosen)
     _finish(record, last)
+
+
+def _fork(record: Record, options: Options) -> None:
+    """Say what came of a fork."""
+    from .fork import command
+    from .fork.run import forked
+
+    found = forked(record.first.beginning, record.steps(), command.asked(record, options), sentence_of)
+    if found.difference is not None:
+        _finish(record, found.difference)
+    for line in command.lines(found, options):
+        _say(line)
+    if record.broken:
+        _say(f"the record ends early: {record.broken}")
+    if not all(pair.same for pair in command.compared(found, options.task)):
+        raise typer.Exit(DIFFERS)
 
 
 def _finish(record: Record, last: Replayed | None) -> None:
@@ -113,40 +163,7 @@ def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:
         yield f"note: replayed with {plant} instead of the plant file of the record"
 
 
-def _model(beginning: Beginning, other: Path | None) -> PlantModel:
-    """The plant of the record, or of another file in its place."""
-    if other is not None:
-        model = config.load(other)
-    else:
-        with TemporaryDirectory(prefix="arboleda-") as made:
-            model = _loaded(beginning.files, Path(made))
-    return at_rate(model.on_boards(Link.DRIVER) if beginning.virtual else model, beginning.rate)
-
-
-def _loaded(files: PlantFiles, folder: Path) -> PlantModel:
-    for name, content in files.contents.items():
-        path = folder / _inside(name)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    try:
-        model, recording = config.load_recorded(folder / _inside(files.plant))
-    except ConfigError as error:
-        raise NoRecord(f"The plant file of the record cannot be read by this version:\n{error}") from error
-    read = [] if recording is None else sorted(recording.files.contents.values())
-    if recording is not None and read != sorted(files.contents.values()):
-        raise NoRecord("The plant file of the record uses files by absolute paths, which are others now.")
-    return model
-
-
-def _inside(name: str) -> str:
-    """The name of a file in a record; NoRecord where it would be written somewhere else."""
-    path = PurePosixPath(name)
-    if path.is_absolute() or ".." in path.parts or not path.parts or "\0" in name:
-        raise NoRecord("Its plant file has a path that no plant writes.")
-    return name
-
-
-def _time(text: str, began_ns: int) -> int:
+def _time(option: str, text: str, began_ns: int) -> int:
     """Nanoseconds of Unix time; ConfigError for what is no time."""
     day = datetime.fromtimestamp(began_ns / 1e9).date().isoformat()
     for candidate in (text, f"{day}T{text}"):
@@ -154,7 +171,7 @@ def _time(text: str, began_ns: int) -> int:
             return int(datetime.fromisoformat(candidate).timestamp() * 1e9)
         except (OverflowError, ValueError):
             continue
-    raise ConfigError((f"--until {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
+    raise ConfigError((f"{option} {plain(text, 40)}: is no time; write 2026-11-22T03:15:00, or 03:15:00",))
 
 
 def _run(record: Record, model: PlantModel, chosen: Chosen) -> Replayed | None:

@@ -1,0 +1,98 @@
+"""What befell the devices of a record befalls the virtual ones at the same times."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from arboleda.model.messages import Event, OperatorRequest, Shutdown, TaskRequest
+from arboleda.model.plant_model import Evidence, Link
+from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
+from arboleda.simulator.network import keeps_its_place
+from arboleda.simulator.world import World
+from arboleda.wire.transport import Publication
+
+INPUTS = (TaskRequest, OperatorRequest, Shutdown)  # what comes from people; devices are virtual
+ONE_RESTART_S = 1.0  # a bridge that starts anew is told of by all its robots
+INSIDE_S = 0.001  # a silence is between two reports, both of which arrive
+TOO_LATE_S = 1e6  # a last will that nobody waits for
+
+
+def ask(world: World, at: float, events: Iterable[Event]) -> None:
+    """Have people ask the same at the same time."""
+    for event in events:
+        if isinstance(event, INPUTS):
+            world.at(max(event.at, at), world.tell, event)
+
+
+def befall(world: World, troubles: Iterable[Trouble]) -> None:
+    """Have it happen once more, or go on where it has begun; what ends before now is over."""
+    restarted_at = -math.inf
+    for trouble in troubles:
+        robot = world.model.robots.get(trouble.robot)
+        if robot is None or robot.link is not Link.MQTT or trouble.ends <= world.now:
+            continue
+        if trouble.kind == BRIDGE:
+            if trouble.at - restarted_at > ONE_RESTART_S:
+                world.at(_off_at(trouble), lambda _: _restart_bridge(world))
+            restarted_at = trouble.at
+        elif trouble.kind == ALARM:
+            world.at(trouble.at, lambda _, name=robot.mqtt: _alarm(world, name))
+            _later(world, trouble.ends, lambda _, name=robot.mqtt: _repair(world, name))
+        elif trouble.kind == BOOT and robot.evidence is Evidence.IDS and trouble.at >= world.now:
+            _boot(world, robot.mqtt, trouble)
+        else:
+            _silence(world, robot.mqtt, trouble)
+
+
+def _later(world: World, at: float, call: object) -> None:
+    if at < math.inf:
+        world.at(at, call)  # type: ignore[arg-type]
+
+
+def _silence(world: World, board: str, trouble: Trouble) -> None:
+    """Nothing of a board arrives; where its connection broke, the broker says so when it did."""
+    line = world.broker.clients[board].up
+
+    def lose(message: object) -> tuple[float, ...]:
+        return (0.0,) if keeps_its_place(message) else ()
+
+    def begin(_: object) -> None:
+        line.troubles.append(lose)
+
+    world.at(trouble.at + INSIDE_S, begin)
+    _later(world, trouble.ends - INSIDE_S, lambda _: line.troubles.remove(lose))
+    if trouble.cut:
+        world.at(_off_at(trouble), lambda _: _present(world, board, b"0"))
+        _later(world, trouble.ends, lambda _: _present(world, board, b"1"))
+
+
+def _present(world: World, board: str, said: bytes) -> None:
+    world.publish(Publication(topic=f"{board}/conexion", payload=said, retain=True))
+
+
+def _boot(world: World, board: str, trouble: Trouble) -> None:
+    off_at = _off_at(trouble)
+    will_s = 0.0 if trouble.cut else TOO_LATE_S
+    world.at(off_at, lambda _: world.power_off(board, will_after_s=will_s))
+    _later(world, max(off_at, trouble.ends - INSIDE_S), lambda _: world.power_on(board))
+
+
+def _off_at(trouble: Trouble) -> float:
+    """When it went off: as was told at once, else after its last word."""
+    return trouble.lost_at if trouble.cut and trouble.lost_at is not None else trouble.at + INSIDE_S
+
+
+def _alarm(world: World, board: str) -> None:
+    world.boards[board].fail(round(world.now * 1e6))
+    world.wake(board)
+
+
+def _repair(world: World, board: str) -> None:
+    world.boards[board].repair(round(world.now * 1e6))
+    world.wake(board)
+
+
+def _restart_bridge(world: World) -> None:
+    world.stop_bridge()
+    world.start_bridge()
