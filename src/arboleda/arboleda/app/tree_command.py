@@ -8,14 +8,15 @@ from typing import Annotated, Any
 
 import typer
 
+from arboleda.bt_xml import rows as tree_rows
 from arboleda.core import text
 from arboleda.core.plant import Plant
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.task import Order
 from arboleda.views import tree_view
 
-from . import config
+from . import config, tree_file
 from .draw import Format, draw
 from .where import PlantFile, StateFolder, client
 
@@ -25,7 +26,11 @@ Live = Annotated[bool, typer.Option("--live", help="The tree that runs now, with
 
 def tree(
     recipe: Annotated[
-        str, typer.Argument(help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'.")
+        str,
+        typer.Argument(
+            help="The recipe to draw: storage, palletizing; or a task of it, 'sis_a 0B 7'; or a file of "
+            "trees, tend.xml."
+        ),
     ],
     plant: PlantFile = None,
     cell: Annotated[str | None, typer.Option(help="Whose tree. [default: the first cell]")] = None,
@@ -36,9 +41,21 @@ def tree(
     """Draw the behavior tree of a recipe, e.g. `arboleda tree storage --format svg > storage.svg`."""
     if format is Format.PNG and sys.stdout.isatty():
         raise typer.BadParameter(f"a PNG is not for a terminal; add > {recipe}.png", param_hint="--format")
-    rows = _running(recipe, cell, plant, state) if live else _planned(recipe, cell, config.load(plant))
+    if tree_file.is_tree_file(Path(recipe)) and not live:
+        rows = _of_file(Path(recipe))
+    else:
+        rows = _running(recipe, cell, plant, state) if live else _planned(recipe, cell, config.load(plant))
     sys.stdout.buffer.write(draw(rows, format, statuses=live))
     sys.stdout.flush()
+
+
+def _of_file(path: Path) -> list[dict[str, Any]]:
+    """The tree that a file of trees names as its main one, or has alone."""
+    forest = tree_file.load(path).forest
+    if forest.main is None:
+        there = ", ".join(forest.trees) or "none"
+        raise ConfigError((f'{path}: which tree? <root main_tree_to_execute="...">; there are {there}',))
+    return tree_rows.rows(forest, forest.main)
 
 
 def _planned(recipe: str, cell: str | None, model: PlantModel) -> list[dict[str, Any]]:

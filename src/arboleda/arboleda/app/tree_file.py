@@ -1,0 +1,70 @@
+"""Files of trees as a person names them on the command line: read with all that they include, and checked."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from arboleda.bt_xml import checking, reading
+from arboleda.bt_xml.checking import Checked
+from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.forest import Forest
+from arboleda.bt_xml.markup import LARGEST
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+
+from . import user_file
+
+ENDING = ".xml"
+MOST = 10  # unknown leaves that are named
+LONGEST = 500  # characters of a line
+
+
+def is_tree_file(path: Path) -> bool:
+    """Whether a file is one of trees, by its name."""
+    return path.suffix.lower() == ENDING
+
+
+@dataclass(frozen=True, kw_only=True)
+class TreeFile:
+    """A file without mistakes; `warnings` has a line for each."""
+
+    forest: Forest
+    checked: Checked
+    warnings: tuple[str, ...]
+
+
+def load(path: Path) -> TreeFile:
+    """The trees of a file and of those that it includes; ConfigError with every mistake."""
+    findings = Findings()
+    forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, _included)
+    checked = checking.check(forest, findings)
+    if findings.mistakes:
+        raise ConfigError(findings.mistakes)
+    return TreeFile(forest=forest, checked=checked, warnings=findings.warnings)
+
+
+def report(path: Path) -> list[str]:
+    """What there is to say of a file that can be used; ConfigError with every mistake of one that cannot."""
+    found = load(path)
+    lines = [*found.warnings, *_unknown(path, found.checked)]
+    trees = ", ".join(found.forest.trees) or "none"
+    lines.append(f"{path}: good: {found.checked.nodes} nodes; trees {trees}")
+    return [plain(line, LONGEST) for line in lines]
+
+
+def _unknown(path: Path, checked: Checked) -> list[str]:
+    if not checked.unknown:
+        return []
+    names = sorted(checked.unknown)
+    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
+    why = "which a plant or a program has to bring"
+    return [f"{path}: note: {len(names)} kinds of leaves, {why}: {', '.join(names[:MOST])}{more}"]
+
+
+def _included(file: str, path: str) -> tuple[str, bytes]:
+    if "\0" in path:
+        raise ConfigError(("this is not the name of a file",))
+    found = os.path.normpath(Path(file).parent / path)
+    return found, user_file.read_bytes(Path(found), LARGEST)

@@ -1,0 +1,216 @@
+"""What is wrong with the nodes of a forest: kinds, children, ports, scripts, names."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from graphlib import CycleError, TopologicalSorter
+
+from arboleda.model.outside import among, quoted
+
+from . import endings, names, nodes, script, values, variables
+from .findings import Findings, Place
+from .forest import Forest, Node
+from .markup import Attribute
+from .nodes import OF_LIBRARY, Category, Kind, Port, Way
+from .values import Variable
+
+MOST_LOOPS = 20
+OLD_PARALLEL = ("success_threshold", "failure_threshold", "threshold")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checked:
+    """What is worth knowing of a forest: how many nodes it has, and the leaves of which nobody here knows
+    what they do, with the first place of each."""
+
+    nodes: int
+    unknown: Mapping[str, Place]
+
+
+def check(forest: Forest, findings: Findings) -> Checked:
+    """Keeps all that is wrong."""
+    checker = _Checker(forest, findings)
+    for tree in forest.trees.values():
+        for node in tree.root.iterate():
+            checker.look_at(node)
+        for node in endings.unreached(tree.root):
+            findings.warning(node.place, f"{_named(node)} can never be reached, by what stands before it")
+    _check_loops(forest, findings)
+    for place, name in variables.unwritten(forest, checker.kind):
+        findings.warning(place, f"the variable {quoted(name)} is read, and nothing in these files writes it")
+    return Checked(nodes=checker.number, unknown=checker.unknown)
+
+
+def _named(node: Node) -> str:
+    return f"{node.kind} {quoted(node.name)}" if node.name else node.kind
+
+
+@dataclass
+class _Checker:
+    forest: Forest
+    findings: Findings
+    number: int = 0
+    unknown: dict[str, Place] = field(default_factory=dict)
+
+    def kind(self, node: Node) -> Kind | None:
+        """What is known of the kind of a node; of a subtree what its model says."""
+        if node.is_subtree:
+            return self._model_of(node)
+        known = nodes.built_in(node.kind) or self.forest.models.get(node.kind)
+        if known is None and node.tag is not None:
+            fewest, most = nodes.children(node.tag)
+            known = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
+        return known
+
+    def _model_of(self, node: Node) -> Kind | None:
+        model = self.forest.models.get(node.own["ID"].value)
+        return model if model is not None and model.category is Category.SUBTREE else None
+
+    def look_at(self, node: Node) -> None:
+        self.number += 1
+        self._check_names(node)
+        for name in names.SCRIPTS:
+            if name in node.own:
+                self._check_script(node, node.own[name])
+        if node.is_subtree:
+            self._check_subtree(node)
+            return
+        kind = self.kind(node)
+        if kind is None:
+            self._check_unknown(node)
+            return
+        if kind.ports is None and kind.category in (Category.ACTION, Category.CONDITION):
+            self.unknown.setdefault(node.kind, node.place)
+        self._check_children(node, kind)
+        if kind.ports is not None:
+            self._check_ports(node, kind, kind.ports)
+
+    def _check_names(self, node: Node) -> None:
+        if (why := names.of_one_node(node.name)) is not None:
+            self._mistake(node, f"a node cannot be called {quoted(node.name)}: {why}")
+        if (why := names.of_node(node.kind)) is not None:
+            sentence = f"newer editors refuse {quoted(node.kind)} as the name of a node: {why}"
+            self.findings.warning(node.place, sentence)
+        for name, attribute in node.ports.items():
+            if (why := names.of_port(name)) is not None:
+                place = Place(node.place.file, attribute.mark)
+                sentence = f"newer editors refuse {quoted(name)} as the name of a port: {why}"
+                self.findings.warning(place, sentence)
+
+    def _check_unknown(self, node: Node) -> None:
+        """A node in the compact form that no file declares: a leaf may be one of a plant or a program."""
+        near = get_close_matches(node.kind, OF_LIBRARY, n=1, cutoff=0.8)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        if node.kind in self.forest.trees:
+            self._mistake(node, f'{node.kind} is a tree; write <SubTree ID="{node.kind}"/>')
+        elif node.children:
+            how = f'; if it is one of your own, declare it: <Decorator ID="{node.kind}"/>'
+            self._mistake(node, f"nobody knows a node {node.kind} with children{hint or how}")
+        elif near:
+            self.findings.warning(node.place, f"nobody here knows {node.kind}{hint}")
+            self.unknown.setdefault(node.kind, node.place)
+        else:
+            self.unknown.setdefault(node.kind, node.place)
+
+    def _check_children(self, node: Node, kind: Kind) -> None:
+        there = len(node.children)
+        if kind.fewest <= there <= kind.most:
+            return
+        if kind.fewest == kind.most:
+            needed = f"{kind.fewest}" if kind.most else "none"
+        else:
+            needed = f"{kind.fewest} or more" if kind.most == nodes.MANY else f"{kind.fewest} to {kind.most}"
+        word = "child" if there == 1 else "children"
+        self._mistake(node, f"{_named(node)} has {there or 'no'} {word}; it needs {needed}")
+
+    def _check_ports(self, node: Node, kind: Kind, ports: Mapping[str, Port]) -> None:
+        for name, attribute in node.ports.items():
+            if name not in ports:
+                self._unknown_port(node, name, attribute, ports)
+            else:
+                self._check_value(node, ports[name], attribute)
+        is_ours = nodes.built_in(node.kind) is not None
+        for port in ports.values():
+            if port.is_needed and port.name not in node.ports:
+                sentence = f"{_named(node)} needs {port.name}{_what(port)}"
+                if is_ours:
+                    self._mistake(node, sentence)
+                elif port.way is not Way.OUT:
+                    self.findings.warning(node.place, sentence)
+
+    def _unknown_port(self, node: Node, name: str, attribute: Attribute, ports: Collection[str]) -> None:
+        shown = [each for each in ports if node.kind != "Parallel" or each not in OLD_PARALLEL]
+        place = Place(node.place.file, attribute.mark)
+        self.findings.mistake(place, f"{node.kind} has no port {quoted(name)}; {among(name, shown)}")
+
+    def _check_value(self, node: Node, port: Port, attribute: Attribute) -> None:
+        if port.type == "script":
+            self._check_script(node, attribute)
+            return
+        said = values.read(port.name, attribute.value)
+        place = Place(node.place.file, attribute.mark)
+        if isinstance(said, Variable):
+            return
+        if port.way is Way.OUT:
+            how = f'version 4 wants {port.name}="{{...}}"'
+            self.findings.warning(place, f"{port.name} of {node.kind} names a variable; {how}")
+        elif (wanted := values.objection(port.type, said)) is not None:
+            self.findings.mistake(place, f"{port.name} of {node.kind} must be {wanted}, is {quoted(said)}")
+
+    def _check_script(self, node: Node, attribute: Attribute) -> None:
+        if isinstance(values.read("code", attribute.value), Variable):
+            return  # a script that is made while the tree runs
+        try:
+            script.parse(attribute.value)
+        except script.ScriptFault as fault:
+            self.findings.mistake(
+                Place(node.place.file, attribute.mark), f"{quoted(attribute.value)}: {fault}"
+            )
+
+    def _check_subtree(self, node: Node) -> None:
+        name = node.own["ID"].value
+        if node.children:
+            self._mistake(node, f"the SubTree {quoted(name)} has children; they stand in its own tree")
+        if name not in self.forest.trees and self.forest.is_whole:
+            place = Place(node.place.file, node.own["ID"].mark)
+            sentence = f"the tree {quoted(name)} is in none of these files; {among(name, self.forest.trees)}"
+            self.findings.warning(place, sentence)
+        model = self._model_of(node)
+        if model is None or model.ports is None or node.shares_names:
+            return
+        for port in model.ports.values():
+            if port.is_needed and port.name not in node.ports and not port.name.startswith("_"):
+                self._mistake(node, f"the SubTree {quoted(name)} needs {port.name}{_what(port)}")
+
+    def _mistake(self, node: Node, sentence: str) -> None:
+        self.findings.mistake(node.place, sentence)
+
+
+def _what(port: Port) -> str:
+    """What a port takes, as a sentence goes on."""
+    if port.type == "script":
+        return ", a script"
+    known = values.TYPES.get(port.type)
+    return f": {known[0]}, or a variable" if known else ""
+
+
+def _check_loops(forest: Forest, findings: Findings) -> None:
+    """Trees that contain themselves."""
+    uses = {name: dict(_subtrees(forest, name)) for name in forest.trees}
+    for _ in range(MOST_LOOPS):
+        try:
+            TopologicalSorter({name: list(used) for name, used in uses.items()}).prepare()
+        except CycleError as error:
+            loop = list(reversed(error.args[1]))
+            way = " > ".join(loop)
+            findings.mistake(uses[loop[-2]].pop(loop[-1]), f"the tree {loop[-1]} contains itself: {way}")
+        else:
+            return
+
+
+def _subtrees(forest: Forest, name: str) -> Iterator[tuple[str, Place]]:
+    for node in forest.trees[name].root.iterate():
+        if node.is_subtree and node.own["ID"].value in forest.trees:
+            yield node.own["ID"].value, node.place

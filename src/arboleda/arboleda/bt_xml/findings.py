@@ -1,0 +1,62 @@
+"""What is wrong with files of trees, each with its place; all of it at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+MOST = 200  # mistakes that are told; a file with more is another kind of file
+
+
+@dataclass(frozen=True, order=True)
+class Mark:
+    """A place in a file; lines and columns count from 1, columns in characters."""
+
+    line: int
+    column: int
+
+
+@dataclass(frozen=True, order=True)
+class Place:
+    """A place in one of several files; `file` is what people know it by."""
+
+    file: str
+    mark: Mark
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.mark.line}:{self.mark.column}"
+
+
+class XmlFault(Exception):
+    """The bytes cannot be read further."""
+
+    def __init__(self, mark: Mark, sentence: str) -> None:
+        super().__init__(sentence)
+        self.mark = mark
+        self.sentence = sentence
+
+
+@dataclass
+class Findings:
+    """Mistakes keep a tree from being used; warnings do not. Each is kept once."""
+
+    _mistakes: dict[tuple[Place, str], None] = field(default_factory=dict)
+    _warnings: dict[tuple[Place, str], None] = field(default_factory=dict)
+
+    def mistake(self, place: Place, sentence: str) -> None:
+        self._mistakes[(place, sentence)] = None
+
+    def warning(self, place: Place, sentence: str) -> None:
+        self._warnings[(place, sentence)] = None
+
+    @property
+    def mistakes(self) -> tuple[str, ...]:
+        """As lines, in the order of the files; of too many only the first, and how many more there are."""
+        lines = [f"{place}: {sentence}" for place, sentence in sorted(self._mistakes)]
+        rest = len(lines) - MOST
+        return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} mistakes more")
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        lines = [f"{place}: warning: {sentence}" for place, sentence in sorted(self._warnings)]
+        rest = len(lines) - MOST
+        return tuple(lines) if rest <= 0 else (*lines[:MOST], f"and {rest} warnings more")

@@ -1,0 +1,72 @@
+"""What files of trees say: trees of nodes, and models of kinds of nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from .findings import Place
+from .markup import Attribute
+from .nodes import Category, Kind
+
+
+@dataclass(frozen=True, kw_only=True)
+class Node:
+    """A node of a tree. `kind`: in the spelling of version 4. `tag`: the word of the explicit form, where it
+    is written so. `own`: attributes that are no ports, those of editors among them, which are kept.
+    """
+
+    kind: str
+    tag: Category | None = None
+    name: str = ""
+    ports: Mapping[str, Attribute] = field(default_factory=dict)
+    own: Mapping[str, Attribute] = field(default_factory=dict)
+    children: tuple[Node, ...] = ()
+    place: Place
+
+    def port(self, name: str) -> str | None:
+        """What is written for a port; None where nothing is."""
+        found = self.ports.get(name)
+        return None if found is None else found.value
+
+    def iterate(self) -> Iterator[Node]:
+        """The node and all below it, in the order of the file."""
+        waiting = [self]
+        while waiting:
+            node = waiting.pop()
+            yield node
+            waiting += reversed(node.children)
+
+    @property
+    def is_subtree(self) -> bool:
+        return self.kind == Category.SUBTREE.value
+
+    @property
+    def shares_names(self) -> bool:
+        """Whether a subtree finds variables of the same name outside, without being given them."""
+        words = ("_autoremap", "__autoremap", "__shared_blackboard")
+        values = (self.own[word].value for word in words if word in self.own)
+        return any(value.lower() in ("true", "1") for value in values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tree:
+    """A tree by its name; `own`: attributes of editors, which are kept."""
+
+    name: str
+    root: Node
+    own: Mapping[str, Attribute] = field(default_factory=dict)
+    place: Place
+
+
+@dataclass(frozen=True, kw_only=True)
+class Forest:
+    """All trees of a file and of those that it includes. `main`: the one to execute, where that is clear.
+
+    `is_whole`: every file that it includes was read.
+    """
+
+    trees: Mapping[str, Tree]
+    models: Mapping[str, Kind]
+    main: str | None
+    is_whole: bool = True

@@ -1,0 +1,178 @@
+"""XML as people write it for BehaviorTree.CPP: bytes -> elements and attributes that know their places.
+
+Whether it is XML, expat says. BehaviorTree.CPP takes more than that: a raw & or < in an attribute, two
+hyphens in a comment, lines before the declaration. So expat gets a copy in which these are written over,
+byte for byte, which leaves every place as it is; the values of attributes are read from the file itself.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from .findings import Mark, XmlFault
+
+LARGEST = 1024 * 1024  # bytes of a file
+DEEPEST = 100  # levels
+TAG = re.compile(rb"""</?[^\s<>"'/=]+[^<>"']*(?:(?:"[^"]*"|'[^']*')[^<>"']*)*>""")
+ATTRIBUTE = re.compile(rb"""([^\s=<>/"']+)\s*=\s*("[^"]*"|'[^']*')""")
+RAW_AMPERSAND = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});)")
+RAW = re.compile(RAW_AMPERSAND.pattern + rb"|<")
+REFERENCE = re.compile(r"&(amp|lt|gt|quot|apos|#[0-9]{1,7}|#x[0-9a-fA-F]{1,6});")
+NAMED = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
+HIDDEN = ((b"<!--", b"-->", "a comment"), (b"<?", b"?>", "a declaration"), (b"<![CDATA[", b"]]>", "CDATA"))
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """A value as it is meant, and where its name begins."""
+
+    value: str
+    mark: Mark
+
+
+@dataclass(frozen=True)
+class Element:
+    """What a tag says, and what is between it and its end; text is left out."""
+
+    name: str
+    attributes: dict[str, Attribute]
+    mark: Mark
+    children: list[Element] = field(default_factory=list)
+
+    def value(self, name: str) -> str | None:
+        """The value of an attribute; None where it is not there."""
+        found = self.attributes.get(name)
+        return None if found is None else found.value
+
+    def all(self, name: str) -> list[Element]:
+        """The children of that name."""
+        return [child for child in self.children if child.name == name]
+
+
+@dataclass(frozen=True)
+class Markup:
+    """A file that was read; `raw` are the places where it is XML only by leave, with the letter there."""
+
+    root: Element
+    raw: Sequence[tuple[Mark, str]]
+
+
+def parse(content: bytes) -> Markup:
+    """The outermost element; XmlFault where the bytes are no XML that is taken here."""
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    lines = _Lines(content)
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise XmlFault(lines.mark(error.start), "is not UTF-8 text; save it as UTF-8") from None
+    tamed, ends, raw = _tamed(content, lines)
+    reader = _Reader(content, lines, ends)
+    try:
+        reader.parser.Parse(bytes(tamed), True)
+    except expat.ExpatError as error:
+        raise XmlFault(lines.mark(max(reader.parser.ErrorByteIndex, 0)), _said(error, content)) from None
+    return Markup(reader.top.children[0], raw)
+
+
+def _said(error: expat.ExpatError, content: bytes) -> str:
+    hint = "; an XML file begins with a tag" if not content.strip().startswith(b"<") else ""
+    return f"this is not XML: {expat.ErrorString(error.code)}{hint}"
+
+
+class _Lines:
+    """Where each line begins, to tell a place by its byte.
+
+    Places are mostly asked for in their order, so columns are counted on from the last one: all of a file
+    may stand on one line.
+    """
+
+    def __init__(self, content: bytes) -> None:
+        self._content = content
+        self._starts = [0, *(match.end() for match in re.finditer(rb"\n", content))]
+        self._last = (0, Mark(1, 1))
+
+    def mark(self, index: int) -> Mark:
+        line = bisect_right(self._starts, index)
+        start, column = self._starts[line - 1], 1
+        if self._last[1].line == line and self._last[0] <= index:
+            start, column = self._last[0], self._last[1].column
+        mark = Mark(line, column + len(self._content[start:index].decode("utf-8", "replace")))
+        self._last = (index, mark)
+        return mark
+
+
+def _tamed(content: bytes, lines: _Lines) -> tuple[bytearray, dict[int, int], list[tuple[Mark, str]]]:
+    """A copy for expat, where each tag ends, and what was written over in attributes."""
+    tamed, ends = bytearray(content), dict[int, int]()
+    raw: list[tuple[Mark, str]] = []
+    end = 0
+    while (start := content.find(b"<", end)) >= 0:
+        _write_over(tamed, RAW_AMPERSAND, end, start)
+        if content.startswith(b"<!DOCTYPE", start):
+            sentence = "a document type (<!DOCTYPE ...>), and so any entity, is refused; delete it"
+            raise XmlFault(lines.mark(start), sentence)
+        hidden = next((each for each in HIDDEN if content.startswith(each[0], start)), None)
+        if hidden is not None:
+            end = _end_of(content, start, hidden, lines)
+            tamed[start:end] = bytes(each if each in b"\r\n" else 32 for each in content[start:end])
+            continue
+        tag = TAG.match(content, start)
+        if tag is None:
+            break  # expat says what is wrong there
+        end = ends[start] = tag.end()
+        for index, letter in _write_over(tamed, RAW, start + 1, end):
+            raw.append((lines.mark(index), letter))
+    return tamed, ends, raw
+
+
+def _end_of(content: bytes, start: int, hidden: tuple[bytes, bytes, str], lines: _Lines) -> int:
+    opens, closes, what = hidden
+    end = content.find(closes, start + len(opens))
+    if end < 0:
+        raise XmlFault(lines.mark(start), f"{what} begins here and never ends")
+    return end + len(closes)
+
+
+def _write_over(tamed: bytearray, pattern: re.Pattern[bytes], start: int, end: int) -> list[tuple[int, str]]:
+    found = [(match.start(), chr(match[0][0])) for match in pattern.finditer(bytes(tamed[start:end]))]
+    for index, _ in found:
+        tamed[start + index] = ord("_")
+    return [(start + index, letter) for index, letter in found]
+
+
+class _Reader:
+    def __init__(self, content: bytes, lines: _Lines, ends: dict[int, int]) -> None:
+        self.top = Element("", {}, Mark(1, 1))
+        self._content = content
+        self._lines = lines
+        self._ends = ends
+        self._open = [self.top]
+        self.parser = expat.ParserCreate("utf-8")
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = lambda _: self._open.pop()
+
+    def _start(self, name: str, _: object) -> None:
+        start = self.parser.CurrentByteIndex
+        mark = self._lines.mark(start)
+        if len(self._open) > DEEPEST:
+            raise XmlFault(mark, f"nested deeper than {DEEPEST} levels; make a tree of its own of a part")
+        element = Element(name, dict(self._attributes(start, len(name.encode()))), mark)
+        self._open[-1].children.append(element)
+        self._open.append(element)
+
+    def _attributes(self, start: int, length: int) -> Iterator[tuple[str, Attribute]]:
+        for match in ATTRIBUTE.finditer(self._content, start + 1 + length, self._ends[start]):
+            value = REFERENCE.sub(_letter, match[2][1:-1].decode("utf-8"))
+            yield match[1].decode("utf-8"), Attribute(value, self._lines.mark(match.start()))
+
+
+def _letter(match: re.Match[str]) -> str:
+    name = match[1]
+    if not name.startswith("#"):
+        return NAMED[name]
+    number = int(name[2:], 16) if name[1] == "x" else int(name[1:])
+    return chr(number)  # expat has refused what is no letter

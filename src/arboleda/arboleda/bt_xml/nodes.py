@@ -1,0 +1,193 @@
+"""The kinds of nodes that BehaviorTree.CPP and Nav2 bring along: their ports, how many children they have.
+
+The names, ports and defaults are those of BehaviorTree.CPP 4.10 and 3.8, of Nav2 for ROS 2 Jazzy, and of the
+ForEach decorators of MoveIt Pro, as their headers and documentation give them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+MANY = 1000
+
+
+class Category(str, Enum):
+    """What a node is to an editor; the explicit form has these words as tags."""
+
+    ACTION = "Action"
+    CONDITION = "Condition"
+    CONTROL = "Control"
+    DECORATOR = "Decorator"
+    SUBTREE = "SubTree"
+
+
+class Way(str, Enum):
+    """Which way a port's value goes; the words are those of a TreeNodesModel."""
+
+    IN = "input_port"
+    OUT = "output_port"
+    BOTH = "inout_port"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Port:
+    """A value that a node is given or gives; `is_needed`: without one nothing can be done."""
+
+    name: str
+    type: str = ""
+    way: Way = Way.IN
+    default: str | None = None
+    is_needed: bool = False
+    about: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A kind of node. `ports` None: nobody knows them."""
+
+    name: str
+    category: Category
+    ports: Mapping[str, Port] | None
+    fewest: int = 0
+    most: int = 0
+    about: str = ""
+
+
+def by_name(ports: Iterable[Port]) -> dict[str, Port]:
+    return {each.name: each for each in ports}
+
+
+def children(category: Category) -> tuple[int, int]:
+    """How many children nodes of a category have at least and at most."""
+    return {Category.CONTROL: (1, MANY), Category.DECORATOR: (1, 1)}.get(category, (0, 0))
+
+
+def _port(text: str) -> Port:
+    """`name:type`, with `=value` where it has a default, `>` or `<>` before it where it gives a value."""
+    way = Way.BOTH if text.startswith("<>") else Way.OUT if text.startswith(">") else Way.IN
+    declared, _, default = text.lstrip("<>").partition("=")
+    name, _, type = declared.partition(":")
+    is_needed = "=" not in text and not name.endswith("?")
+    return Port(name=name.removesuffix("?"), type=type, way=way, default=default or None, is_needed=is_needed)
+
+
+def _kind(
+    category: Category, name: str, *ports: str, fewest: int | None = None, most: int | None = None
+) -> Kind:
+    least, greatest = children(category)
+    return Kind(
+        name=name,
+        category=category,
+        ports=by_name(map(_port, ports)),
+        fewest=least if fewest is None else fewest,
+        most=greatest if most is None else most,
+    )
+
+
+def _control(name: str, *ports: str, fewest: int | None = None, most: int | None = None) -> Kind:
+    return _kind(Category.CONTROL, name, *ports, fewest=fewest, most=most)
+
+
+def _decorator(name: str, *ports: str) -> Kind:
+    return _kind(Category.DECORATOR, name, *ports)
+
+
+def _action(name: str, *ports: str) -> Kind:
+    return _kind(Category.ACTION, name, *ports)
+
+
+def _switch(cases: int) -> Kind:
+    ports = ("variable:string", *(f"case_{number}:string" for number in range(1, cases + 1)))
+    return _control(f"Switch{cases}", *ports, fewest=cases + 1, most=cases + 1)
+
+
+def _loop(type: str) -> Kind:
+    return _decorator(f"Loop{type.title()}", "<>queue:", "if_empty:status=SUCCESS", f">value?:{type}")
+
+
+_THRESHOLDS = ("success_count:int=-1", "failure_count:int=1")
+_OLD_THRESHOLDS = ("success_threshold?:int", "failure_threshold?:int", "threshold?:int")
+_SPEEDS = ("min_rate:double=0.1", "max_rate:double=1.0", "min_speed:double=0.0", "max_speed:double=0.5")
+_CHECKED = ("value_A:", "value_B:", "return_on_mismatch:status=FAILURE")
+FOR_EACH = "ForEach"
+OF_LIBRARY: Mapping[str, Kind] = {
+    each.name: each
+    for each in (
+        _control("Sequence"),
+        _control("AsyncSequence"),
+        _control("SequenceWithMemory"),
+        _control("ReactiveSequence"),
+        _control("Fallback"),
+        _control("AsyncFallback"),
+        _control("ReactiveFallback"),
+        _control("Parallel", *_THRESHOLDS, *_OLD_THRESHOLDS),
+        _control("ParallelAll", "max_failures:int=1"),
+        _control("IfThenElse", fewest=2, most=3),
+        _control("WhileDoElse", fewest=2, most=3),
+        _control("TryCatch", "catch_on_halt:bool=false", fewest=2),
+        *map(_switch, range(2, 7)),
+        _control("ManualSelector", "repeat_last_selection:bool=false"),
+        _decorator("Inverter"),
+        _decorator("ForceSuccess"),
+        _decorator("ForceFailure"),
+        _decorator("KeepRunningUntilFailure"),
+        _decorator("Repeat", "num_cycles:int"),
+        _decorator("RetryUntilSuccessful", "num_attempts:int"),
+        _decorator("Timeout", "msec:msec"),
+        _decorator("Delay", "delay_msec:msec"),
+        _decorator("RunOnce", "then_skip:bool=true"),
+        _decorator("Precondition", "if:script", "else:status=FAILURE"),
+        *map(_loop, ("int", "bool", "double", "string")),
+        _decorator("SkipUnlessUpdated", "entry:"),
+        _decorator("WaitValueUpdate", "entry:"),
+        _decorator("BlackboardCheckInt", *_CHECKED),
+        _decorator("BlackboardCheckDouble", *_CHECKED),
+        _decorator("BlackboardCheckString", *_CHECKED),
+        _decorator("BlackboardCheckBool", *_CHECKED),
+        _action("AlwaysSuccess"),
+        _action("AlwaysFailure"),
+        _action("Script", "code:script"),
+        _action("SetBlackboard", "value:", "<>output_key:"),
+        _action("UnsetBlackboard", "key:"),
+        _action("Sleep", "msec:msec"),
+        _kind(Category.CONDITION, "ScriptCondition", "code:script"),
+        _kind(Category.CONDITION, "WasEntryUpdated", "entry:"),
+    )
+}
+OF_NAV2: Mapping[str, Kind] = {
+    each.name: each
+    for each in (
+        _control("RecoveryNode", "number_of_retries:int=1", fewest=2, most=2),
+        _control("PipelineSequence"),
+        _control("RoundRobin", "wrap_around:bool=false"),
+        _decorator("RateController", "hz:double=10.0"),
+        _decorator("DistanceController", "distance:double=1.0", "global_frame?:", "robot_base_frame?:"),
+        _decorator("SpeedController", *_SPEEDS, "goal?:", "goals?:"),
+        _decorator("SingleTrigger"),
+        _decorator("GoalUpdater", "input_goal?:", "input_goals?:", ">output_goal?:", ">output_goals?:"),
+        _decorator("GoalUpdatedController", "goal?:", "goals?:"),
+        _decorator("PathLongerOnApproach", "path?:", "prox_len:double=3.0", "length_factor:double=2.0"),
+        _control("NonblockingSequence"),
+        _control("PersistentSequence", "<>current_child_idx?:int"),
+        _control("PauseResumeController", "pause_service_name?:", "resume_service_name?:"),
+    )
+}
+BUILT_IN: Mapping[str, Kind] = {**OF_LIBRARY, **OF_NAV2}
+OTHER_SPELLINGS: Mapping[str, str] = {
+    "RetryUntilSuccesful": "RetryUntilSuccessful",
+    "SequenceStar": "SequenceWithMemory",
+    "SubTreePlus": "SubTree",
+    "Subtree": "SubTree",
+}
+"""What version 3 called them."""
+
+
+def built_in(name: str) -> Kind | None:
+    """The kind of that name, in any spelling; a decorator ForEach... goes through a list of anything."""
+    known = BUILT_IN.get(OTHER_SPELLINGS.get(name, name))
+    if known is None and name.startswith(FOR_EACH):
+        ports = by_name(map(_port, ("vector_in:", ">out:", ">index?:int")))
+        return Kind(name=name, category=Category.DECORATOR, ports=ports, fewest=1, most=1)
+    return known

@@ -1,0 +1,236 @@
+"""Files -> forest: both forms of writing a node, includes, models, and the spellings of version 3."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import count
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import quoted
+
+from . import names, nodes
+from .findings import Findings, Mark, Place, XmlFault
+from .forest import Forest, Node, Tree
+from .markup import Element, Markup, parse
+from .nodes import Category, Kind, Port, Way
+from .values import plain_type
+
+MOST_FILES = 50
+ROOT, TREE, MODELS, INCLUDE = "root", "BehaviorTree", "TreeNodesModel", "include"
+TAGS = {each.value: each for each in Category}
+FORMATS = ("3", "4")
+Fetch = Callable[[str, str], tuple[str, bytes]]
+"""The file of an `include`, by the name of the file that has it and the path it names: its own name and what
+is in it; ConfigError where it cannot be read."""
+
+
+def nothing_beside(file: str, path: str) -> tuple[str, bytes]:
+    """For text that lies in no folder."""
+    raise ConfigError((f"{path}: there are no files beside this one",))
+
+
+def read(file: str, content: bytes, findings: Findings, fetch: Fetch = nothing_beside) -> Forest:
+    """The trees of a file and of all that it includes; what is wrong is in the findings."""
+    reader = _Reader(findings, fetch)
+    reader.read(file, content)
+    main = reader.main
+    if main is None and len(reader.trees) == 1:
+        main = next(iter(reader.trees))
+    return Forest(trees=reader.trees, models=reader.models, main=main, is_whole=reader.is_whole)
+
+
+@dataclass
+class _Reader:
+    findings: Findings
+    fetch: Fetch
+    trees: dict[str, Tree] = field(default_factory=dict)
+    models: dict[str, Kind] = field(default_factory=dict)
+    main: str | None = None
+    is_whole: bool = True
+    _files: set[str] = field(default_factory=set)
+    _numbers: Iterator[int] = field(default_factory=count)
+
+    def read(self, file: str, content: bytes) -> None:
+        is_first = not self._files
+        self._files.add(file)
+        try:
+            markup = parse(content)
+        except XmlFault as fault:
+            self.findings.mistake(Place(file, fault.mark), fault.sentence)
+            self.is_whole = False
+            return
+        page = _Page(file, self.findings, is_old=markup.root.value("BTCPP_format") != "4")
+        page.look_at(markup)
+        for element in markup.root.children:
+            if element.name == INCLUDE:
+                self._include(page, element)
+        for element in markup.root.children:
+            if element.name == MODELS:
+                self.models |= page.models(element)
+        for element in markup.root.children:
+            if element.name == TREE:
+                self._add(page, element, alone=len(markup.root.all(TREE)) == 1)
+        if is_first:
+            self._choose_main(page, markup.root)
+
+    def _choose_main(self, page: _Page, root: Element) -> None:
+        named = root.attributes.get("main_tree_to_execute")
+        if named is not None and named.value not in self.trees and self.is_whole:
+            known = ", ".join(self.trees) or "none"
+            page.mistake(named.mark, f"there is no tree {quoted(named.value)}; there are {known}")
+        elif named is not None:
+            self.main = named.value
+
+    def _add(self, page: _Page, element: Element, *, alone: bool) -> None:
+        name = element.value("ID")
+        if name is None and not alone:
+            page.mistake(element.mark, f'each of several trees needs a name: <{TREE} ID="...">')
+        name = name or f"{TREE}_{next(self._numbers)}"
+        if (why := names.of_node(name)) is not None:
+            page.warning(element.mark, f"newer editors refuse {quoted(name)} as the name of a tree: {why}")
+        if nodes.built_in(name) is not None:
+            page.mistake(element.mark, f"a tree cannot be called {name}: a kind of node has this name")
+        if len(element.children) != 1:
+            page.mistake(element.mark, f"the tree {name} has {len(element.children)} nodes below it, not 1")
+        if name in self.trees:
+            first = self.trees[name].place
+            page.mistake(element.mark, f"there are two trees {name}; the other is at {first}")
+        elif element.children and (root := page.node(element.children[0])) is not None:
+            own = {key: each for key, each in element.attributes.items() if key != "ID"}
+            self.trees[name] = Tree(name=name, root=root, own=own, place=page.place(element.mark))
+
+    def _include(self, page: _Page, element: Element) -> None:
+        path, package = element.attributes.get("path"), element.attributes.get("ros_pkg")
+        if path is None:
+            page.mistake(element.mark, 'which file? <include path="..."/>')
+            return
+        if package is not None:
+            where = f"{quoted(path.value)} lies in the ROS package {quoted(package.value)}"
+            page.warning(
+                path.mark, f"{where} and was not looked into; name it without ros_pkg to have it read"
+            )
+            self.is_whole = False
+            return
+        try:
+            file, content = self.fetch(page.file, path.value)
+        except ConfigError as error:
+            page.mistake(path.mark, str(error))
+            self.is_whole = False
+            return
+        if file not in self._files and len(self._files) < MOST_FILES:
+            self.read(file, content)
+        elif file not in self._files:
+            page.mistake(element.mark, f"more than {MOST_FILES} files are included")
+            self.is_whole = False
+
+
+@dataclass(frozen=True)
+class _Page:
+    """One file; `is_old`: it does not say that it has the format of version 4."""
+
+    file: str
+    findings: Findings
+    is_old: bool
+
+    def place(self, mark: Mark) -> Place:
+        return Place(self.file, mark)
+
+    def mistake(self, mark: Mark, sentence: str) -> None:
+        self.findings.mistake(self.place(mark), sentence)
+
+    def warning(self, mark: Mark, sentence: str) -> None:
+        self.findings.warning(self.place(mark), sentence)
+
+    def look_at(self, markup: Markup) -> None:
+        """What is wrong with the file as a whole."""
+        root, format = markup.root, markup.root.attributes.get("BTCPP_format")
+        for mark, letter in markup.raw:
+            entity = {"&": "&amp;", "<": "&lt;"}[letter]
+            self.warning(mark, f"a raw {letter} is no XML, though BehaviorTree.CPP takes it; write {entity}")
+        if root.name != ROOT:
+            self.mistake(root.mark, f"the outermost tag is <{root.name}>; it must be <{ROOT}>")
+        if format is not None and format.value not in FORMATS:
+            self.mistake(format.mark, f"BTCPP_format is {quoted(format.value)}; 3 and 4 are known")
+        for element in root.children:
+            if element.name not in (TREE, MODELS, INCLUDE):
+                self.warning(
+                    element.mark, f"<{element.name}> means nothing here; {TREE}, {MODELS}, {INCLUDE} do"
+                )
+        for second in root.all(MODELS)[1:]:
+            self.mistake(second.mark, f"a second <{MODELS}>; one is allowed")
+        if root.name == ROOT and not root.children:
+            self.warning(root.mark, "there is no tree in this file")
+
+    def node(self, element: Element) -> Node | None:
+        """A node with all below it; None, with the mistake kept, for one without a name."""
+        tag, kind = TAGS.get(element.name), element.name
+        if tag is not None:
+            kind = element.value("ID") or ""
+            if not kind:
+                self.mistake(element.mark, f'which? <{element.name} ID="...">')
+                return None
+        elif nodes.OTHER_SPELLINGS.get(kind) == Category.SUBTREE.value:
+            tag = Category.SUBTREE
+        below = tuple(node for child in element.children if (node := self.node(child)) is not None)
+        return self._one(element, tag, kind, below)
+
+    def _one(self, element: Element, tag: Category | None, kind: str, below: tuple[Node, ...]) -> Node | None:
+        is_subtree = tag is Category.SUBTREE
+        if is_subtree and not element.value("ID"):
+            self.mistake(element.mark, f'which tree? <SubTree ID="...">, instead of <{element.name}>')
+            return None
+        attributes = element.attributes
+        own = {name: each for name, each in attributes.items() if name.startswith("_")}
+        if is_subtree:
+            own["ID"] = attributes["ID"]
+        ports = {
+            name: each for name, each in attributes.items() if name not in own and name not in ("ID", "name")
+        }
+        return Node(
+            kind=Category.SUBTREE.value if is_subtree else nodes.OTHER_SPELLINGS.get(kind, kind),
+            tag=tag,
+            name=element.value("name") or "",
+            ports=ports,
+            own=own,
+            children=below,
+            place=self.place(element.mark),
+        )
+
+    def models(self, element: Element) -> dict[str, Kind]:
+        """The kinds that a file declares, by name."""
+        found: dict[str, Kind] = {}
+        for child in element.children:
+            name = child.value("ID")
+            if child.name not in TAGS:
+                self.warning(child.mark, f"<{child.name}> is no kind of node; there are {', '.join(TAGS)}")
+            elif not name:
+                self.mistake(child.mark, f'which? <{child.name} ID="...">')
+            else:
+                if (why := names.of_node(name)) is not None:
+                    self.warning(
+                        child.mark, f"newer editors refuse {quoted(name)} as the name of a node: {why}"
+                    )
+                found[name] = self._kind(child, name, TAGS[child.name])
+        return found
+
+    def _kind(self, element: Element, name: str, category: Category) -> Kind:
+        fewest, most = nodes.children(category)
+        ports = [port for way in Way for each in element.all(way.value) if (port := self._port(each, way))]
+        return Kind(name=name, category=category, ports=nodes.by_name(ports), fewest=fewest, most=most)
+
+    def _port(self, element: Element, way: Way) -> Port | None:
+        name = element.value("name")
+        if name is None:
+            self.mistake(element.mark, f'which? <{way.value} name="...">')
+            return None
+        if not name.startswith("_") and (why := names.of_port(name)) is not None:
+            self.warning(element.mark, f"newer editors refuse {quoted(name)} as the name of a port: {why}")
+        default = element.value("default")
+        return Port(
+            name=name,
+            type=plain_type(element.value("type")),
+            way=way,
+            default=default or None,
+            is_needed=not default,
+        )

@@ -1,0 +1,49 @@
+"""A tree of a file as the rows that `drawing` takes, with its subtrees in their places."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .forest import Forest, Node
+
+MOST = 2000  # rows; a picture with more shows nothing
+CONTROLS = {"Sequence": "sequence", "Fallback": "selector", "Parallel": "parallel", "RoundRobin": "selector"}
+
+
+def rows(forest: Forest, tree: str) -> list[dict[str, Any]]:
+    """A row for each node, in depth-first order; a subtree that is part of itself is not drawn again."""
+    found: list[dict[str, Any]] = []
+    waiting: list[tuple[Node, str, tuple[str, ...]]] = [(forest.trees[tree].root, "", (tree,))]
+    while waiting and len(found) < MOST:
+        node, path, around = waiting.pop()
+        found.append(
+            {"path": path or "root", "name": title(node), "kind": _sign(node.kind), "status": "INVALID"}
+        )
+        found[-1]["feedback"] = ""
+        below, within = _below(forest, node, around)
+        for number in reversed(range(len(below))):
+            waiting.append((below[number], f"{path}.{number}" if path else str(number), within))
+    return found
+
+
+def title(node: Node) -> str:
+    """What a person calls a node: its own name, or its kind with what it is given."""
+    kind = node.own["ID"].value if node.is_subtree else node.kind
+    if node.name and node.name != kind:
+        return f"{node.name} ({kind})"
+    given = " ".join(f"{name}={attribute.value}" for name, attribute in node.ports.items())
+    return f"{kind} {given}".strip() if len(given) <= 60 else f"{kind} {given[:57]}..."
+
+
+def _below(forest: Forest, node: Node, around: tuple[str, ...]) -> tuple[tuple[Node, ...], tuple[str, ...]]:
+    if not node.is_subtree:
+        return node.children, around
+    name = node.own["ID"].value
+    if name in around or name not in forest.trees:
+        return (), around
+    return (forest.trees[name].root,), (*around, name)
+
+
+def _sign(kind: str) -> str:
+    """The word of `drawing` for a kind: its name says what it is, ReactiveSequence or AsyncFallback."""
+    return next((sign for word, sign in CONTROLS.items() if word in kind), "step")

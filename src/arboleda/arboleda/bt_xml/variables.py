@@ -1,0 +1,124 @@
+"""Variables that are read and that nothing writes: each tree has its own, and gets some from outside."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from . import names, script, values
+from .findings import Place
+from .forest import Forest, Node, Tree
+from .nodes import Category, Kind, Way
+from .values import OUTER, Variable
+
+KindOf = Callable[[Node], "Kind | None"]
+
+
+@dataclass
+class _Use:
+    """The variables of one tree; `passed`: which of them it hands to subtrees, under which names there."""
+
+    read: dict[str, Place] = field(default_factory=dict)
+    written: set[str] = field(default_factory=set)
+    passed: list[tuple[str, str, str]] = field(default_factory=list)  # own name, tree, name there
+    is_open: bool = False  # it shares all names with the tree around it, or with one in it
+
+
+def unwritten(forest: Forest, kind: KindOf) -> Iterator[tuple[Place, str]]:
+    """Each variable that is read and never written, where it is read first."""
+    uses = {name: _use(tree, kind) for name, tree in forest.trees.items()}
+    given = _given(forest, uses)
+    outer = {name[1:] for use in uses.values() for name in use.written if name.startswith(OUTER)}
+    main = uses.get(forest.main or "")
+    outer |= set() if main is None else main.written | given[forest.main or ""]
+    for name, use in uses.items():
+        if use.is_open:
+            continue
+        known = use.written | given[name] | _written_below(use, forest, uses)
+        if name == forest.main:
+            known |= outer
+        for variable, place in use.read.items():
+            found = variable[1:] in outer if variable.startswith(OUTER) else variable in known
+            if not found and not (variable.startswith(OUTER) and main is None):
+                yield place, variable
+
+
+def _given(forest: Forest, uses: Mapping[str, _Use]) -> dict[str, set[str]]:
+    """What each tree gets from those around it, and what its own model says that it gets."""
+    given: dict[str, set[str]] = defaultdict(set)
+    for tree in forest.trees.values():
+        for node in tree.root.iterate():
+            if not node.is_subtree:
+                continue
+            name = node.own["ID"].value
+            given[name] |= set(node.ports)
+            if node.shares_names and name in uses:
+                uses[name].is_open = uses[tree.name].is_open = True
+    for name, model in forest.models.items():
+        if model.category is Category.SUBTREE and model.ports is not None:
+            given[name] |= set(model.ports)
+    return given
+
+
+def _written_below(use: _Use, forest: Forest, uses: Mapping[str, _Use]) -> set[str]:
+    """Those that a subtree may give a value: it writes them, or hands them further in."""
+    found = set()
+    for own, tree, there in use.passed:
+        below = uses.get(tree)
+        model = forest.models.get(tree)
+        port = (model.ports or {}).get(there) if model is not None else None
+        is_given = port is not None and port.way is not Way.IN
+        if (
+            below is None
+            or is_given
+            or there in below.written
+            or any(there == each[0] for each in below.passed)
+        ):
+            found.add(own)
+    return found
+
+
+def _use(tree: Tree, kind: KindOf) -> _Use:
+    use = _Use()
+    for node in tree.root.iterate():
+        for name in names.SCRIPTS:
+            if name in node.own:
+                _add_script(use, node.own[name].value, Place(node.place.file, node.own[name].mark))
+        _add_ports(use, node, kind(node))
+    return use
+
+
+def _add_ports(use: _Use, node: Node, kind: Kind | None) -> None:
+    known = {} if kind is None or kind.ports is None else kind.ports
+    for name, attribute in node.ports.items():
+        place = Place(node.place.file, attribute.mark)
+        port = known.get(name)
+        if port is not None and port.type == "script":
+            _add_script(use, attribute.value, place)
+            continue
+        said = values.read(name, attribute.value)
+        if node.kind == "SetBlackboard" and name == "output_key":
+            use.written.add(said.name if isinstance(said, Variable) else said)
+        elif node.is_subtree and isinstance(said, Variable):
+            use.passed.append((said.name, node.own["ID"].value, name))
+            use.read.setdefault(said.name, place)
+        elif isinstance(said, Variable) and (port is None or port.way is not Way.IN):
+            use.written.add(said.name)  # of a leaf that nobody knows, too: it may
+        elif isinstance(said, Variable):
+            use.read.setdefault(said.name, place)
+        elif port is not None and port.way is Way.OUT:
+            use.written.add(said)
+
+
+def _add_script(use: _Use, text: str, place: Place) -> None:
+    if isinstance(said := values.read("code", text), Variable):
+        use.read.setdefault(said.name, place)
+        return
+    try:
+        statements = script.parse(text)
+    except script.ScriptFault:
+        return  # told elsewhere
+    for name in sorted(script.reads(statements)):
+        use.read.setdefault(name, place)
+    use.written |= script.writes(statements)

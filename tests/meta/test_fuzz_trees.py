@@ -1,0 +1,46 @@
+"""A short run of scripts/fuzz-trees, and that it finds what it is for."""
+
+from __future__ import annotations
+
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.bt_xml import script
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-trees"
+RUNS = 1500
+
+
+@pytest.fixture
+def fuzz(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
+    monkeypatch.chdir(tmp_path)
+    loader = SourceFileLoader("fuzz_trees", str(SCRIPT))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def test_no_mixture_of_mistakes_raises_anything(fuzz: Any) -> None:
+    seen, _ = fuzz.run(RUNS, 1)
+    assert sum(seen.values()) == RUNS
+    assert all(seen[what] > RUNS / 100 for what in ("warned of", "refused")), seen
+
+
+def test_its_samples_have_no_mistake(fuzz: Any) -> None:
+    assert {fuzz.look_at(sample) for sample in fuzz.SAMPLES} <= {"good", "warned of"}
+
+
+def test_a_limit_that_is_missing_would_be_found(
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(script, "LONGEST_NUMBER", 10_000)  # Python reads no number of so many digits
+    monkeypatch.setattr(fuzz, "ODD", [b"9" * 5000])
+    with pytest.raises(AssertionError, match=r"kept as fuzz-trees\.xml"):
+        fuzz.run(RUNS, 1)
+    assert (tmp_path / "fuzz-trees.xml").exists()

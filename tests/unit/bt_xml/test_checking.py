@@ -1,0 +1,161 @@
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from .told import HEAD, looked_at, mistakes, tree, warnings
+
+MODEL = (
+    '<TreeNodesModel><Action ID="Go"><input_port name="to" type="int"/><output_port name="at"/></Action>'
+    '<SubTree ID="Sub"><input_port name="n"/></SubTree></TreeNodesModel>'
+)
+
+
+@pytest.mark.parametrize(
+    ("body", "place", "words"),
+    [
+        ("<Sequence/>", "3:1", "Sequence has no children; it needs 1 or more"),
+        ("<Inverter><A/><B/></Inverter>", "3:1", "Inverter has 2 children; it needs 1"),
+        ('<IfThenElse name="if"><A/></IfThenElse>', "3:1", "IfThenElse 'if' has 1 child; it needs 2 to 3"),
+        ("<Sleep msec='1'><A/></Sleep>", "3:1", "Sleep has 1 child; it needs none"),
+        ("<Sleep/>", "3:1", "Sleep needs msec: a whole number of milliseconds, or a variable"),
+        ('<Sleep msec="soon"/>', "3:8", "msec of Sleep must be a whole number of milliseconds, is 'soon'"),
+        ('<Sleep msec="-1"/>', "3:8", "must be a whole number of milliseconds"),
+        ('<Sleep msec="1" sec="2"/>', "3:17", "Sleep has no port 'sec'; there are msec; did you mean msec?"),
+        ('<Repeat num_cycles="1.5"><A/></Repeat>', "3:9", "must be a whole number, is '1.5'"),
+        ('<Script code="x :="/>', "3:9", "'x :=': a value or a variable is expected, and the script ends"),
+        ('<A _skipIf="1 +"/>', "3:4", "a value or a variable is expected"),
+        ("<Sequnce><A/></Sequnce>", "3:1", "did you mean Sequence?"),
+        ("<Mine><A/></Mine>", "3:1", "declare it"),
+        ("<Main/>", "3:1", 'Main is a tree; write <SubTree ID="Main"/>'),
+        ('<SubTree name="x"/>', "3:1", "which?"),
+        ("<Action/>", "3:1", "which?"),
+        ('<SubTree ID="Sub"/>', "3:1", "the SubTree 'Sub' needs n"),
+        ('<SubTree ID="Sub" n="1"><A/></SubTree>', "3:1", "has children"),
+        ('<Go to="x" at="{a}"/>', "3:5", "to of Go must be a whole number, is 'x'"),
+        ('<Go to="1" form="{a}"/>', "3:12", "Go has no port 'form'; there are to, at"),
+        ('<Parallel success="2"><A/></Parallel>', "3:11", "there are success_count, failure_count"),
+        ('<Parallel success_count="all"><A/></Parallel>', "3:11", "must be a whole number"),
+        ('<Precondition if="x" else="MAYBE"><A/></Precondition>', "3:22", "SUCCESS or FAILURE"),
+        ('<A name="a&#x7f;"/>', "3:1", "control character 127"),
+    ],
+)
+def test_a_mistake_is_told_with_its_place_and_what_to_do(body: str, place: str, words: str) -> None:
+    (found,) = mistakes(tree(body, MODEL))
+    assert found.startswith(f"t.xml:{place}: ") and words in found
+
+
+def test_all_mistakes_are_told_at_once_in_the_order_of_the_file() -> None:
+    found = mistakes(tree('<Sequence>\n<Inverter/>\n<Sleep msec="x"/>\n<Sleep/>\n</Sequence>'))
+    assert [line.split(": ")[0] for line in found] == ["t.xml:4:1", "t.xml:5:8", "t.xml:6:1"]
+
+
+def test_of_very_many_mistakes_the_rest_is_counted() -> None:
+    found = mistakes(tree("<Sequence>" + "<Inverter/>" * 205 + "</Sequence>"))
+    assert len(found) == 201 and found[-1] == "and 5 mistakes more"
+
+
+def test_leaves_that_nobody_knows_are_listed_and_not_refused() -> None:
+    _, findings, leaves = looked_at(tree('<Sequence><Zap x="{y}"/><Action ID="Beep"/><Zap/></Sequence>'))
+    assert findings.mistakes == () and findings.warnings == () and leaves == ["Beep", "Zap"]
+
+
+@pytest.mark.parametrize(
+    ("body", "place", "words"),
+    [
+        ("<Sequence><AlwaysFailure/><A/></Sequence>", "3:27", "A can never be reached"),
+        ("<Fallback><ForceSuccess><A/></ForceSuccess><B name='b'/></Fallback>", "3:44", "B 'b' can never"),
+        ("<Sequence><Repeat num_cycles='-1'><A/></Repeat><B/></Sequence>", "3:48", "B can never"),
+        ("<IfThenElse><AlwaysSuccess/><A/><B/></IfThenElse>", "3:33", "B can never"),
+        ("<Fallback><Sequence><Script code='x:=1'/></Sequence><B/></Fallback>", "3:53", "B can never"),
+        ("<ScriptCondition code='a &amp;&amp; b && c == 1'/>", "3:40", "a raw & is no XML"),
+        ('<ScriptCondition code="door == 1"/>', "3:18", "the variable 'door' is read, and nothing"),
+        ('<Sleep msec="{pause}"/>', "3:8", "the variable 'pause' is read"),
+        ("<Sequnce/>", "3:1", "nobody here knows Sequnce; did you mean Sequence?"),
+        ('<SubTree ID="Elsewhere"/>', "3:10", "is in none of these files"),
+        ('<Action ID="Open the door"/>', "3:1", "newer editors refuse 'Open the door'"),
+        ('<A a.b="1"/>', "3:4", "newer editors refuse 'a.b' as the name of a port"),
+        ('<Go to="1" at="here"/>', "3:12", 'version 4 wants at="{...}"'),
+        ('<Go at="{x}"/>', "3:1", "Go needs to"),
+    ],
+)
+def test_what_may_be_wrong_is_a_warning(body: str, place: str, words: str) -> None:
+    text = tree(body, MODEL)
+    assert mistakes(text) == ()
+    assert any(each.startswith(f"t.xml:{place}: warning: ") and words in each for each in warnings(text))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "<Sequence><AlwaysFailure _skipIf='true'/><A/></Sequence>",
+        "<Fallback><Script code='x:=1' _failureIf='true'/><B/></Fallback>",
+        "<Fallback><Timeout msec='9'><Sleep msec='99'/></Timeout><B/></Fallback>",
+        "<Sequence><ForceFailure><A/></ForceFailure></Sequence>",
+        "<Sequence><SubTree ID='Main2'/><A/></Sequence>",
+        "<Fallback><AlwaysFailure/><A/></Fallback>",
+        "<IfThenElse><A/><AlwaysFailure/><B/></IfThenElse>",
+        "<Sequence><SetBlackboard value='1' output_key='x'/><Sleep msec='{x}'/></Sequence>",
+        "<Sequence><Script code='x:=1'/><Sleep msec='{x}'/></Sequence>",
+        "<Sequence><Zap any='{x}'/><Sleep msec='{x}'/></Sequence>",
+        "<ForEachPose vector_in='1;2' out='{x}'><Sleep msec='{x}'/></ForEachPose>",
+    ],
+)
+def test_what_can_be_is_not_warned_of(body: str) -> None:
+    assert warnings(tree(body, '<BehaviorTree ID="Main2"><A/></BehaviorTree>')) == ()
+
+
+def test_a_variable_may_come_from_the_tree_around_or_from_one_within() -> None:
+    steps = '<Sleep msec="{pause}"/><Script code="out := 1"/>'
+    inner = f'<BehaviorTree ID="In"><Sequence>{steps}</Sequence></BehaviorTree>'
+    body = '<Sequence><SubTree ID="In" pause="5" out="{found}"/><Sleep msec="{found}"/></Sequence>'
+    assert warnings(tree(body, inner)) == ()
+    (found,) = warnings(tree('<SubTree ID="In" out="{found}"/>', inner))
+    assert "'pause' is read" in found
+
+
+def test_names_that_are_shared_are_not_missed_and_those_of_the_outermost_tree_are_found() -> None:
+    inner = (
+        '<BehaviorTree ID="In"><Sequence><Sleep msec="{a}"/><Sleep msec="{@b}"/></Sequence></BehaviorTree>'
+    )
+    body = '<Sequence><Script code="b:=1"/><SubTree ID="In" _autoremap="true"/></Sequence>'
+    assert warnings(tree(body, inner)) == ()
+    text = tree('<SubTree ID="In" a="1"/>', inner)
+    (found,) = warnings(text.replace("<root", '<root main_tree_to_execute="Main"'))
+    assert "'@b' is read" in found
+
+
+def test_a_tree_that_contains_itself_is_told_once_with_the_way() -> None:
+    more = '\n<BehaviorTree ID="B">\n<Sequence><SubTree ID="Main"/></Sequence></BehaviorTree>'
+    (found,) = mistakes(tree('<SubTree ID="B"/>', more))
+    assert "contains itself" in found and found.count(">") == 2
+    (alone,) = mistakes(tree('<SubTree ID="Main"/>'))
+    assert alone == "t.xml:3:1: the tree Main contains itself: Main > Main"
+
+
+def test_five_hundred_nodes_are_read_and_checked_in_a_tenth_of_a_second() -> None:
+    ten = (
+        '<Fallback name="f"><Sequence><Go to="{x}" at="{y}" _skipIf="a &lt; 3 &amp;&amp; b == \'no\'"/>'
+        '<Script code="x := 3; y = x + 2"/><Sleep msec="10"/></Sequence>'
+        '<Timeout msec="100"><RetryUntilSuccessful num_attempts="3"><Inverter><Zap/></Inverter>'
+        "</RetryUntilSuccessful></Timeout></Fallback>"
+    )
+    text = tree(f"<Sequence>{ten * 56}</Sequence>", MODEL)
+    took = []
+    for _ in range(5):
+        before = time.process_time()
+        forest, findings, _ = looked_at(text)
+        took.append(time.process_time() - before)
+    assert findings.mistakes == () and len(list(forest.trees["Main"].root.iterate())) == 505
+    assert min(took) < 0.1
+
+
+def test_what_is_no_file_of_trees_is_told() -> None:
+    assert mistakes("<robot/>") == ("t.xml:1:1: the outermost tag is <robot>; it must be <root>",)
+    assert mistakes('<root BTCPP_format="5"><BehaviorTree><A/></BehaviorTree></root>') == (
+        "t.xml:1:7: BTCPP_format is '5'; 3 and 4 are known",
+    )
+    assert warnings(f"{HEAD}<Trees/></root>") == (
+        "t.xml:1:24: warning: <Trees> means nothing here; BehaviorTree, TreeNodesModel, include do",
+    )
