@@ -37,6 +37,7 @@ from . import (
     layout_check,
     logs_command,
     new_command,
+    nodes_command,
     oee_command,
     record_command,
     replay_command,
@@ -352,15 +353,24 @@ def check(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="The plant file to check, or a file of trees, *.xml.")
     ],
+    plant: Annotated[
+        Path | None,
+        typer.Option("--plant", metavar="FILE", help="The plant whose devices a tree is to tell what to do."),
+    ] = None,
+    cell: nodes_command.CellName = None,
 ) -> None:
     """Check a plant file, or behavior trees in the XML of BehaviorTree.CPP; every problem at once, each with
     its line. Exit status: 0 good, 2 problems.
 
-    Trees are checked without a plant: leaves that nobody here knows are listed, not refused.
+    Trees are checked without a plant: leaves that nobody here knows are listed, not refused. With --plant
+    they have to be nodes of its devices, which `arboleda nodes` lists.
     """
     if tree_file.is_tree_file(file):
-        print("\n".join(tree_file.report(file)))
+        known = None if plant is None else nodes_command.of_plant(config.load(plant), cell)
+        print("\n".join(tree_file.report(file, known)))
         return
+    if plant is not None or cell is not None:
+        raise typer.BadParameter("--plant and --cell are for files of trees, *.xml")
     model = config.load(file)
     for note in config.notes(model):
         print(f"{file}: note: {note}")
@@ -370,6 +380,7 @@ def check(
 
 
 cli.command()(tree_command.tree)
+cli.command()(nodes_command.nodes)
 cli.command()(new_command.new)
 cli.command()(examples_command.examples)
 cli.command()(tasks_command.tasks)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import Any
 
+from arboleda.bt_xml.export import export
 from arboleda.drawing.picture import picture
 from arboleda.drawing.svg import svg
 from arboleda.drawing.words import dot, outline
@@ -20,6 +21,7 @@ class Format(str, Enum):
     SVG = "svg"
     PNG = "png"
     DOT = "dot"
+    XML = "xml"
 
 
 def draw(rows: Rows, format: Format | str, *, statuses: bool = False) -> bytes:
@@ -38,4 +40,5 @@ FORMATS: dict[Format, Callable[[Rows, bool], bytes]] = {
     Format.SVG: lambda rows, _: svg(picture(rows)).encode(),
     Format.PNG: _png,
     Format.DOT: lambda rows, _: dot(rows).encode(),
+    Format.XML: lambda rows, _: export(rows).encode(),
 }

@@ -20,7 +20,9 @@ from . import config, tree_file
 from .draw import Format, draw
 from .where import PlantFile, StateFolder, client
 
-Drawn = Annotated[Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz.")]
+Drawn = Annotated[
+    Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz, xml is for editors.")
+]
 Live = Annotated[bool, typer.Option("--live", help="The tree that runs now, with its statuses.")]
 
 
@@ -42,6 +44,8 @@ def tree(
     if format is Format.PNG and sys.stdout.isatty():
         raise typer.BadParameter(f"a PNG is not for a terminal; add > {recipe}.png", param_hint="--format")
     if tree_file.is_tree_file(Path(recipe)) and not live:
+        if format is Format.XML:
+            raise typer.BadParameter(f"{recipe} is XML already", param_hint="--format")
         rows = _of_file(Path(recipe))
     else:
         rows = _running(recipe, cell, plant, state) if live else _planned(recipe, cell, config.load(plant))

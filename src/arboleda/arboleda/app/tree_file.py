@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from arboleda.bt_xml.checking import Checked
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.markup import LARGEST
+from arboleda.bt_xml.nodes import Kind
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 
@@ -35,19 +37,22 @@ class TreeFile:
     warnings: tuple[str, ...]
 
 
-def load(path: Path) -> TreeFile:
-    """The trees of a file and of those that it includes; ConfigError with every mistake."""
+def load(path: Path, known: Mapping[str, Kind] | None = None) -> TreeFile:
+    """The trees of a file and of those that it includes; ConfigError with every mistake.
+
+    `known`: the kinds of leaves that there are, and no others; None: there may be any.
+    """
     findings = Findings()
     forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, _included)
-    checked = checking.check(forest, findings)
+    checked = checking.check(forest, findings, known)
     if findings.mistakes:
         raise ConfigError(findings.mistakes)
     return TreeFile(forest=forest, checked=checked, warnings=findings.warnings)
 
 
-def report(path: Path) -> list[str]:
+def report(path: Path, known: Mapping[str, Kind] | None = None) -> list[str]:
     """What there is to say of a file that can be used; ConfigError with every mistake of one that cannot."""
-    found = load(path)
+    found = load(path, known)
     lines = [*found.warnings, *_unknown(path, found.checked)]
     trees = ", ".join(found.forest.trees) or "none"
     lines.append(f"{path}: good: {found.checked.nodes} nodes; trees {trees}")

@@ -29,9 +29,11 @@ class Checked:
     unknown: Mapping[str, Place]
 
 
-def check(forest: Forest, findings: Findings) -> Checked:
-    """Keeps all that is wrong."""
-    checker = _Checker(forest, findings)
+def check(forest: Forest, findings: Findings, known: Mapping[str, Kind] | None = None) -> Checked:
+    """Keeps all that is wrong. `known`: the kinds of nodes of one's own that there are, and no others; None:
+    there may be any, and what the files declare counts.
+    """
+    checker = _Checker(forest, findings, known)
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             checker.look_at(node)
@@ -51,6 +53,7 @@ def _named(node: Node) -> str:
 class _Checker:
     forest: Forest
     findings: Findings
+    known: Mapping[str, Kind] | None = None
     number: int = 0
     unknown: dict[str, Place] = field(default_factory=dict)
 
@@ -58,8 +61,9 @@ class _Checker:
         """What is known of the kind of a node; of a subtree what its model says."""
         if node.is_subtree:
             return self._model_of(node)
-        known = nodes.built_in(node.kind) or self.forest.models.get(node.kind)
-        if known is None and node.tag is not None:
+        declared = self.forest.models if self.known is None else self.known
+        known = nodes.built_in(node.kind) or declared.get(node.kind)
+        if known is None and self.known is None and node.tag is not None:
             fewest, most = nodes.children(node.tag)
             known = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
         return known
@@ -101,10 +105,13 @@ class _Checker:
 
     def _check_unknown(self, node: Node) -> None:
         """A node in the compact form that no file declares: a leaf may be one of a plant or a program."""
-        near = get_close_matches(node.kind, OF_LIBRARY, n=1, cutoff=0.8)
+        near = get_close_matches(node.kind, (*(self.known or ()), *OF_LIBRARY), n=1, cutoff=0.8)
         hint = f"; did you mean {near[0]}?" if near else ""
         if node.kind in self.forest.trees:
             self._mistake(node, f'{node.kind} is a tree; write <SubTree ID="{node.kind}"/>')
+        elif self.known is not None:
+            how = "; `arboleda nodes` lists what this plant has"
+            self._mistake(node, f"no device of this plant makes a node {node.kind}{hint or how}")
         elif node.children:
             how = f'; if it is one of your own, declare it: <Decorator ID="{node.kind}"/>'
             self._mistake(node, f"nobody knows a node {node.kind} with children{hint or how}")
@@ -131,7 +138,7 @@ class _Checker:
                 self._unknown_port(node, name, attribute, ports)
             else:
                 self._check_value(node, ports[name], attribute)
-        is_ours = nodes.built_in(node.kind) is not None
+        is_ours = self.known is not None or nodes.built_in(node.kind) is not None
         for port in ports.values():
             if port.is_needed and port.name not in node.ports:
                 sentence = f"{_named(node)} needs {port.name}{_what(port)}"
@@ -158,6 +165,13 @@ class _Checker:
             self.findings.warning(place, f"{port.name} of {node.kind} names a variable; {how}")
         elif (wanted := values.objection(port.type, said)) is not None:
             self.findings.mistake(place, f"{port.name} of {node.kind} must be {wanted}, is {quoted(said)}")
+        elif port.words and said not in port.words:
+            sentence = f"{port.name} of {node.kind} is {quoted(said)}; {among(said, port.words)}"
+            self.findings.mistake(place, sentence)
+        elif port.limits is not None and not port.limits[0] <= values.number(said) <= port.limits[1]:
+            lower, upper = port.limits
+            sentence = f"{port.name} of {node.kind} must be from {lower:g} to {upper:g}, is {quoted(said)}"
+            self.findings.mistake(place, sentence)
 
     def _check_script(self, node: Node, attribute: Attribute) -> None:
         if isinstance(values.read("code", attribute.value), Variable):

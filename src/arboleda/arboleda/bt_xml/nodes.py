@@ -33,13 +33,17 @@ class Way(str, Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Port:
-    """A value that a node is given or gives; `is_needed`: without one nothing can be done."""
+    """A value that a node is given or gives; `is_needed`: without one nothing can be done. `words`: all that
+    it can be, `limits`: within which a number lies, where that is known.
+    """
 
     name: str
     type: str = ""
     way: Way = Way.IN
     default: str | None = None
     is_needed: bool = False
+    words: tuple[str, ...] = ()
+    limits: tuple[float, float] | None = None
     about: str = ""
 
 

@@ -42,6 +42,11 @@ def objection(type: str, text: str) -> str | None:
     return known[0]
 
 
+def number(text: str) -> float:
+    """The number that a text of a type of numbers spells."""
+    return float(int(text, 16)) if "x" in text.lower() else float(text)
+
+
 def plain_type(type: str | None) -> str:
     """A type as this table calls it, however a model spells it; "" for any other."""
     found = SPELLINGS.get((type or "").strip(), (type or "").strip())

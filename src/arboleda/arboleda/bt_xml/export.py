@@ -1,0 +1,153 @@
+"""A tree of the plant as XML that viewers of BehaviorTree.CPP show: the rows of a tree -> text.
+
+Free viewers show 20 nodes of a tree, so what is larger becomes subtrees. A node with more children than that
+has them in several subtrees of the same kind; those that only split it up are marked with `_part`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from . import names, writing
+from .nodes import BUILT_IN, Category, Kind, Port, by_name, children
+from .writing import Tag
+
+LARGEST = 20  # nodes of one tree
+PART = "_part"
+CONTROLS: Mapping[str, tuple[str, Mapping[str, str]]] = {
+    "sequence": ("Sequence", {}),
+    "selector": ("Fallback", {}),
+    "parallel": ("Parallel", {"success_count": "-1", "failure_count": "1"}),
+}
+CONDITIONS = ("condition",)
+TAKEN = frozenset([*BUILT_IN, *(each.value for each in Category)])
+
+
+def export(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The tree of these rows (path, name, kind, parameters), which are those of `views/tree_view.py`."""
+    nodes = {row["path"]: _Node(row) for row in rows}
+    for path, node in nodes.items():
+        if path != "root":
+            nodes[path.rpartition(".")[0] or "root"].children.append(node)
+    writer = _Writer()
+    main = writer.tree(nodes["root"])
+    found = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
+    return writing.document([*writer.trees, writing.models(found)], main_tree_to_execute=main)
+
+
+@dataclass
+class _Node:
+    """A row with those below it; `size` counts what of it stands in its own tree."""
+
+    row: Mapping[str, Any]
+    children: list[_Node] = field(default_factory=list)
+    is_part: bool = False
+    is_apart: bool = False  # it is a tree of its own
+
+    @property
+    def title(self) -> str:
+        return str(self.row["name"])
+
+
+@dataclass
+class _Writer:
+    trees: list[Tag] = field(default_factory=list)
+    kinds: dict[str, Kind] = field(default_factory=dict)
+    _names: set[str] = field(default_factory=set)
+
+    def tree(self, node: _Node) -> str:
+        """Write a node as a tree of its own, after those that it needs; the name of that tree."""
+        _divide(node)
+        name = self._free_name(node.title)
+        position = len(self.trees)
+        root = self._tag(node)
+        self.trees.insert(position, Tag("BehaviorTree", {"ID": name}, [root]))
+        return name
+
+    def _tag(self, node: _Node) -> Tag:
+        row = node.row
+        control = CONTROLS.get(row["kind"])
+        below = [self._below(child) for child in node.children]
+        if control is not None and below:
+            return Tag(control[0], {"name": node.title, **control[1]}, below)
+        kind = self._kind(row, around=len(below))
+        given = {
+            name: str(value)
+            for name, value in row.get("parameters", {}).items()
+            if name in (kind.ports or {})
+        }
+        return Tag(kind.name, {"name": node.title, **given}, below)
+
+    def _below(self, node: _Node) -> Tag:
+        if not node.is_apart:
+            return self._tag(node)
+        part = {PART: "true"} if node.is_part else {}
+        return Tag("SubTree", {"ID": self.tree(node), "name": node.title, **part})
+
+    def _kind(self, row: Mapping[str, Any], *, around: int) -> Kind:
+        """What a node is to a viewer; the ports of a kind are those of all its nodes."""
+        category = Category.CONDITION if row["kind"] in CONDITIONS else Category.ACTION
+        if around:
+            category = Category.DECORATOR if around == 1 else Category.CONTROL
+        name = _name(f"{row['kind']}_{category.value}" if around else row["kind"])
+        known = self.kinds.get(name)
+        given = [Port(name=each) for each in row.get("parameters", {}) if names.of_port(str(each)) is None]
+        ports = {**(known.ports or {} if known is not None else {}), **by_name(given)}
+        fewest, most = children(category)
+        self.kinds[name] = Kind(name=name, category=category, ports=ports, fewest=fewest, most=most)
+        return self.kinds[name]
+
+    def _free_name(self, title: str) -> str:
+        name = _name(title)
+        free = next(each for each in _numbered(name) if each not in self._names)
+        self._names.add(free)
+        return free
+
+
+def _divide(root: _Node) -> None:
+    """Take parts of a tree away, the largest that fit first, until it is small enough."""
+    while len(own := list(_own(root))) > LARGEST:
+        open_ones = [node for node in own if node is root or not node.is_apart]
+        sizes = [(len(list(_own(node))), node) for node in open_ones if node.children and node is not root]
+        fitting = [each for each in sizes if each[0] <= LARGEST]
+        if fitting:
+            max(fitting, key=lambda each: each[0])[1].is_apart = True
+        else:
+            _group(max(open_ones, key=lambda node: len(node.children)))
+
+
+def _group(node: _Node) -> None:
+    """Put neighbouring children together, each group below a node of the same kind."""
+    many = LARGEST - 1
+    groups = [node.children[start : start + many] for start in range(0, len(node.children), many)]
+    node.children = [
+        _Node(row={**node.row, "name": f"{node.title} {number}"}, children=group, is_part=True, is_apart=True)
+        for number, group in enumerate(groups, start=1)
+    ]
+
+
+def _own(root: _Node) -> Iterator[_Node]:
+    """The nodes of a tree without those of trees within; such a tree itself is one node."""
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if not node.is_apart or node is root:
+            waiting += reversed(node.children)
+
+
+def _name(text: str) -> str:
+    """A name that editors take: each word with a capital."""
+    kept = "".join(each if each.isalnum() and each.isascii() else " " for each in text)
+    found = "".join(word[:1].upper() + word[1:] for word in kept.split()) or "Node"
+    return f"A{found}" if found[0].isdigit() or names.of_node(found) or found in TAKEN else found
+
+
+def _numbered(name: str) -> Iterator[str]:
+    yield name
+    number = 2
+    while True:
+        yield f"{name}{number}"
+        number += 1
