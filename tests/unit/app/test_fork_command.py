@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -18,19 +19,20 @@ from arboleda.recorder.files import PartFile
 from arboleda.recorder.tape import TapedPlant
 from arboleda.simulator.world import World
 
+Act = Callable[[World], None]
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lab_bench" / "plant.yaml"
 
 
-def written(folder: Path, plant_file: Path | None, text: str, off: tuple[float, str] | None) -> Path:
-    """The record of a simulated run of one task, in which a board may lose its power."""
+def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, Act] | None) -> Path:
+    """The record of a simulated run of one task, in which something may go wrong."""
     model, recording = config.load_recorded(plant_file)
     assert recording is not None
     make = partial(TapedPlant, files=recording.files)
     world = World(at_rate(Plant(declared=model).model, 1.0), now=1_700_000_000.0, make_plant=make)
     world.advance(2.0)
     world.request_task(text)
-    if off is not None:
-        world.at(world.now + off[0], lambda _: world.power_off(off[1]))
+    if act is not None:
+        world.at(world.now + act[0], lambda _: act[1](world))
     world.advance(60.0)
     plant = world.plant
     assert isinstance(plant, TapedPlant)
@@ -42,9 +44,13 @@ def written(folder: Path, plant_file: Path | None, text: str, off: tuple[float, 
     return path
 
 
+def power_off(world: World) -> None:
+    world.power_off("ra_1")
+
+
 @pytest.fixture(scope="module")
 def failed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return written(tmp_path_factory.mktemp("record"), None, "sis_a 0B 7 #lot", (5.0, "ra_1"))
+    return written(tmp_path_factory.mktemp("record"), None, "sis_a 0B 7 #lot", (5.0, power_off))
 
 
 def said(*args: str | Path, status: int) -> list[str]:

@@ -26,6 +26,7 @@ TOLD_BY = (
     "recipes",
     "drivers",
     "views",
+    "recorder",
     "wire",
     "app.parts",
     "app.plant_file",

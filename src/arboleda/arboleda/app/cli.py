@@ -41,6 +41,7 @@ from . import (
     oee_command,
     record_command,
     replay_command,
+    report_command,
     service_command,
     tasks_command,
     token_command,
@@ -390,6 +391,7 @@ backup_command.add_to(cli)
 cli.add_typer(service_command.cli, name="service")
 cli.add_typer(record_command.cli, name="record")
 replay_command.add_to(cli)
+report_command.add_to(cli)
 logs_command.add_to(cli)
 
 

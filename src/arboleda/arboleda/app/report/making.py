@@ -1,0 +1,29 @@
+"""Makes the report of a task that was read."""
+
+from __future__ import annotations
+
+import shlex
+
+from arboleda.recorder.cause import Cause
+
+from .case import case_of
+from .page import Report, page
+from .reading import Read
+from .tries import tries
+
+
+def made(read: Read) -> tuple[Cause, str]:
+    """Its cause, and the content of the file."""
+    found, beginning = read.incident, read.record.first.beginning
+    cause = found.cause
+    shipped = beginning.files.plant == "plant.yaml" and beginning.plant == "arboleda"
+    path = shlex.quote(str(read.record.paths[0]))
+    report = Report(
+        incident=found,
+        cause=cause,
+        model=read.model,
+        tries=tries(read),
+        case=case_of(found, cause, read.model, "" if shipped else beginning.files.plant),
+        command=f"arboleda replay {path} --task {shlex.quote(found.task)}",
+    )
+    return cause, page(report)

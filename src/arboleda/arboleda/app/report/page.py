@@ -1,0 +1,143 @@
+"""The report as one HTML file that needs no network: both languages in it, one of them shown."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from html import escape
+from importlib import resources
+from typing import Any
+
+from arboleda.dashboard.wording import Words, words
+from arboleda.drawing.words import outline
+from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Sentence
+from arboleda.recorder.cause import Cause
+from arboleda.recorder.incident import Incident
+
+from .scene import scene
+from .tries import Try
+from .words import WORDS
+
+LANGUAGES = ("en", "es")
+Both = Callable[..., str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report:
+    """All that a report shows; `command` executes the record again up to the end of the task."""
+
+    incident: Incident
+    cause: Cause
+    model: PlantModel
+    tries: list[Try]
+    case: str
+    command: str
+
+
+def page(report: Report) -> str:
+    """The content of the file."""
+    template = resources.files(__package__).joinpath("report.html").read_text("utf-8")
+    drawn = scene(report.incident, report.model)
+    body = "\n".join(_parts(report, has_twin=drawn is not None))
+    data = json.dumps({"scene": drawn}).replace("<", "\\u003c")
+    title = escape(WORDS["title"][0].format(task=report.incident.task))
+    return template.replace("__TITLE__", title).replace("__BODY__", body).replace("__DATA__", data)
+
+
+def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
+    found, cause = report.incident, report.cause
+    when = datetime.fromtimestamp(found.unix_ns / 1e9).isoformat(" ", "seconds")
+    yield f"<h1>{_both('title', task=found.task)}</h1>"
+    yield f"<p class=quiet>{escape(found.text)} · {escape(found.cell)} · {when}</p>"
+    yield f"<section class=cause><h2>{_both('cause')}</h2><p class=big>{_said(cause.sentence)}</p>"
+    own = report.incident.failure.sentence if report.incident.failure else ""
+    yield f"<p class=quiet>{_both('cause_note')} {_said(own)}</p></section>"
+    yield f"<section><h2>{_both('evidence')}</h2><ul>{''.join(_evidence(found))}</ul></section>"
+    if has_twin:
+        yield f"<section><h2>{_both('twin')}</h2><svg id=twin></svg>"
+        yield "<p><input id=time type=range min=0 value=0> <output id=at></output> "
+        yield f"{_both('before')}</p></section>"
+    if found.tree:
+        yield f"<section><h2>{_both('tree')}</h2>{_tree(found)}</section>"
+    yield f"<section><h2>{_both('messages')}</h2><p class=quiet>{_both('messages_note')}</p>"
+    yield from (_messages(found, name) for name in _mine(report))
+    acts = "".join(f"<li>{at - _zero(found):+.2f} s {escape(word)}</li>" for at, word in found.acts)
+    acts = acts or f"<li>{_both('none')}</li>"
+    yield f"</section><section><h2>{_both('acts')}</h2><ul>{acts}</ul></section>"
+    yield f"<section><h2>{_both('changed')}</h2><p class=quiet>{_both('changed_note')}</p>"
+    yield f"<table>{''.join(_try(each, report) for each in report.tries)}</table></section>"
+    yield f"<section><h2>{_both('again')}</h2><pre>{escape(report.command)}</pre></section>"
+    yield f"<section><h2>{_both('test')}</h2><p class=quiet>{_both('test_note')}</p>"
+    yield f"<pre id=test>{escape(report.case)}</pre>"
+    yield f"<button id=copy>{_both('copy')}</button> <button id=save>{_both('save')}</button></section>"
+
+
+def _zero(found: Incident) -> float:
+    return found.failed_at or found.ended_at or 0.0
+
+
+def _both(key: str, **values: Any) -> str:
+    """Words of the report in both languages."""
+    rows = zip(LANGUAGES, WORDS[key], strict=True)
+    return "".join(_span(language, text.format(**values) if values else text) for language, text in rows)
+
+
+def _said(sentence: Sentence | str) -> str:
+    """A sentence of the plant in both languages."""
+    return "".join(_span(language, words(language).say(sentence)) for language in LANGUAGES)
+
+
+def _span(language: str, text: str) -> str:
+    return f"<span lang={language}>{escape(text)}</span>"
+
+
+def _mine(report: Report) -> list[str]:
+    """The devices of the cell, and whoever the cause names."""
+    cells = [cell for cell in report.model.cells if cell.name == report.incident.cell]
+    names = [robot.name for cell in cells for robot in cell.robots]
+    names += [report.cause.robot] if report.cause.robot and report.cause.robot not in names else []
+    return [name for name in names if name in report.incident.messages]
+
+
+def _evidence(found: Incident) -> Iterator[str]:
+    zero = _zero(found)
+    for trouble in found.troubles:
+        if trouble.ends >= found.asked_at:
+            seconds = "…" if trouble.seconds == math.inf else f"{trouble.seconds:.1f}"
+            cut = f" ({_both('cut')})" if trouble.cut else ""
+            what = _both(f"trouble_{trouble.kind}", seconds=seconds)
+            yield f"<li>{trouble.at - zero:+.2f} s {escape(trouble.robot)}: {what}{cut}</li>"
+    last = found.evidence.last if found.failure else None
+    if last is not None:
+        late = None if last.accepted_at is None else last.accepted_at - last.at
+        how = _both("not_accepted") if late is None else _both("accepted", seconds=late)
+        whose = f"{escape(last.robot)}: {_both('sent')} {escape(last.id)}"
+        yield f"<li>{last.at - zero:+.2f} s {whose}, {how}</li>"
+    for at, seconds in found.absences:
+        yield f"<li>{at - zero:+.2f} s: {seconds:.1f} s</li>"
+    yield f"<li>{(found.ended_at or zero) - zero:+.2f} s {_both('task_end')}</li>"
+
+
+def _tree(found: Incident) -> str:
+    return "".join(f"<pre lang={each}>{escape(_outline(found, words(each)))}</pre>" for each in LANGUAGES)
+
+
+def _outline(found: Incident, said: Words) -> str:
+    told = ("name", "feedback")
+    rows = [{**row, **{key: said.say(row[key] or "") for key in told}} for row in found.tree]
+    return outline(rows, statuses=True)
+
+
+def _messages(found: Incident, name: str) -> str:
+    rows = "".join(f"<tr><td>{at - _zero(found):+.2f}<td>{escape(text)}" for at, text in found.messages[name])
+    return f"<h3>{escape(name)}</h3><table class=small>{rows}</table>"
+
+
+def _try(each: Try, report: Report) -> str:
+    what = _both(each.what, value=each.value)
+    command = f"{report.command} {each.options}".strip() if each.options else ""
+    return f"<tr><td>{what}<td>{escape(each.end)}<td><code>{escape(command)}</code>"

@@ -1,0 +1,80 @@
+"""Finds a task in the records of a plant, and reads what there is of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.files import parts_in
+from arboleda.recorder.incident import Incident, Reader
+from arboleda.recorder.reader import Record, opened
+from arboleda.recorder.recorder import FLUSH_S
+from arboleda.recorder.replay import plant_of
+
+from ..recorded_plant import model_of
+
+LOOK_S = 0.5  # between two looks at a record that is being written
+
+
+@dataclass(frozen=True, kw_only=True)
+class Read:
+    """A record, the plant of it and what it has of the task."""
+
+    record: Record
+    model: PlantModel
+    incident: Incident
+
+
+def read(task: str, record: Path | None, folder: Path) -> Read:
+    """The task in this record, or in the newest of a folder that has it; ConfigError where none has.
+
+    What a plant that runs has not written yet is waited for, some seconds.
+    """
+    until = time.monotonic() + FLUSH_S + 2.0
+    while True:
+        paths = [record] if record is not None else list(_newest(folder))
+        found = next((path for path in paths if _has(path, task)), None)
+        if found is not None:
+            whole = opened(found)
+            incident = incident_of(task, whole)
+            if incident.ended_at is not None or time.monotonic() > until:
+                return Read(record=whole, model=model_of(whole.first.beginning), incident=incident)
+        elif time.monotonic() > until or not paths or not _is_written(paths[0]):
+            raise ConfigError((f"{plain(task, 80)}: no record of this plant has such a task",))
+        time.sleep(LOOK_S)
+
+
+def _newest(folder: Path) -> Iterator[Path]:
+    """A file of each record, the newest first."""
+    epochs: set[int] = set()
+    for part in reversed(parts_in(folder)):
+        if part.epoch not in epochs:
+            epochs.add(part.epoch)
+            yield part.path
+
+
+def _has(path: Path, task: str) -> bool:
+    """Whether a record names the task, be it in a request."""
+    word = f'"task":"{task}"'.encode()
+    return any(word in data for _, data in opened(path).raw())
+
+
+def _is_written(path: Path) -> bool:
+    return time.time() - path.stat().st_mtime < 2 * FLUSH_S
+
+
+def incident_of(task: str, record: Record) -> Incident:
+    """The record is executed again up to the task's end."""
+    beginning = record.first.beginning
+    model = model_of(beginning)
+    plant, reader = plant_of(beginning, model), Reader(task, model)
+    for step in record.steps():
+        reader.take(plant, step.unix_ns, step.now, step.events, plant.step(step.now, step.events))
+        if reader.over:
+            break
+    return reader.incident

@@ -1,0 +1,70 @@
+"""What would have changed it: forks of the record that are really run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.incident import Incident
+from arboleda.recorder.troubles import SILENCE
+
+from ..fork.happenings import TASK
+from ..fork.run import Asked, forked
+from ..replay_command import sentence_of
+from .reading import Read
+
+LONGER = 3.0  # times a deadline
+EARLIER_NS = 100_000_000  # before it was asked for
+MARGIN_S = 0.5
+WITHOUT, HEALTHY, STALE, DEADLINE = "without", "healthy", "stale", "deadline"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Try:
+    """A fork: what of, in a word, with which value, and what became of the task; `command` runs it again."""
+
+    what: str
+    value: float
+    end: str
+    done: bool
+    options: str
+
+
+def tries(read: Read) -> list[Try]:
+    """The forks of a task from its beginning: without any change first, which has to end as it did."""
+    found: list[Try] = []
+    for what, value, model, options in _changes(read.model, read.incident):
+        found.append(_tried(read, what, value, model, options))
+    return found
+
+
+def _changes(model: PlantModel, incident: Incident) -> Iterator[tuple[str, float, PlantModel, str]]:
+    timing = model.timing
+    yield WITHOUT, 0.0, model, ""
+    yield HEALTHY, 0.0, model, "--healthy"
+    trouble = incident.evidence.trouble
+    if trouble is not None and trouble.kind == SILENCE and not trouble.cut and trouble.seconds < math.inf:
+        longer_s = round(trouble.seconds + MARGIN_S, 1)
+        patient = replace(model, timing=replace(timing, stale_after_s=longer_s))
+        yield STALE, longer_s, patient, f"--set timing.stale_after_s={longer_s:g}"
+    if incident.evidence.reason.value == "deadline":
+        factor = timing.deadline_factor * LONGER
+        patient = replace(model, timing=replace(timing, deadline_factor=factor))
+        yield DEADLINE, factor, patient, f"--set timing.deadline_factor={factor:g}"
+
+
+def _tried(read: Read, what: str, value: float, model: PlantModel, options: str) -> Try:
+    incident, record = read.incident, read.record
+    since_s = (incident.ended_at or 0.0) - incident.asked_at
+    asked = Asked(
+        at_ns=incident.unix_ns - round(since_s * 1e9) - EARLIER_NS,
+        model=model,
+        recorded=read.model,
+        healthy=what == HEALTHY,
+    )
+    found = forked(record.first.beginning, record.steps(), asked, sentence_of)
+    ends = [each.said for each in found.fork if each.stream == TASK + incident.task]
+    end = ends[-1] if ends else "?"
+    return Try(what=what, value=value, end=end, done=end.startswith("done"), options=options)

@@ -1,0 +1,230 @@
+"""What a record has of one task that failed: collected while it is executed again."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
+from typing import Any
+
+from arboleda.core.plant import Plant
+from arboleda.model.commands import Command, Stop, Switch
+from arboleda.model.messages import (
+    Event,
+    Failure,
+    Interference,
+    OperatorRequest,
+    Report,
+    TaskChanged,
+    TaskState,
+)
+from arboleda.model.plant_model import Evidence as Level
+from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.sentence import Sentence
+from arboleda.views import tree_view, twin_view
+
+from .cause import BY_KEY, Cause, Evidence, Sent, cause_of
+from .troubles import Trouble, Troubles
+
+FRAMES_S, FRAME_S = 10.0, 0.2  # how far back places of devices are kept, and how far apart
+MESSAGES = 14  # of each device
+AFTER_S = 20.0  # so long after its end a task is followed
+AWAY_S = 0.9  # a plant steps at least as often as it beats; boards stop by themselves a little later
+ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED})
+WHOSE = ("robot", "arm", "device")  # what sentences call the one that they are about
+Row = dict[str, Any]
+
+
+@dataclass
+class Incident:
+    """A task as the record has it; times in s of the plant's clock. `frames` are places of devices."""
+
+    task: str
+    text: str = ""
+    cell: str = ""
+    asked_at: float = 0.0
+    failed_at: float | None = None
+    ended_at: float | None = None
+    unix_ns: int = 0  # when it ended
+    state: TaskState | None = None
+    failure: Failure | None = None
+    tree: list[Row] = field(default_factory=list)
+    frames: list[tuple[float, list[Row]]] = field(default_factory=list)
+    messages: dict[str, list[tuple[float, str]]] = field(default_factory=dict)
+    acts: list[tuple[float, str]] = field(default_factory=list)
+    troubles: list[Trouble] = field(default_factory=list)
+    sent: dict[str, Sent] = field(default_factory=dict)
+    absences: list[tuple[float, float]] = field(default_factory=list)
+    foreign: list[tuple[float, str]] = field(default_factory=list)
+
+    @property
+    def evidence(self) -> Evidence:
+        """What rules look at; of a task that has failed."""
+        assert self.failure is not None and self.failed_at is not None
+        parts = list(self.failure.sentence.parts())
+        values = {slot: value for part in reversed(parts) for slot, value in part.values.items()}
+        how = values.get("how")
+        robot = next((str(values[slot]) for slot in WHOSE if slot in values), None)
+        doing = values.get("doing", "")
+        return Evidence(
+            reason=self.failure.reason,
+            key=next((part.key for part in parts if part.key in BY_KEY), parts[0].key),
+            failed_at=self.failed_at,
+            robot=robot,
+            doing=doing if isinstance(doing, Sentence) else str(doing),
+            word=str(values.get("word", "")),
+            inner=how.key if isinstance(how, Sentence) else "",
+            sent=[each for each in self.sent.values() if each.at < self.failed_at],
+            troubles=self.troubles,
+            acts=self.acts,
+            absences=self.absences,
+            foreign=self.foreign,
+            said=self.failure.sentence,
+        )
+
+    @property
+    def cause(self) -> Cause:
+        return cause_of(self.evidence)
+
+
+class Reader:
+    """Watches a plant that is executed again, for one task; `at_once` has all that it needs of a step.
+
+    `drawn`: whether the places of devices and the tree are wanted, too.
+    """
+
+    def __init__(self, task: str, model: PlantModel, *, drawn: bool = True) -> None:
+        self.incident = Incident(task)
+        self._drawn = drawn
+        self._troubles = Troubles(supervised(model), model.timing.stale_after_s)
+        self._said: dict[str, deque[tuple[float, str]]] = {
+            name: deque(maxlen=MESSAGES) for name in model.robots
+        }
+        self._words: dict[str, object] = {}
+        self._stepped_at: float | None = None
+        self._tree: list[Row] = []
+        self._frames: deque[tuple[float, list[Row]]] = deque(maxlen=round(FRAMES_S / FRAME_S))
+
+    @property
+    def over(self) -> bool:
+        """Whether the task has ended, and what came right after it was heard: only then a boot shows."""
+        ended_at = self.incident.ended_at
+        return ended_at is not None and self._stepped_at is not None and self._stepped_at > ended_at + AFTER_S
+
+    def take(
+        self, plant: Plant, unix_ns: int, now: float, events: Iterable[Event], messages: Iterable[Any]
+    ) -> None:
+        """A step that was made just now."""
+        if self._stepped_at is not None and now - self._stepped_at > AWAY_S:
+            self.incident.absences.append((now, now - self._stepped_at))
+        self._stepped_at = now
+        for event in events:
+            self._hear(event)
+        for message in messages:
+            self._send(message, unix_ns, now)
+        self._look(plant, now)
+        if self.incident.ended_at is not None:
+            self.incident.troubles = self._troubles.of(now)
+
+    def _hear(self, event: Event) -> None:
+        found = self.incident
+        self._troubles.take([event])
+        if isinstance(event, Report):
+            self._report(event)
+        elif isinstance(event, OperatorRequest):
+            found.acts.append((event.at, f"{event.verb.value} {event.scope}".strip()))
+        elif isinstance(event, Interference):
+            found.foreign.append((event.at, event.robot))
+
+    def _report(self, report: Report) -> None:
+        found = self.incident
+        sent = found.sent.get(report.accepted or "")
+        if sent is not None and sent.accepted_at is None:
+            found.sent[sent.id] = replace(sent, accepted_at=report.at)
+        words = news_of(report)
+        if report.robot in self._said and self._words.get(report.robot) != words:
+            self._words[report.robot] = words
+            self._said[report.robot].append((report.at, told(report)))
+        if report.foreign is not None and report.foreign_obeyed:
+            found.foreign.append((report.at, report.robot))
+
+    def _send(self, message: Any, unix_ns: int, now: float) -> None:
+        found = self.incident
+        if isinstance(message, Command) and not isinstance(message, Stop):
+            switch = isinstance(message, Switch)
+            found.sent[message.id] = Sent(id=message.id, robot=message.robot, at=now, switch=switch)
+            given = " ".join(
+                f"{key}={_short(value)}" for key, value in message.given.items() if key != "robot"
+            )
+            self._said[message.robot].append((now, f"> {type(message).__name__} {given} (id {message.id})"))
+        elif isinstance(message, TaskChanged) and message.task == found.task:
+            self._change(message, unix_ns, now)
+
+    def _change(self, change: TaskChanged, unix_ns: int, now: float) -> None:
+        found = self.incident
+        if found.state is None:
+            found.text, found.cell, found.asked_at = change.text, change.cell or "", now
+        found.state = change.state
+        if change.state in ENDED:
+            found.ended_at, found.unix_ns = now, unix_ns
+        if change.state in ENDED and change.reason is not None and found.failure is None:
+            found.failure = Failure(reason=change.reason, sentence=change.sentence)
+            found.failed_at = now
+
+    def _look(self, plant: Plant, now: float) -> None:
+        """What of it is no message: when it began to fail, the tree then, and the places until then."""
+        found = self.incident
+        run = plant.cells.get(found.cell)
+        if run is None:
+            return
+        if self._drawn and (not self._frames or now - self._frames[-1][0] >= FRAME_S):
+            self._frames.append((now, twin_view.positions(plant)["robots"]))
+        if run.task is None or run.task.id != found.task:
+            self._keep()
+            return
+        failure = run.task.failure or run.context.failure
+        if failure is None:  # a further try, perhaps: what it failed of before is forgiven
+            found.failure = found.failed_at = None
+            if self._drawn and run.tree is not None:
+                self._tree = tree_view.rows(run.tree, now)
+            found.frames = []
+        elif found.failed_at is None:
+            found.failure, found.failed_at = failure, now
+            self._keep()
+
+    def _keep(self) -> None:
+        """What is drawn of the moment; the tree as it was just before, in the step that failed."""
+        found = self.incident
+        if self._drawn and found.failed_at is not None and not found.frames:
+            found.tree = self._tree
+            found.frames = [*self._frames]
+            found.messages = {name: [*said] for name, said in self._said.items() if said}
+
+
+def supervised(model: PlantModel) -> frozenset[str]:
+    """Whose silence means something."""
+    silent = (Link.SCREEN, Link.NONE)
+    robots = model.robots.values()
+    return frozenset(
+        each.name for each in robots if each.evidence is not Level.STATE and each.link not in silent
+    )
+
+
+NEWS = ("state", "accepted", "done", "rejected", "failed", "answered", "node", "homed", "effector", "piece")
+SAID = (*NEWS, "refusal", "failure", "answer", "q", "facts", "boot_id")
+news_of = attrgetter(*NEWS, "facts", "boot_id")
+
+
+def told(report: Report) -> str:
+    """What a report says, in words of its fields."""
+    said = {name: getattr(report, name) for name in SAID}
+    return " ".join(f"{name}={_short(value)}" for name, value in said.items() if value is not None)
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(map(_short, value)) + "]"
+    if hasattr(value, "name") and hasattr(value, "value"):
+        return str(value.name)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
