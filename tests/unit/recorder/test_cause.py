@@ -54,7 +54,10 @@ def named(**changes: Any) -> str:
             },
         ),
         ("no_part", {"reason": Reason.NO_PIECE, "key": "part.none"}),
-        ("other", {"reason": Reason.STOPPED, "key": "x", "said": "nobody knows"}),
+        ("not_gripped", {"reason": Reason.PART_LOST, "key": "part.lost", "failed_at": 8.1}),
+        ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost"}),
+        ("foreign", {"reason": Reason.STOPPED}),  # the plant knows of no stop
+        ("other", {"reason": Reason.PRECONDITION, "key": "x", "said": "nobody knows"}),
     ],
 )
 def test_the_surest_rule_names_the_cause(expected: str, changes: dict[str, Any]) -> None:

@@ -12,6 +12,8 @@ from .troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble
 
 BEFORE_S = 0.5  # what had ended so long before the failure was not what it failed of
 TOGETHER_S = 0.3  # connections that break within so long broke for one reason
+GONE = frozenset({"part.lost", "part.gone"})
+MOVES_OFF_S = 0.2  # from the command to the first reports away from where the part lies
 AWAY_S = 2.0  # so long after the plant was away, what fails may fail of that
 
 
@@ -188,11 +190,13 @@ Found = tuple[str, dict[str, float | str]]
 
 
 def _operator(evidence: Evidence) -> Found | None:
-    """Stopped, held and cancelled: what an operator did last before."""
+    """Stopped, held and cancelled: what an operator did last before; else somebody else stopped the robot."""
     if evidence.reason not in (Reason.STOPPED, Reason.CANCELLED):
         return None
     acts = [word for at, word in evidence.acts if at <= evidence.failed_at]
-    return ("operator", {"word": acts[-1]}) if acts else None
+    if acts:
+        return "operator", {"word": acts[-1]}
+    return ("foreign", {}) if evidence.robot is not None else None
 
 
 def _away(evidence: Evidence) -> Found | None:
@@ -242,6 +246,14 @@ def _of_boot(evidence: Evidence) -> Found | None:
     return ("boot", {}) if evidence.inner == "effector.as_rebooted" else None
 
 
+def _left_behind(evidence: Evidence) -> Found | None:
+    """A part that is gone as soon as the arm moves off was never held: until then, the sensor saw it lie."""
+    sent = evidence.last
+    if evidence.key not in GONE or sent is None or sent.switch:
+        return None
+    return ("not_gripped", {}) if evidence.failed_at - sent.at <= MOVES_OFF_S else None
+
+
 def _deadline(evidence: Evidence) -> Found | None:
     """Not in time: whether it was taken at all, and what it was."""
     sent = evidence.last
@@ -267,6 +279,7 @@ RULES: tuple[Callable[[Evidence], Found | None], ...] = (
     _of_boot,
     _befallen,
     _foreign,
+    _left_behind,
     _deadline,
     _said,
     _other,
