@@ -11,6 +11,7 @@ from arboleda.model.sentence import Phrase, Sentence
 from .troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble
 
 BEFORE_S = 0.5  # what had ended so long before the failure was not what it failed of
+SOON_S = 0.3  # what shows so soon after it: who ramps down says why once it stands
 TOGETHER_S = 0.3  # connections that break within so long broke for one reason
 GONE = frozenset({"part.lost", "part.gone"})
 MOVES_OFF_S = 0.2  # from the command to the first reports away from where the part lies
@@ -55,7 +56,7 @@ class Evidence:
             each
             for each in self.troubles
             if each.robot == self.robot
-            and each.at <= self.failed_at
+            and each.at <= self.failed_at + SOON_S
             and each.ends >= self.failed_at - BEFORE_S
         ]
         return max(mine, key=lambda each: (each.kind != SILENCE, each.at), default=None)
@@ -108,7 +109,11 @@ PHRASES = {
     "part_lost": Phrase("cause.part_lost", "{robot} lost its part on the way"),
     "switch": Phrase("cause.switch", "{robot} did not switch what it holds with as it was told"),
     "off_target": Phrase("cause.off_target", "{robot} said that it was done, and what it reported denies it"),
-    "short": Phrase("cause.short", "{robot} stopped before it was there, and nobody had told it to"),
+    "short": Phrase(
+        "cause.short",
+        "{robot} stopped by itself before it was there: nothing of the plant reached it for a second, or "
+        "something else stopped it",
+    ),
     "not_homed": Phrase("cause.not_homed", "the position of {robot} was unknown"),
     "operator": Phrase("cause.operator", "an operator ended it: {word}"),
     "plant_away": Phrase("cause.plant_away", "the plant's own process did nothing for {seconds:.1f} s"),
