@@ -271,7 +271,7 @@ def test_a_record_that_has_stopped_is_diagnosed(plant, store, shows):
     topics.publish_diagnostics = lambda statuses: iter(rows.extend(statuses) or ())
     plant.connect(topics)
     plant.connect_ros(topics)
-    plant.recorder = SimpleNamespace(trouble="", stepped=lambda *_: None)
+    plant.recorder = SimpleNamespace(trouble="", stepped=lambda *_: None, saw=lambda *_: None)
     told = []
     for trouble in ("", "the disk is full"):
         plant.recorder.trouble = trouble

@@ -11,10 +11,10 @@ from rich.console import Console
 from arboleda.app import config
 from arboleda.app.screen import table
 from arboleda.core.plant import Plant
-from arboleda.dashboard.chronicle import Chronicle
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import view
+from arboleda.views.chronicle import Chronicle
 from arboleda.views.view import devices_once
 
 TEXT = """name: shop

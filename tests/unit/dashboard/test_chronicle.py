@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from arboleda.app.parts.orchestrator import act_line
-from arboleda.dashboard.chronicle import EVENTS, Chronicle
 from arboleda.dashboard.faces.moment import clock
 from arboleda.model.messages import Journal, Verb
+from arboleda.views.chronicle import EVENTS, Chronicle
 
 
 def act(**said: Any) -> dict[str, Any]:

@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.faces import changed
 from arboleda.dashboard.faces.moment import seconds
 from arboleda.dashboard.faces.stop import stopped
 from arboleda.dashboard.faces.tasks import sorted_tasks
 from arboleda.model.messages import Verb
 from arboleda.testing import faults
+from arboleda.views.changes import changed
 
 
 def robot(name: str, **said: Any) -> dict[str, Any]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,34 @@ from arboleda.recorder.recorder import Recorder
 from arboleda.simulator import world
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
+from arboleda.views import twin_view, view
 
 CONTENTS = {"plant.yaml": b"name: arboleda\n", "lib/own.py": b"\x00\xff"}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)
 DEFAULT = Limits()
+PATIENCE_S = 30.0
+
+
+def beginning_of(model: PlantModel, *, epoch: int = 7, now: float = 0.0, **made_of: Any) -> Beginning:
+    return Beginning(
+        plant=model.name,
+        version="0.1.0",
+        epoch=epoch,
+        now=now,
+        rate=1.0,
+        virtual=False,
+        memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
+        kept=tuple(made_of.get("kept", ())),
+        files=FILES,
+    )
+
+
+def until(condition: Callable[[], object], what: str) -> None:
+    """Wait for another thread."""
+    ends = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < ends, what
+        time.sleep(0.01)
 
 
 class Site:
@@ -31,6 +56,7 @@ class Site:
         self.folder = path / FOLDER
         self.model: PlantModel = shipped()
         self.recorders: list[Recorder] = []
+        self.seen: list[tuple[int, dict[str, Any], dict[str, Any]]] = []  # when, what screens and twin got
         self._limits = limits
         self._options = options
         patch.setattr(world, "Plant", self._new)
@@ -51,27 +77,22 @@ class Site:
 
     def _new(self, model: PlantModel, **made_of: Any) -> Plant:
         plant = Plant(model, **made_of)
-        beginning = Beginning(
-            plant=model.name,
-            version="0.1.0",
-            epoch=made_of["epoch"],
-            now=made_of["now"],
-            rate=1.0,
-            virtual=False,
-            memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
-            kept=tuple(made_of.get("kept", ())),
-            files=FILES,
-        )
+        beginning = beginning_of(model, **made_of)
         options = {"unix_ns": lambda: round(plant.now * 1e9), "least_free": 0, **self._options}
         recorder = Recorder(self.folder, beginning, self._limits, **options)
         self.recorders.append(recorder)
         recorder.start()
-        step = plant.step
+        step, shown = plant.step, -1
 
         def recorded(now: float, events: Iterable[Any]) -> list[Any]:
+            nonlocal shown
             events = tuple(events)
             messages = step(now, events)
             recorder.stepped(plant, now, events, tuple(messages))
+            if plant.version != shown:
+                shown, pictures = plant.version, (view.snapshot(plant), twin_view.positions(plant))
+                self.seen.append((round(now * 1e9), *pictures))
+                recorder.saw(*pictures)
             return messages
 
         plant.step = recorded  # type: ignore[method-assign]

@@ -65,7 +65,7 @@ CASES: dict[str, tuple[Callable[[Path], object], str]] = {
     "huge": (huge, "{} is an MCAP file, but no record of a plant."),
     "one huge piece": (one_huge_piece, "{} is an MCAP file, but no record of a plant."),
     "newer": (
-        lambda path: with_metadata(path, format="2"),
+        lambda path: with_metadata(path, format="3"),
         "{} was written by a newer Arboleda ('9.9'): read it with that version, or a later one.",
     ),
     "of no version": (

@@ -259,6 +259,7 @@ class App:
         try:  # its libraries are needed only where a record is written
             from arboleda.recorder.files import FOLDER
             from arboleda.recorder.recorder import Recorder
+            from arboleda.recorder.view_log import ViewLog
         except ImportError as error:
             LOG.warning("no record is written: %s; the plant goes on without it", error)
             return []
@@ -273,7 +274,8 @@ class App:
             kept=plant.began.kept,
             files=wanted.files,
         )
-        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits)
+        log = ViewLog(self._past_acts, self.links)
+        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits, log)
         plant.recorder = recorder
         return [recorder]
 

@@ -12,8 +12,9 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from arboleda.adapters.task_rows import TaskRow
+from arboleda.views.changes import changed
 
-from .faces import Face, changed
+from .faces import Face
 from .plant_side import PlantSide
 from .story import Story
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.adapters.task_rows import TaskRow
+from arboleda.views.chronicle import Chronicle
 
-from .chronicle import Chronicle
 from .faces import Face, task, whole
 from .faces.moment import Moment
 from .tree_memory import EndedTree, TreeMemory

@@ -12,7 +12,7 @@ from arboleda.model.messages import Fact, KeptTask
 from .errors import NoRecord
 from .plain_data import Memory, kept_from, memory_from, plain
 
-FORMAT = 1  # of what is in a file; a higher one is of a newer version
+FORMAT = 2  # of what is in a file; a higher one is of a newer version
 DAY_S = 86_400.0
 MEGABYTE = 1_000_000
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
+from mcap.records import Attachment
 from mcap.writer import Writer
 
 from .errors import NoRecord
-from .files import put, steps_channel, write_beginning
-from .reader import Record
+from .files import DIGEST, attach, put, write_beginning
+from .reader import PartReader, Record
+from .steps import TOPIC
 
 
 def as_mcap(record: Record, target: Path, numbers: tuple[int, ...]) -> int:
@@ -22,12 +24,35 @@ def as_mcap(record: Record, target: Path, numbers: tuple[int, ...]) -> int:
     with _made(target) as file:
         writer = Writer(file)
         write_beginning(writer, record.first.beginning, numbers, record.first.began_ns)
-        channel = steps_channel(writer)
-        for unix_ns, data in record.raw():
-            put(writer, channel, unix_ns, data)
-            count += 1
+        channels: dict[str, int] = {}
+        for reader in record.readers():
+            for piece in reader.everything():
+                if isinstance(piece, Attachment):
+                    _attach(writer, piece)
+                elif topic := reader.topic_of(piece):
+                    if topic not in channels:
+                        channels.update(_opened(writer, reader, channels))
+                    put(writer, channels[topic], piece.log_time, piece.data)
+                    if topic == TOPIC:
+                        count, record.last_ns = count + 1, piece.log_time
         writer.finish()  # type: ignore[no-untyped-call]
     return count
+
+
+def _opened(writer: Writer, reader: PartReader, known: Container[str]) -> Iterator[tuple[str, int]]:
+    """Open the same channels in the copy, all at once."""
+    for channel in reader.channels.values():
+        if channel.topic not in known:
+            schema = reader.schemas.get(channel.schema_id)
+            id = 0 if schema is None else writer.register_schema(schema.name, schema.encoding, schema.data)
+            encoding, metadata = channel.message_encoding, channel.metadata
+            yield channel.topic, writer.register_channel(channel.topic, encoding, id, metadata)
+
+
+def _attach(writer: Writer, piece: Attachment) -> None:
+    """What is at the beginning of each file is in the copy once."""
+    if piece.name.startswith(DIGEST):
+        attach(writer, piece.name, piece.media_type, piece.data, piece.log_time)
 
 
 def as_lines(record: Record, target: Path) -> int:

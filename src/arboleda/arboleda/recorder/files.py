@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Iterable
@@ -15,11 +14,12 @@ from mcap.writer import CompressionType, Writer
 from arboleda import __version__
 
 from .beginning import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
-from .steps import SCHEMA, SCHEMA_NAME, TOPIC, Step, as_json
+from .channels import register
 
 FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")
 METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
+DIGEST = "events/"  # of the time line, what an attachment has of it
 LIBRARY = f"arboleda {__version__}"
 CHUNK_BYTES = 1024 * 1024  # more than comes between two flushes: the larger, the smaller they become
 PARTS = 10  # into which the megabytes are divided, so that old ones go bit by bit
@@ -102,11 +102,16 @@ class PartFile:
 
     def _begin(self, beginning: Beginning, number: int, unix_ns: int) -> None:
         write_beginning(self._writer, beginning, (number,), unix_ns)
-        self._channel = steps_channel(self._writer)
+        self._channels = register(self._writer)
         self._file.flush()
 
-    def put(self, step: Step) -> None:
-        put(self._writer, self._channel, step.unix_ns, as_json(step))
+    def put(self, topic: str, unix_ns: int, data: bytes) -> None:
+        """One message of a channel."""
+        put(self._writer, self._channels[topic], unix_ns, data)
+
+    def attach(self, name: str, unix_ns: int, data: bytes) -> None:
+        """What is read without looking at any message."""
+        attach(self._writer, name, "application/zstd", data, unix_ns)
 
     def flush(self) -> int:
         """How large it is then."""
@@ -137,19 +142,14 @@ def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int]
         "parts": " ".join(map(str, numbers)),
     }
     writer.add_metadata(METADATA, metadata)
-    _attach(writer, BEGINNING, "application/json", beginning.data(), unix_ns)
+    attach(writer, BEGINNING, "application/json", beginning.data(), unix_ns)
     for name, content in beginning.files.contents.items():
-        _attach(writer, f"{OF_PLANT}{name}", "application/octet-stream", content, unix_ns)
+        attach(writer, f"{OF_PLANT}{name}", "application/octet-stream", content, unix_ns)
 
 
-def _attach(writer: Writer, name: str, kind: str, content: bytes, unix_ns: int) -> None:
+def attach(writer: Writer, name: str, kind: str, content: bytes, unix_ns: int) -> None:
+    """A file inside the file."""
     writer.add_attachment(create_time=unix_ns, log_time=unix_ns, name=name, media_type=kind, data=content)
-
-
-def steps_channel(writer: Writer) -> int:
-    """The channel that steps are put into."""
-    schema = writer.register_schema(SCHEMA_NAME, "jsonschema", json.dumps(SCHEMA).encode())
-    return writer.register_channel(TOPIC, "json", schema)
 
 
 def put(writer: Writer, channel: int, unix_ns: int, data: bytes) -> None:

@@ -32,6 +32,8 @@ from .errors import NoRecord
 
 Memory = dict[Fact, dict[str, str]]
 TYPE, NUMBER = "type", "number"
+NOT_FINITE = ("nan", "inf", "-inf")
+SENTENCE = {"key", "english", "values"}
 EVENTS: dict[str, type[Any]] = {
     each.__name__: each
     for each in (Report, TaskRequest, OperatorRequest, Undelivered, Interference, Shutdown)
@@ -69,6 +71,19 @@ def memory_from(data: Any) -> Memory:
         }
     except (AttributeError, ValueError) as error:
         raise NoRecord(f"it has a fact that this version does not know ({_short(data)})") from error
+
+
+def value_from(data: Any) -> Any:
+    """What was made plain, with its sentences and numbers; its tuples are lists, its words stay words."""
+    if isinstance(data, list):
+        return [value_from(each) for each in data]
+    if not isinstance(data, dict):
+        return data
+    if data.keys() == {NUMBER} and data[NUMBER] in NOT_FINITE:
+        return float(data[NUMBER])
+    if isinstance(data.get("values"), dict) and data.keys() - {"others"} == SENTENCE:
+        return sentence_from(data)
+    return {key: value_from(each) for key, each in data.items()}
 
 
 def _short(data: Any) -> str:

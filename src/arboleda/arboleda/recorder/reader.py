@@ -15,7 +15,17 @@ import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Chunk, Footer, Header, McapRecord, Message, Metadata
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    Footer,
+    Header,
+    McapRecord,
+    Message,
+    Metadata,
+    Schema,
+)
 from mcap.stream_reader import CRCValidationError, breakup_chunk
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
@@ -24,7 +34,7 @@ from arboleda.model.outside import quoted
 from .beginning import FORMAT, Beginning, beginning_from
 from .errors import NoRecord
 from .files import BEGINNING, METADATA, OF_PLANT, Part, part_at, parts_in
-from .steps import Recorded, from_json
+from .steps import TOPIC, Recorded, from_json
 
 LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller
 HEAD = struct.Struct("<BQ")  # what a piece begins with: what it is, and its length
@@ -62,6 +72,8 @@ class PartReader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.channels: dict[int, Channel] = {}
+        self.schemas: dict[int, Schema] = {}
         self._file = _opened(path)
         try:
             self._records = self._pieces()
@@ -74,19 +86,40 @@ class PartReader:
         self._file.close()
 
     def raw(self) -> Iterator[Raw]:
-        """Its messages that were not given yet, in order, with their times; up to the first damage.
+        """Its steps that were not given yet, in order, with their times; up to the first damage.
 
         Asked again, those that were written since.
         """
+        for piece in self.everything():
+            if isinstance(piece, Message) and self.topic_of(piece) == TOPIC:
+                yield piece.log_time, piece.data
+
+    def topic_of(self, message: Message) -> str:
+        """The topic of a message; empty where none was opened for it."""
+        channel = self.channels.get(message.channel_id)
+        return channel.topic if channel else ""
+
+    def everything(self) -> Iterator[Message | Attachment]:
+        """The same of all channels, and what is attached between."""
         for record in self._records:
-            if isinstance(record, Chunk):
-                messages = _messages(record)
+            if isinstance(record, Attachment):
+                yield record
+            elif isinstance(record, Chunk):
+                messages = self._messages(record)
                 if messages is None:
                     return
-                for message in messages:
-                    yield message.log_time, message.data
+                yield from messages
             self.read.whole = isinstance(record, Footer)
         self._records = self._rest()
+
+    def _messages(self, chunk: Chunk) -> list[Message] | None:
+        """Those of a chunk; None where it is damaged, or larger than a plant writes them."""
+        records = _unpacked(chunk)
+        if records is None:
+            return None
+        self.channels.update({each.id: each for each in records if isinstance(each, Channel)})
+        self.schemas.update({each.id: each for each in records if isinstance(each, Schema)})
+        return [each for each in records if isinstance(each, Message)]
 
     def _begin(self) -> PartRead:
         contents: dict[str, bytes] = {}
@@ -155,17 +188,16 @@ def _with(first: McapRecord, rest: Iterator[McapRecord]) -> Iterator[McapRecord]
     yield from rest
 
 
-def _messages(chunk: Chunk) -> list[Message] | None:
-    """Those of a chunk; None where it is damaged, or larger than a plant writes them."""
+def _unpacked(chunk: Chunk) -> list[McapRecord] | None:
     try:
-        if chunk.uncompressed_size > LARGEST or _unpacked_bytes(chunk) > LARGEST:
+        if chunk.uncompressed_size > LARGEST or unpacked_bytes(chunk) > LARGEST:
             return None
-        return [each for each in breakup_chunk(chunk, validate_crc=True) if isinstance(each, Message)]
+        return breakup_chunk(chunk, validate_crc=True)
     except TORN:
         return None
 
 
-def _unpacked_bytes(chunk: Chunk) -> int:
+def unpacked_bytes(chunk: Chunk) -> int:
     return zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
 
 
@@ -207,7 +239,13 @@ class Record:
             yield number
 
     def raw(self) -> Iterator[Raw]:
-        """All messages, in order."""
+        """All steps, in order, as they are written."""
+        for reader in self.readers():
+            for self.last_ns, data in reader.raw():
+                yield self.last_ns, data
+
+    def readers(self) -> Iterator[PartReader]:
+        """Each of its files, opened, to be read to its end before the next one is asked for."""
         after: tuple[int, ...] = ()
         for path in self.paths:
             with closing(PartReader(path)) as reader:
@@ -215,8 +253,7 @@ class Record:
                     self.broken = f"{path.name} does not follow what is before it"
                     return
                 after, self.last = reader.read.numbers, reader.read
-                for self.last_ns, data in reader.raw():
-                    yield self.last_ns, data
+                yield reader
             if not self.last.whole and path != self.paths[-1]:
                 self.broken = f"{path.name} is damaged"
                 return
@@ -225,6 +262,13 @@ class Record:
         """All steps, in order."""
         for unix_ns, data in self.raw():
             yield from_json(unix_ns, data)
+
+
+def channels_of(path: Path) -> dict[str, int]:
+    """The numbers of a file's channels, by topic."""
+    with closing(PartReader(path)) as reader:
+        next((piece for piece in reader.everything() if isinstance(piece, Message)), None)
+        return {channel.topic: id for id, channel in reader.channels.items()}
 
 
 def alone(path: Path) -> Record:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -21,12 +22,24 @@ UNDER_WAY = frozenset({State.SENT, State.RUNNING})
 
 def positions(plant: Plant) -> Row:
     """All that may change what is drawn, as of the last step; rad, m, s of the plant's clock."""
-    return {
-        "robots": [_robot(plant, belief) for belief in plant.dispatcher.beliefs.values()],
-        "parts": {name: part(cell) for name, cell in plant.cells.items()},
-        "stored": {name: sorted(cell.context.stored) for name, cell in plant.cells.items()},
-        "zones": plant.zones.snapshot(),
-    }
+    parts = in_parts(plant)
+    while True:
+        try:
+            next(parts)
+        except StopIteration as end:
+            return dict(end.value)
+
+
+def in_parts(plant: Plant) -> Generator[None, None, Row]:
+    """The `positions`, one part after the other: the plant may be stepped between two of them."""
+    robots, parts, stored = [], {}, {}
+    for belief in plant.dispatcher.beliefs.values():
+        robots.append(_robot(plant, belief))
+        yield
+    for name, cell in plant.cells.items():
+        parts[name], stored[name] = part(cell), sorted(cell.context.stored)
+        yield
+    return {"robots": robots, "parts": parts, "stored": stored, "zones": plant.zones.snapshot()}
 
 
 def goal(entry: Entry | None) -> Row | None:

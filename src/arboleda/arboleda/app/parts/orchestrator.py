@@ -63,12 +63,16 @@ DAY_S = 86_400.0
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
 
 
-class StepRecorder(Protocol):
-    """What writes the flight record: told of each step in the plant's thread; `trouble` is why it stopped."""
+class FlightRecorder(Protocol):
+    """What writes the flight record: told of each step, and of what screens see, in the plant's thread.
+
+    `trouble` is why it stopped.
+    """
 
     trouble: str
 
     def stepped(self, plant: Plant, now: float, events: Sequence[Any], messages: Sequence[Any]) -> None: ...
+    def saw(self, snapshot: dict[str, Any], drawn: dict[str, Any]) -> None: ...
 
 
 class RosPort(PlantPort, Protocol):
@@ -129,7 +133,7 @@ class Orchestrator:
         self.watchers: list[Callable[[dict[str, Any]], None]] = []
         self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
         self.reacted: Callable[[float], None] = lambda _seconds: None
-        self.recorder: StepRecorder | None = None
+        self.recorder: FlightRecorder | None = None
         self._store = store
         self._history = history
         self._drops_waiting = drops_waiting
@@ -390,6 +394,9 @@ class Orchestrator:
     def _publication(self) -> Generator[None, None, None]:
         """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
         snapshot = yield from view.in_parts(self.plant)
+        if self.recorder is not None and not self.recorder.trouble:
+            drawn = yield from twin_view.in_parts(self.plant)
+            self.recorder.saw(snapshot, drawn)
         for watcher in self.watchers:
             watcher(snapshot)
             yield

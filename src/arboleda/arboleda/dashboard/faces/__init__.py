@@ -15,9 +15,3 @@ from __future__ import annotations
 from typing import Any
 
 Face = dict[str, Any]
-
-
-def changed(before: Face, after: Face) -> Face:
-    """What of `after` a screen that shows `before` has to be told."""
-    missing = object()
-    return {key: value for key, value in after.items() if before.get(key, missing) != value}

@@ -7,7 +7,8 @@ import json
 import logging
 from typing import Any, Protocol
 
-from ..faces import changed
+from arboleda.views.changes import changed
+
 from ..plant_side import PlantSide
 from .twin import Twin
 

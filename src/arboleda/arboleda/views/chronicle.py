@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
-from arboleda.views.view import devices_once
+
+from .view import devices_once
 
 TASK_FAILED = Phrase("event.task", "{task}: {why}")
 EVENTS = 1000  # kept; older ones are forgotten

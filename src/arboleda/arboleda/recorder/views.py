@@ -1,0 +1,230 @@
+"""The plant as screens saw it, at any moment of a record."""
+
+from __future__ import annotations
+
+import json
+from bisect import bisect_right
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import zstandard
+
+from .channels import CHANGES, EVENTS, VIEW
+from .chunks import ChunkFile, messages
+from .errors import NoRecord
+from .files import DIGEST, part_at, part_path
+from .plain_data import value_from
+from .reader import LARGEST, TORN, Record, channels_of
+from .rows import Row, Rows, links_of, positions_of, snapshot_of
+
+WINDOWS = 8  # half minutes of a record that are kept in memory
+NONE = -1  # the number of a channel that is not known
+EXACT_NS = 1000  # a time as a float of Unix seconds, as events have it, is not more exact
+
+
+@dataclass(frozen=True)
+class Told:
+    """What was told at a moment: of everything, or what had changed."""
+
+    unix_ns: int
+    at: float
+    gone: Sequence[str]
+    rows: Rows
+
+
+@dataclass(kw_only=True)
+class Window:
+    """What was told from one whole view to the next; `ended` where that one is there already."""
+
+    told: list[Told]
+    ended: bool
+    chunks: int  # of its file, when it was read
+
+    @cached_property
+    def times(self) -> list[int]:
+        return [each.unix_ns for each in self.told]
+
+
+class Views:
+    """Snapshots of a record, by their time; NoRecord for one that has none. For one thread.
+
+    Also of a record that is being written: what came to it is found.
+    """
+
+    def __init__(self, record: Record) -> None:
+        self._files = [ChunkFile(path) for path in record.paths]
+        self._channels: dict[str, int] = {}
+        self._windows: OrderedDict[tuple[Path, int, int], Window] = OrderedDict()
+        self._times: dict[Path, list[int]] = {}
+        self._know_channels()
+
+    @property
+    def began_ns(self) -> int:
+        """When something was told first; NoRecord where nothing was."""
+        with _legible(self._files):
+            return self._first().times[0]
+
+    @property
+    def ended_ns(self) -> int:
+        """When its last step was made."""
+        with _legible(self._files):
+            ends = [file.index().chunks[-1].end_ns for file in self._followed() if file.index().chunks]
+        return ends[-1] if ends else self.began_ns
+
+    def at(self, unix_ns: int) -> Row:
+        """The snapshot as screens had it then, its spans as of that moment; earlier, the first one."""
+        with _legible(self._files):
+            return snapshot_of(*self._moment(unix_ns))
+
+    def positions(self, unix_ns: int) -> Row:
+        """What the twin was drawn of, likewise."""
+        with _legible(self._files):
+            return positions_of(*self._moment(unix_ns))
+
+    def links(self, unix_ns: int) -> Row:
+        """Broker, ROS 2 and refused messages, likewise."""
+        with _legible(self._files):
+            return links_of(self._moment(unix_ns)[0])
+
+    def times(self) -> Sequence[int]:
+        """Every moment at which something was told, in order."""
+        with _legible(self._files):
+            return [at for file in self._followed() for at in self._times_of(file)]
+
+    def events(self) -> list[Row]:
+        """The time line, as `views.chronicle` has it: all of it, the oldest event first."""
+        with _legible(self._files):
+            found = {row["number"]: row for file in self._followed() for row in self._events_of(file)}
+            return [found[number] for number in sorted(found)]
+
+    def _followed(self) -> list[ChunkFile]:
+        """Its files that are still there; where the last one was closed, also the one that came after it."""
+        while len(self._files) > 1 and not self._files[0].path.exists():
+            del self._files[0]
+        self._know_channels()
+        while self._files[-1].index().whole:
+            part = part_at(self._files[-1].path)
+            if part is None:
+                break
+            following = part_path(part.path.parent, part.epoch, part.number + 1)
+            if not following.exists():
+                break
+            self._files.append(ChunkFile(following))
+        return self._files
+
+    def _know_channels(self) -> None:
+        """They are in the first chunk, which a plant that has just begun has not written yet."""
+        if not self._channels:
+            path = self._files[0].path
+            self._channels = channels_of(path)
+            if self._channels and not {VIEW, CHANGES, EVENTS} <= self._channels.keys():
+                raise NoRecord(f"{path} was written by an Arboleda that kept no views: replay it.")
+
+    def _moment(self, unix_ns: int) -> tuple[Rows, float]:
+        """The rows of a moment, and when that was on the plant's clock."""
+        window = self._window(unix_ns + EXACT_NS) or self._first()
+        count = max(1, bisect_right(window.times, unix_ns + EXACT_NS))
+        rows: Rows = {}
+        for told in window.told[:count]:
+            for key in told.gone:
+                rows.pop(key, None)
+            for key, fields in told.rows.items():
+                rows[key] = {**rows.get(key, {}), **fields}
+        last = window.told[count - 1]
+        since_ns = min(unix_ns, self.ended_ns) - last.unix_ns
+        return rows, last.at + max(0, since_ns) / 1e9
+
+    def _window(self, unix_ns: int) -> Window | None:
+        """What was told from the last whole view before this moment on."""
+        for file in reversed(self._followed()):
+            for number in range(file.index().position(unix_ns), -1, -1):
+                index = file.index().chunks[number].indexes.get(self._channels.get(VIEW, NONE))
+                places = [place for at, place in file.times(index) if at <= unix_ns] if index else []
+                if places and (window := self._read(file, number, places[-1])).told:
+                    return window
+        return None
+
+    def _first(self) -> Window:
+        for file in self._followed():
+            for number, chunk in enumerate(file.index().chunks):
+                index = chunk.indexes.get(self._channels.get(VIEW, NONE))
+                places = file.times(index) if index else []
+                if places and (window := self._read(file, number, places[0][1])).told:
+                    return window
+        raise NoRecord(f"{self._files[0].path} ends before anything could be seen.")
+
+    def _read(self, file: ChunkFile, number: int, place: int) -> Window:
+        key, chunks = (file.path, number, place), len(file.index().chunks)
+        known = self._windows.get(key)
+        if known is None or not (known.ended or known.chunks == chunks):
+            told = [*self._told(file, number, place)]
+            ended = None in told
+            known = Window(told=[each for each in told if each is not None], ended=ended, chunks=chunks)
+            self._windows[key] = known
+        self._windows.move_to_end(key)
+        while len(self._windows) > WINDOWS:
+            self._windows.popitem(last=False)
+        return known
+
+    def _told(self, file: ChunkFile, number: int, place: int) -> Iterator[Told | None]:
+        """What was told from a place on, up to the next whole view: None, where there is one."""
+        view, changes = (self._channels.get(topic, NONE) for topic in (VIEW, CHANGES))
+        first = True
+        for chunk in file.index().chunks[number:]:
+            begins = place if first else 0
+            for channel, unix_ns, data in messages(file.content(chunk), (view, changes), begins):
+                if channel == view and not first:
+                    yield None
+                    return
+                first = False
+                yield _told(unix_ns, data)
+
+    def _times_of(self, file: ChunkFile) -> list[int]:
+        index, changes = file.index(), self._channels.get(CHANGES, NONE)
+        if file.path not in self._times:
+            places = [chunk.indexes[changes] for chunk in index.chunks if changes in chunk.indexes]
+            found = [at for place in places for at, _ in file.times(place)]
+            if not index.whole:
+                return found
+            self._times[file.path] = found
+        return self._times[file.path]
+
+    def _events_of(self, file: ChunkFile) -> Iterator[Row]:
+        """Out of the digests of a file, and of what is not in one yet."""
+        index, channel, digested = file.index(), self._channels.get(EVENTS, NONE), 0
+        for name, offset in index.attachments:
+            if name.startswith(DIGEST):
+                digested = offset
+                yield from _digest(file.attachment(offset))
+        for chunk in index.chunks:
+            if chunk.offset > digested and channel in chunk.indexes:
+                for _, _, data in messages(file.content(chunk), (channel,)):
+                    yield value_from(json.loads(data))
+
+
+@contextmanager
+def _legible(files: list[ChunkFile]) -> Iterator[None]:
+    """Whatever damage has made of a file is a sentence."""
+    try:
+        yield
+    except OSError as error:
+        raise NoRecord(f"{error.filename} cannot be read: {error.strerror}.") from error
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError, *TORN) as error:
+        raise NoRecord(f"{files[0].path}, or a file after it, is damaged.") from error
+
+
+def _digest(content: bytes) -> list[Row]:
+    if zstandard.frame_content_size(content) > LARGEST:
+        return []
+    rows: list[Row] = value_from(json.loads(zstandard.decompress(content)))
+    return rows
+
+
+def _told(unix_ns: int, data: bytes) -> Told:
+    rows: dict[str, Any] = json.loads(data)
+    return Told(unix_ns, float(rows["at"]), rows.get("gone", ()), rows["rows"])
