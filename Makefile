@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -23,6 +23,9 @@ run: install  ## start the simulated plant with three tasks, and keep it up unti
 test:  ## run the test suite; PYTEST_ARGS="-m 'not system'" for the quick part
 	@scripts/install test
 	$(BIN)/python -m pytest --ignore=tests/mutants $(PYTEST_ARGS)
+
+test-tools:  ## install the programs of others, too large for everybody, that some tests try what we write with: rerun
+	@scripts/install tools
 
 judge-test:  ## plant a bug for each invariant of the simulator, which has to find it; tests/mutants
 	@scripts/install test

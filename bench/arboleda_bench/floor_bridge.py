@@ -24,7 +24,8 @@ from std_msgs.msg import Bool, Float32MultiArray, UInt8, UInt32
 from arboleda.app.config import load
 from arboleda.kinds.arm import Arm
 from arboleda.model.plant_model import PlantModel
-from arboleda_ros import convert, qos
+from arboleda.wire.joints import joint_names, joint_states_topic
+from arboleda_ros import qos
 from arboleda_ros.link import connect
 
 WORDS = ("stopped", "moving")
@@ -37,12 +38,12 @@ class Voice:
         self._node = node
         self._client = client
         self._name, self._mqtt = f"arboleda: {arm.name}", arm.mqtt
-        self._joints = list(convert.joint_names(arm))
+        self._joints = list(joint_names(arm))
         self._radii = [joint.pinion_radius_m or 1.0 for joint in arm.joints]
         self._seq = 0
         self._status = node.create_publisher(DiagnosticStatus, f"{arm.name}/status", qos.COMMAND)
         self._state = node.create_publisher(UInt8, f"{arm.name}/motion_state", qos.COMMAND)
-        self._positions = node.create_publisher(JointState, convert.joint_states_topic(arm), qos.COMMAND)
+        self._positions = node.create_publisher(JointState, joint_states_topic(arm), qos.COMMAND)
         self._piece = node.create_publisher(Bool, f"{arm.name}/piece_detected", qos.COMMAND)
         node.create_subscription(Float32MultiArray, f"{arm.name}/joint_goals_q", self._on_goal, qos.COMMAND)
         client.message_callback_add(f"{arm.mqtt}/sensores", self._on_telemetry)

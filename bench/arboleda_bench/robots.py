@@ -16,6 +16,7 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
+from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 from arboleda_ros.voice import JointsMessage
 
@@ -77,7 +78,7 @@ class Body:
         self._moments = moments
         self._moving: Command | None = None
         self._state = node.create_publisher(UInt8, f"{robot.name}/motion_state", qos.COMMAND)
-        self._joints = node.create_publisher(JointState, convert.joint_states_topic(robot), qos.COMMAND)
+        self._joints = node.create_publisher(JointState, joint_states_topic(robot), qos.COMMAND)
         self._position = JointsMessage(robot)
         self._here = self._seen_at(_resting_place(cell, robot))
         self._commanded: list[str] = []

@@ -20,6 +20,7 @@ from std_msgs.msg import UInt8
 from arboleda.kinds.arm import SetEffector
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
+from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
 
 from . import brain, steps
@@ -34,7 +35,7 @@ class Heard:
         self.state = 0
         self.position: tuple[float, ...] = ()
         node.create_subscription(UInt8, f"{robot.name}/motion_state", self._on_state, qos.COMMAND)
-        node.create_subscription(JointState, convert.joint_states_topic(robot), self._on_joints, qos.SENSOR)
+        node.create_subscription(JointState, joint_states_topic(robot), self._on_joints, qos.SENSOR)
 
     def _on_state(self, message: UInt8) -> None:
         self.state = message.data

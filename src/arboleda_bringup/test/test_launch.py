@@ -14,8 +14,9 @@ import yaml
 pytest.importorskip("rclpy")
 
 from arboleda.testing import shipped
+from arboleda.wire.joints import joint_names, joint_states_topic
 from arboleda_bringup.arguments import ARGUMENTS
-from arboleda_ros import convert, running
+from arboleda_ros import running
 
 PACKAGE = Path(__file__).parents[1]
 PAGE = PACKAGE.parents[1] / "docs/how-to/ros2.md"
@@ -71,13 +72,13 @@ def test_a_robot_hangs_in_the_world_by_the_root_of_its_description(launched: Lau
 
 
 def test_a_robot_is_described_with_the_joints_that_the_bridge_names(launched: Launched) -> None:
-    robots = {convert.joint_states_topic(robot): robot for robot in shipped().robots.values()}
+    robots = {joint_states_topic(robot): robot for robot in shipped().robots.values()}
     described = [node for node in nodes(launched()) if node.package == "robot_state_publisher"]
     assert {f"{node.namespace}/joint_states" for node in described} == robots.keys()
     for node in described:
         joints = ET.fromstring(values(node)["robot_description"]).findall("joint")
         moving = [joint.get("name") for joint in joints if joint.get("type") != "fixed"]
-        assert moving == list(convert.joint_names(robots[f"{node.namespace}/joint_states"]))
+        assert moving == list(joint_names(robots[f"{node.namespace}/joint_states"]))
 
 
 def test_the_view_shows_every_robot_of_the_shipped_plant_in_the_world(launched: Launched) -> None:

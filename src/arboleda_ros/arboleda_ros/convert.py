@@ -19,6 +19,7 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
+from arboleda.wire.joints import joint_names
 from arboleda.wire.status import from_label, to_label
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
@@ -124,27 +125,6 @@ def joints_report(at: float, robot: Robot, message: JointState) -> Report:
     if isinstance(robot, Mobile):
         return Report(at=at, robot=robot.name, node=_nearest(robot, *measured))
     return Report(at=at, robot=robot.name, q=measured)
-
-
-def measured_joints(robot: Robot, report: Report) -> tuple[float, ...] | None:
-    """The joints of a report, x and y of a mobile; None where it holds none, or nobody hears the robot."""
-    if report.state is MotionState.NO_LINK:
-        return None
-    if isinstance(robot, Mobile):
-        return None if report.node is None else robot.grid.position(report.node)
-    return report.q
-
-
-def joint_names(robot: Robot) -> tuple[str, ...]:
-    """The names a robot's joints have in the twin."""
-    if isinstance(robot, Arm):
-        return tuple(f"{robot.twin}_{joint.name}" for joint in robot.joints)
-    return (f"{robot.name}_x_joint", f"{robot.name}_y_joint")
-
-
-def joint_states_topic(robot: Robot) -> str:
-    """Arms publish their joints under the name of their twin, mobiles under their own."""
-    return f"{robot.twin if isinstance(robot, Arm) else robot.name}/joint_states"
 
 
 def _values(command: Command) -> Sequence[float]:

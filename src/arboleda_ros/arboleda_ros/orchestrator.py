@@ -37,6 +37,7 @@ from arboleda.model.sentence import in_json
 from arboleda.views import view
 from arboleda.wire import rejections
 from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
+from arboleda.wire.joints import joint_states_topic
 
 from . import convert, qos, statuses
 from .asking import Asker
@@ -222,7 +223,7 @@ class OrchestratorPort(Port):
         self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state)
         if robot.evidence is Evidence.JOINTS:
             on_joints = self._reporting(convert.joints_report, robot)
-            self._listen(JointState, convert.joint_states_topic(robot), on_joints, qos.SENSOR)
+            self._listen(JointState, joint_states_topic(robot), on_joints, qos.SENSOR)
         if isinstance(robot, Arm):
             on_piece = self._reporting(_piece_report, robot)
             self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR)

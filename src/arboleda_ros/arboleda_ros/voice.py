@@ -17,9 +17,8 @@ from std_msgs.msg import Bool, UInt8
 from arboleda.kinds.arm import Arm
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
+from arboleda.wire.joints import joint_names, joint_states_topic, measured_joints
 from arboleda.wire.status import to_status
-
-from . import convert
 
 Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there
 _STATES = {state: UInt8(data=int(state)) for state in MotionState}
@@ -35,7 +34,7 @@ class Voice:
         self.status = speak(DiagnosticStatus, f"{robot.name}/status", alone=True)
         self.state = speak(UInt8, f"{robot.name}/motion_state")
         stands = robot.position_key is not None
-        self.joints = speak(JointState, convert.joint_states_topic(robot)) if stands else None
+        self.joints = speak(JointState, joint_states_topic(robot)) if stands else None
         self.piece = speak(Bool, f"{robot.name}/piece_detected") if isinstance(robot, Arm) else None
 
     def say(self, report: Report) -> None:
@@ -82,11 +81,11 @@ class JointsMessage:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self._message = JointState(name=list(convert.joint_names(robot)))
+        self._message = JointState(name=list(joint_names(robot)))
 
     def of(self, report: Report, clock: Clock) -> JointState | None:
         """The message for one report, which the next call changes; None where nothing was measured."""
-        measured = convert.measured_joints(self._robot, report)
+        measured = measured_joints(self._robot, report)
         if measured is None:
             return None
         self._message.position = measured

@@ -11,9 +11,11 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
+from arboleda.recorder import recorder as writing
 from arboleda.recorder.beginning import Beginning, Limits, PlantFiles
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.recorder import Recorder
+from arboleda.recorder.ros_log import RosLog
 from arboleda.simulator import world
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
@@ -23,6 +25,12 @@ CONTENTS = {"plant.yaml": b"name: arboleda\n", "lib/own.py": b"\x00\xff"}
 FILES = PlantFiles(plant="plant.yaml", contents=CONTENTS)
 DEFAULT = Limits()
 PATIENCE_S = 30.0
+
+
+def with_everything(path: Path, patch: pytest.MonkeyPatch) -> Site:
+    """One whose records have all channels, as those of running plants."""
+    patch.setattr(writing, "SHARE", 1e9)  # time runs faster here than on clocks
+    return Site(path, patch, logs=[RosLog(shipped())])
 
 
 def beginning_of(model: PlantModel, *, epoch: int = 7, now: float = 0.0, **made_of: Any) -> Beginning:

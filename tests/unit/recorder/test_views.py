@@ -206,7 +206,7 @@ def test_damage_is_passed_over_or_one_sentence(site: Site, tmp_path: Path) -> No
 def test_a_record_without_views_is_a_sentence(
     site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(channels, "SCHEMAS", {TOPIC: channels.SCHEMAS[TOPIC]})
+    monkeypatch.setattr(recorder, "OURS", [each for each in channels.OURS if each.topic == TOPIC])
     old = Recorder(tmp_path / "old", beginning_of(site.model), Limits(), least_free=0)
     old.start()
     old.stepped(site.rig.plant, site.rig.now, (), ())

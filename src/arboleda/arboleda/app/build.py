@@ -259,6 +259,7 @@ class App:
         try:  # its libraries are needed only where a record is written
             from arboleda.recorder.files import FOLDER
             from arboleda.recorder.recorder import Recorder
+            from arboleda.recorder.ros_log import RosLog
             from arboleda.recorder.view_log import ViewLog
         except ImportError as error:
             LOG.warning("no record is written: %s; the plant goes on without it", error)
@@ -274,8 +275,8 @@ class App:
             kept=plant.began.kept,
             files=wanted.files,
         )
-        log = ViewLog(self._past_acts, self.links)
-        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits, log)
+        logs, view = [RosLog(self.model)], ViewLog(self._past_acts, self.links)
+        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits, logs, view=view)
         plant.recorder = recorder
         return [recorder]
 

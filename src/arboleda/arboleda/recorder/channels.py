@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from typing import Any
 
 from mcap.writer import Writer
@@ -57,10 +59,33 @@ SCHEMAS: dict[str, dict[str, Any]] = {
 }
 
 
-def register(writer: Writer) -> dict[str, int]:
-    """Open all channels of a file; their numbers by topic."""
+@dataclass(frozen=True)
+class Channel:
+    """A topic, in which encoding its messages are, and of which type, as MCAP has it."""
+
+    topic: str
+    encoding: str
+    type: str
+    schema_encoding: str
+    schema: bytes
+    metadata: dict[str, str] = field(default_factory=dict)
+
+
+def _in_json(topic: str, schema: dict[str, Any]) -> Channel:
+    return Channel(topic, "json", schema["title"], "jsonschema", json.dumps(schema).encode())
+
+
+OURS = tuple(_in_json(topic, schema) for topic, schema in SCHEMAS.items())
+
+
+def register(writer: Writer, channels: Iterable[Channel]) -> dict[str, int]:
+    """Open these channels of a file; their numbers by topic."""
+    types: dict[str, int] = {}
     found = {}
-    for topic, schema in SCHEMAS.items():
-        id = writer.register_schema(schema["title"], "jsonschema", json.dumps(schema).encode())
-        found[topic] = writer.register_channel(topic, "json", id)
+    for each in channels:
+        if each.type not in types:
+            types[each.type] = writer.register_schema(each.type, each.schema_encoding, each.schema)
+        found[each.topic] = writer.register_channel(
+            each.topic, each.encoding, types[each.type], each.metadata
+        )
     return found

@@ -14,11 +14,14 @@ from mcap.writer import CompressionType, Writer
 from arboleda import __version__
 
 from .beginning import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
-from .channels import register
+from .channels import OURS, Channel, register
 
 FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")
 METADATA, BEGINNING, OF_PLANT = "arboleda", "beginning.json", "plant/"
+PROFILE = "ros2"
+# Who reads it as a bag takes qos in words where this is absent; we write the numbers that all versions read.
+OF_BAG = ("rosbag2", {"serialized_metadata": ""})
 DIGEST = "events/"  # of the time line, what an attachment has of it
 LIBRARY = f"arboleda {__version__}"
 CHUNK_BYTES = 1024 * 1024  # more than comes between two flushes: the larger, the smaller they become
@@ -91,19 +94,18 @@ class PartFile:
     OSError where it cannot be written.
     """
 
-    def __init__(self, path: Path, beginning: Beginning, number: int, unix_ns: int) -> None:
+    def __init__(
+        self, path: Path, beginning: Beginning, number: int, unix_ns: int, channels: Iterable[Channel] = OURS
+    ) -> None:
         self._file = os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb")
         self._writer = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
         try:
-            self._begin(beginning, number, unix_ns)
+            write_beginning(self._writer, beginning, (number,), unix_ns)
+            self._channels = register(self._writer, channels)
+            self._file.flush()
         except BaseException:  # whatever it is, no file is left open
             self._file.close()
             raise
-
-    def _begin(self, beginning: Beginning, number: int, unix_ns: int) -> None:
-        write_beginning(self._writer, beginning, (number,), unix_ns)
-        self._channels = register(self._writer)
-        self._file.flush()
 
     def put(self, topic: str, unix_ns: int, data: bytes) -> None:
         """One message of a channel."""
@@ -133,7 +135,7 @@ class PartFile:
 
 def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:
     """What each file starts with; `numbers` are those of the parts that it has the steps of."""
-    writer.start(library=LIBRARY)
+    writer.start(profile=PROFILE, library=LIBRARY)
     metadata = {
         "format": str(FORMAT),
         "version": beginning.version,
@@ -145,6 +147,7 @@ def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int]
     attach(writer, BEGINNING, "application/json", beginning.data(), unix_ns)
     for name, content in beginning.files.contents.items():
         attach(writer, f"{OF_PLANT}{name}", "application/octet-stream", content, unix_ns)
+    writer.add_metadata(*OF_BAG)
 
 
 def attach(writer: Writer, name: str, kind: str, content: bytes, unix_ns: int) -> None:

@@ -9,11 +9,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from arboleda.core.plant import Plant
 
 from .beginning import Beginning, Limits
+from .channels import OURS, Channel
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
 from .state import state_of
 from .steps import TOPIC, Step, as_json
@@ -29,6 +30,17 @@ LEAST_FREE = 200_000_000  # bytes that the disk keeps for the plant's memory and
 PATIENCE_S = 5.0  # for the rest, at the end
 
 
+class Log(Protocol):
+    """What makes messages of steps and snapshots, in their order; None between two pieces of that work."""
+
+    @property
+    def channels(self) -> Sequence[Channel]: ...
+    def stepped(self, step: Step) -> Iterator[Message | None]: ...
+    def saw(self, seen: Seen) -> Iterator[Message | None]: ...
+    def whole(self) -> Iterator[Message | None]:
+        """All that was told so far, for the beginning of a file."""
+
+
 class Recorder:
     """Writes what `stepped` and `saw` are told to files in `folder`, from `start` to `stop`.
 
@@ -41,13 +53,16 @@ class Recorder:
         folder: Path,
         beginning: Beginning,
         limits: Limits,
-        log: ViewLog | None = None,
+        logs: Sequence[Log] = (),
         *,
+        view: ViewLog | None = None,
         unix_ns: Callable[[], int] = time.time_ns,
         least_free: int = LEAST_FREE,
     ) -> None:
         self.trouble = ""
-        self._log = log or ViewLog()
+        self._view = view or ViewLog()
+        self._logs = (self._view, *logs)
+        self._channels = (*OURS, *(channel for log in logs for channel in log.channels))
         self._folder = folder
         self._beginning = beginning
         self._limits = limits
@@ -135,23 +150,25 @@ class Recorder:
             item = self._waiting.popleft()
             if isinstance(item, Step):
                 yield TOPIC, item.unix_ns, as_json(item)
-                yield from self._log.stepped(item)
+                for log in self._logs:
+                    yield from log.stepped(item)
             else:
-                yield from self._view(item)
+                yield from self._looked_at(item)
 
-    def _view(self, seen: Seen) -> Iterator[Message | None]:
+    def _looked_at(self, seen: Seen) -> Iterator[Message | None]:
         """Where that takes more than its share of the time, a snapshot is passed over for the next one."""
         self._seen_out += 1
         now, spent_s = time.monotonic(), time.thread_time()
         if now < self._see_after and self._seen_out < self._seen_in:
             return
-        yield from self._log.saw(seen)
+        for log in self._logs:
+            yield from log.saw(seen)
         self._see_after = now + (time.thread_time() - spent_s) / SHARE
 
     def _digest(self, *, ends: bool = False) -> None:
         """Have the newest part of the time line where it is found at once."""
         assert self._part is not None
-        digest = self._log.digest(ends=ends)
+        digest = self._view.digest(ends=ends)
         if digest:
             self._digests += 1
             self._part.attach(f"{DIGEST}{self._digests:05}.json.zst", self._unix_ns(), digest)
@@ -177,9 +194,10 @@ class Recorder:
         prune(self._folder, self._limits, now / 1e9)
         self._number += 1
         path = part_path(self._folder, self._beginning.epoch, self._number)
-        self._part = PartFile(path, self._beginning, self._number, now)
-        for message in filter(None, self._log.whole()):
-            self._put(message)
+        self._part = PartFile(path, self._beginning, self._number, now, self._channels)
+        for log in self._logs:
+            for message in filter(None, log.whole()):
+                self._put(message)
 
     def _close(self) -> None:
         if self._part is not None and not self._over:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, takewhile
 from typing import Any
@@ -14,7 +14,7 @@ from arboleda.model.messages import Report
 from arboleda.views.changes import changed
 from arboleda.views.chronicle import Chronicle
 
-from .channels import CHANGES, EVENTS, VIEW
+from .channels import CHANGES, EVENTS, VIEW, Channel
 from .motion import Motion
 from .plain_data import plain
 from .rows import LINKS, Row, Rows, rows_of
@@ -36,10 +36,11 @@ class Seen:
 
 
 class ViewLog:
-    """Makes messages of steps and snapshots, in their order; None between two pieces of that work.
-
-    Times never run back, as clocks on the wall may.
+    """Makes messages of steps and snapshots, as `recorder.Log` has it. Times never run back, as clocks on the
+    wall may.
     """
+
+    channels: Sequence[Channel] = ()  # those of each record
 
     def __init__(self, past_acts: Iterable[Row] = (), links: Callable[[], Mapping[str, Any]] = dict) -> None:
         self._links = links

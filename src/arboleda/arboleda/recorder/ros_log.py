@@ -1,0 +1,109 @@
+"""What tools for ROS 2 read in a record: where robots are, what they do, tasks and diagnostics.
+
+Each topic says what is new; a file begins with all that was said last.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from arboleda.model.messages import Report, TaskChanged
+from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.sentence import in_json
+from arboleda.views import view
+from arboleda.views.diagnostics import Diagnostic, diagnostics
+from arboleda.wire.joints import joint_names, joint_states_topic, measured_joints
+
+from . import cdr, ros_types
+from .steps import Step
+from .view_log import Message, Seen
+
+TASK_STATUS, DIAGNOSTICS = "/task_status", "/diagnostics"
+DIAGNOSED_NS = 1_000_000_000  # between two looks at the diagnostics
+
+
+class RosLog:
+    """Makes messages of steps and snapshots, as `ViewLog` does; `channels` are those that it writes to."""
+
+    def __init__(self, model: PlantModel) -> None:
+        self._robots = {robot.name: _Topics(robot) for robot in model.robots.values()}
+        self._statuses: dict[str, Diagnostic] = {}
+        self._snapshot: dict[str, Any] | None = None  # nobody has looked at its diagnostics yet
+        self._ns = self._diagnosed_ns = 0
+        self.channels = (
+            *(channel for robot in self._robots.values() for channel in robot.channels),
+            ros_types.channel(TASK_STATUS, ros_types.STRING, depth=100, is_kept=True),
+            ros_types.channel(DIAGNOSTICS, ros_types.DIAGNOSTICS),
+        )
+
+    def stepped(self, step: Step) -> Iterator[Message | None]:
+        """What robots have reported, and what became of tasks."""
+        self._ns = step.unix_ns
+        for event in step.events:
+            if isinstance(event, Report):
+                yield from self._robots[event.robot].heard(event, step.unix_ns)
+        for message in step.messages:
+            if isinstance(message, TaskChanged):
+                text = json.dumps(view.change(message), ensure_ascii=False, default=in_json)
+                yield TASK_STATUS, step.unix_ns, cdr.string(text)
+        if self._snapshot is not None and not 0 <= step.unix_ns - self._diagnosed_ns < DIAGNOSED_NS:
+            snapshot, self._snapshot = self._snapshot, None
+            self._diagnosed_ns = step.unix_ns
+            yield from self._diagnosed(snapshot)
+
+    def saw(self, seen: Seen) -> Iterator[Message | None]:
+        """A snapshot, of which the diagnostics are made later."""
+        self._snapshot = seen.snapshot
+        yield None
+
+    def whole(self) -> Iterator[Message | None]:
+        for robot in self._robots.values():
+            yield from robot.again(self._ns)
+        if self._statuses:
+            yield DIAGNOSTICS, self._ns, cdr.diagnostics(self._ns, [*self._statuses.values()])
+
+    def _diagnosed(self, snapshot: dict[str, Any]) -> Iterator[Message | None]:
+        news = []
+        for status in diagnostics(snapshot):
+            if self._statuses.get(status[0]) != status:
+                self._statuses[status[0]] = status
+                news.append(status)
+            yield None
+        if news:
+            yield DIAGNOSTICS, self._ns, cdr.diagnostics(self._ns, news)
+
+
+class _Topics:
+    """Those of one robot, and what was said there last."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._state, self._joints = f"/{robot.name}/motion_state", f"/{joint_states_topic(robot)}"
+        stands = robot.position_key is not None
+        self._message = cdr.JointStates(joint_names(robot)) if stands else None
+        self._position: tuple[float, ...] | None = None
+        self._said: int | None = None
+        self.channels = [ros_types.channel(self._state, ros_types.UINT8)]
+        if stands:
+            self.channels.append(ros_types.channel(self._joints, ros_types.JOINT_STATE))
+
+    def heard(self, report: Report, unix_ns: int) -> Iterator[Message]:
+        """What is new in a report."""
+        if report.state is not None and report.state != self._said:
+            self._said = int(report.state)
+            yield self._state, unix_ns, cdr.uint8(self._said)
+        if self._message is None:
+            return
+        position = measured_joints(self._robot, report)
+        if position is not None and position != self._position:
+            self._position = position
+            yield self._joints, unix_ns, self._message.of(unix_ns, position)
+
+    def again(self, unix_ns: int) -> Iterator[Message]:
+        """What was said last."""
+        if self._said is not None:
+            yield self._state, unix_ns, cdr.uint8(self._said)
+        if self._message is not None and self._position is not None:
+            yield self._joints, unix_ns, self._message.of(unix_ns, self._position)
