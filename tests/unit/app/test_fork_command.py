@@ -16,6 +16,7 @@ from arboleda.app.rate import at_rate
 from arboleda.app.simulate.plants import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.recorder.files import PartFile
+from arboleda.recorder.steps import TOPIC, as_json
 from arboleda.recorder.tape import TapedPlant
 from arboleda.simulator.world import World
 
@@ -39,7 +40,7 @@ def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, 
     path = folder / "7-0001.mcap"
     part = PartFile(path, plant.beginning, 1, plant.tape[0].unix_ns)
     for step in plant.tape:
-        part.put(step)
+        part.put(TOPIC, step.unix_ns, as_json(step))
     part.close()
     return path
 

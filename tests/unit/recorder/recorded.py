@@ -11,11 +11,12 @@ import pytest
 
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder import recorder as writing
+from arboleda.recorder import recorder as thread
 from arboleda.recorder.beginning import Beginning, Limits, PlantFiles
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.ros_log import RosLog
+from arboleda.recorder.writing import Writing
 from arboleda.simulator import world
 from arboleda.testing.plants import shipped
 from arboleda.testing.rig import Rig
@@ -29,7 +30,7 @@ PATIENCE_S = 30.0
 
 def with_everything(path: Path, patch: pytest.MonkeyPatch) -> Site:
     """One whose records have all channels, as those of running plants."""
-    patch.setattr(writing, "SHARE", 1e9)  # time runs faster here than on clocks
+    patch.setattr(thread, "SHARE", 1e9)  # time runs faster here than on clocks
     return Site(path, patch, logs=[RosLog(shipped())])
 
 
@@ -68,6 +69,7 @@ class Site:
         self._limits = limits
         self._options = options
         patch.setattr(world, "Plant", self._new)
+        patch.setattr(thread, "PATIENCE_S", 60.0)  # a record is wanted whole here, on a busy machine too
         self.rig = Rig(self.model)
 
     @property
@@ -86,8 +88,10 @@ class Site:
     def _new(self, model: PlantModel, **made_of: Any) -> Plant:
         plant = Plant(model, **made_of)
         beginning = beginning_of(model, **made_of)
-        options = {"unix_ns": lambda: round(plant.now * 1e9), "least_free": 0, **self._options}
-        recorder = Recorder(self.folder, beginning, self._limits, **options)
+        unix_ns = lambda: round(plant.now * 1e9)  # noqa: E731
+        options = {"least_free": 0, **self._options}
+        writing = Writing(self.folder, beginning, self._limits, unix_ns=unix_ns, **options)
+        recorder = Recorder(writing, unix_ns)
         self.recorders.append(recorder)
         recorder.start()
         step, shown = plant.step, -1

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from arboleda.recorder import files, reader, recorder
+from arboleda.recorder import files, reader, recorder, writing
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
@@ -75,7 +75,7 @@ def test_a_disk_that_hangs_holds_up_no_step(
 ) -> None:
     hangs = threading.Event()
     monkeypatch.setattr(recorder, "MOST_WAITING", 50)
-    monkeypatch.setattr(PartFile, "put", lambda part, step: hangs.wait(PATIENCE_S))
+    monkeypatch.setattr(PartFile, "put", lambda *_: hangs.wait(PATIENCE_S))
     site = Site(tmp_path, monkeypatch)
     site.work("sis_a 0B 7")
     assert site.rig.changes[-1].state.value == "done"
@@ -97,7 +97,7 @@ def test_a_state_that_cannot_be_taken_stops_the_record_and_not_the_plant(
 
 def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files, "PART_BYTES", (10_000, 10_000))
-    monkeypatch.setattr(recorder, "FLUSH_S", 0.0)
+    monkeypatch.setattr(writing, "FLUSH_S", 0.0)
     site = Site(tmp_path, monkeypatch, Limits(megabytes=0.05))
     for turn in range(2):
         seen = len(site.files)
@@ -125,7 +125,7 @@ def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:
 def test_what_a_killed_process_left_is_read_up_to_its_last_chunk(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recorder, "FLUSH_S", 0.0)
+    monkeypatch.setattr(writing, "FLUSH_S", 0.0)
     site = Site(tmp_path, monkeypatch)
     for _ in range(3):
         before = site.files[0].stat().st_size if site.files else 0

@@ -10,13 +10,14 @@ import pytest
 
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import Sentence
-from arboleda.recorder import channels, copying, files, reader, recorder
+from arboleda.recorder import channels, copying, files, reader, recorder, writing
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.view_log import DIGEST_S
 from arboleda.recorder.views import Views
+from arboleda.recorder.writing import Writing
 from arboleda.views.chronicle import Chronicle
 
 from .recorded import Site, beginning_of, until
@@ -131,7 +132,7 @@ def test_files_that_follow_each_other_are_one_record_also_without_the_first(
     site: Site, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "PART_BYTES", (30_000, 30_000))
-    monkeypatch.setattr(recorder, "FLUSH_S", 0.0)
+    monkeypatch.setattr(writing, "FLUSH_S", 0.0)
     for _ in range(4):
         count = len(site.files)
         busy(site)
@@ -206,8 +207,8 @@ def test_damage_is_passed_over_or_one_sentence(site: Site, tmp_path: Path) -> No
 def test_a_record_without_views_is_a_sentence(
     site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recorder, "OURS", [each for each in channels.OURS if each.topic == TOPIC])
-    old = Recorder(tmp_path / "old", beginning_of(site.model), Limits(), least_free=0)
+    monkeypatch.setattr(writing, "OURS", [each for each in channels.OURS if each.topic == TOPIC])
+    old = Recorder(Writing(tmp_path / "old", beginning_of(site.model), Limits(), least_free=0))
     old.start()
     old.stepped(site.rig.plant, site.rig.now, (), ())
     old.stop()

@@ -261,6 +261,7 @@ class App:
             from arboleda.recorder.recorder import Recorder
             from arboleda.recorder.ros_log import RosLog
             from arboleda.recorder.view_log import ViewLog
+            from arboleda.recorder.writing import Writing
         except ImportError as error:
             LOG.warning("no record is written: %s; the plant goes on without it", error)
             return []
@@ -276,7 +277,7 @@ class App:
             files=wanted.files,
         )
         logs, view = [RosLog(self.model)], ViewLog(self._past_acts, self.links)
-        recorder = Recorder(self._state.path / FOLDER, beginning, wanted.limits, logs, view=view)
+        recorder = Recorder(Writing(self._state.path / FOLDER, beginning, wanted.limits, logs, view=view))
         plant.recorder = recorder
         return [recorder]
 

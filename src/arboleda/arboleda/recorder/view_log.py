@@ -36,7 +36,7 @@ class Seen:
 
 
 class ViewLog:
-    """Makes messages of steps and snapshots, as `recorder.Log` has it. Times never run back, as clocks on the
+    """Makes messages of steps and snapshots, as `writing.Log` has it. Times never run back, as clocks on the
     wall may.
     """
 
