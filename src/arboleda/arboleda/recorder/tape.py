@@ -17,23 +17,28 @@ from .steps import Recorded, Step, hash_of, outcome
 NO_FILES = PlantFiles(plant="plant.yaml")
 
 
+def began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:
+    """What the record of a simulated plant begins with."""
+    return Beginning(
+        plant=model.name,
+        version=__version__,
+        epoch=made_of["epoch"],
+        now=made_of["now"],
+        rate=1.0,
+        virtual=False,
+        memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
+        kept=tuple(made_of.get("kept", ())),
+        files=files,
+    )
+
+
 class TapedPlant(Plant):
     """A plant that keeps what each of its steps was made of and what it did."""
 
     def __init__(self, model: PlantModel, *, files: PlantFiles = NO_FILES, **made_of: Any) -> None:
         super().__init__(model, **made_of)
         self.tape: list[Step] = []
-        self.beginning = Beginning(
-            plant=model.name,
-            version=__version__,
-            epoch=made_of["epoch"],
-            now=made_of["now"],
-            rate=1.0,
-            virtual=False,
-            memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
-            kept=tuple(made_of.get("kept", ())),
-            files=files,
-        )
+        self.beginning = began(model, files, **made_of)
 
     def step(self, now: float, events: Iterable[Event]) -> list[Any]:
         events = tuple(events)
