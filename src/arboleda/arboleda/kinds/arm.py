@@ -121,6 +121,17 @@ class Arm(Robot):
     def fact_names(self) -> tuple[str, ...]:
         return ("effector",)
 
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        return tuple(f"{self.twin}_{joint.name}" for joint in self.joints)
+
+    @property
+    def twin_name(self) -> str:
+        return self.twin
+
+    def measured(self, report: Report) -> tuple[float, ...] | None:
+        return report.q
+
     def drawn(self) -> dict[str, object]:
         speeds = [joint.speed for joint in self.joints]
         return {"at": self.base.on_floor, "speeds": speeds, "reference": list(self.reference)}

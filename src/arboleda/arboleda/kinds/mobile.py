@@ -83,6 +83,13 @@ class Mobile(Robot):
         at, speeds = self.grid.origin.on_floor, [self.speed, self.speed]
         return {"at": at, "speeds": speeds, "reference": nodes[0], "nodes": nodes}
 
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        return (f"{self.name}_x_joint", f"{self.name}_y_joint")
+
+    def measured(self, report: Report) -> tuple[float, ...] | None:
+        return None if report.node is None else self.grid.position(report.node)
+
     def at_rate(self, rate: float) -> Mobile:
         return replace(self, speed=self.speed * rate)
 

@@ -152,6 +152,20 @@ class Robot:
         return self.held_fact == "effector"
 
     @property
+    def joint_names(self) -> tuple[str, ...]:
+        """What its joints are called on ROS 2; empty where it says no position."""
+        return ()
+
+    @property
+    def twin_name(self) -> str:
+        """Under which name its joints are published there."""
+        return self.name
+
+    def measured(self, report: Report) -> tuple[float, ...] | None:
+        """A report's value of each joint; None where it says none."""
+        return None
+
+    @property
     def units(self) -> list[str] | None:
         """The unit of each number of its position; None where that is no list of numbers."""
         return None

@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from arboleda.kinds.arm import Arm
-from arboleda.kinds.mobile import Mobile
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
 
 
 def measured_joints(robot: Robot, report: Report) -> tuple[float, ...] | None:
     """The joints of a report, x and y of a mobile; None where it holds none, or nobody hears the robot."""
-    if report.state is MotionState.NO_LINK:
-        return None
-    if isinstance(robot, Mobile):
-        return None if report.node is None else robot.grid.position(report.node)
-    return report.q
+    return None if report.state is MotionState.NO_LINK else robot.measured(report)
 
 
 def joint_names(robot: Robot) -> tuple[str, ...]:
     """The names a robot's joints have in the twin."""
-    if isinstance(robot, Arm):
-        return tuple(f"{robot.twin}_{joint.name}" for joint in robot.joints)
-    return (f"{robot.name}_x_joint", f"{robot.name}_y_joint")
+    return robot.joint_names
 
 
 def joint_states_topic(robot: Robot) -> str:
     """Arms publish their joints under the name of their twin, mobiles under their own."""
-    return f"{robot.twin if isinstance(robot, Arm) else robot.name}/joint_states"
+    return f"{robot.twin_name}/joint_states"
