@@ -110,6 +110,22 @@ def test_a_fact_is_kept_replaced_and_forgotten(path):
         assert store.facts(Fact.LATCH) == {"ra1": "on"}
 
 
+def test_of_facts_that_are_kept_together_all_are_kept_or_none(path, small_disk):
+    both = LATCH, Remember(fact=Fact.LATCH, name="ra2", value="on")
+    with Store(path) as store:
+        store.keep(*both)
+        assert store.facts(Fact.LATCH) == {"ra1": "on", "ra2": "on"}
+        store.keep(replace(both[0], value=None), replace(both[1], value="cleared"))
+        assert store.facts(Fact.LATCH) == {"ra2": "cleared"}
+        pages = sqlite3.connect(path).execute("PRAGMA page_count").fetchone()[0]
+    small_disk(pages)
+    with Store(path) as store:
+        too_much = replace(LATCH, value="x" * 100_000)
+        with pytest.raises(ArboledaError):
+            store.keep(*both, too_much)
+        assert store.facts(Fact.LATCH) == {"ra2": "cleared"}
+
+
 NAMES = st.sampled_from(["ra1", "ra2", "mesa ñ 'x'"])
 FACTS = st.builds(
     Remember, fact=st.sampled_from(Fact), name=NAMES, value=st.sampled_from(["on", "off", "", None])

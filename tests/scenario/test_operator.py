@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
-from arboleda.model.commands import Command, Home
-from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Fact, Journal, OperatorRequest, Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.testing import Rig, Witness, faults, shipped, slowed
 from arboleda.wire.transport import Publication
@@ -615,6 +615,19 @@ def test_a_reset_of_the_plant_waits_for_a_cell_that_is_clearing() -> None:
     rig.lost = lambda publication: False
     act(rig, Verb.CLEAR, Verb.RESET, scope="")
     assert set(states()) == {CellState.IDLE}
+
+
+def test_every_robot_is_told_to_stop_before_any_task_is_said_to_have_failed() -> None:
+    rig = Rig(shipped())
+    for task in (TASK, "sis_b 1C 3"):
+        rig.submit(task)
+    rig.wait(3.0)
+    rig.sent.clear()
+    assert rig.operate(Verb.STOP) is None
+    stops = [n for n, each in enumerate(rig.sent) if isinstance(each, Stop) and each.mode is StopMode.LATCH]
+    failures = [n for n, each in enumerate(rig.sent) if isinstance(each, TaskChanged)]
+    assert len(stops) == len(rig.model.robots) and len(failures) == 2
+    assert max(stops) < min(failures)
 
 
 @levels

@@ -256,6 +256,16 @@ def test_without_a_handler_a_crash_is_one_line(make, caplog):
     assert caplog.messages == ["echo has stopped on an internal error: ZeroDivisionError('by design')"]
 
 
+def test_what_comes_out_of_a_step_is_seen_before_it_is_sent(make, sent):
+    seen = []
+    loop = make(before_send=lambda messages: seen.append((list(messages), list(sent))))
+    loop.post("a")
+    loop.post("b")
+    loop.turn()
+    assert seen == [(["a", "b"], [])]
+    assert sent == ["a", "b"]
+
+
 def test_an_observer_sees_every_step(make):
     seen = []
     loop = make(on_step=lambda *step: seen.append(step))

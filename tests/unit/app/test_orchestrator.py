@@ -145,6 +145,43 @@ def test_an_operators_act_is_journalled_with_the_time_of_day(plant, store, monke
 TASK = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)
 
 
+def latched(robot: str, value: str = "on") -> tuple[Remember, Stop]:
+    mode = StopMode.LATCH if value == "on" else StopMode.CLEAR
+    return Remember(fact=Fact.LATCH, name=robot, value=value), Stop(id="", robot=robot, mode=mode)
+
+
+def commits(store: Store, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Remember, ...]]:
+    """The facts that are committed together, from now on."""
+    keep, told = store.keep, []
+    monkeypatch.setattr(store, "keep", lambda *facts: (told.append(facts), keep(*facts)))
+    return told
+
+
+def test_the_latches_of_one_stop_are_kept_by_one_commit_before_the_first_leaves(plant, store, monkeypatch):
+    (first, stop_one), (second, stop_two) = latched("ra1"), latched("rm_sis_a")
+    told = commits(store, monkeypatch)
+    turn(plant, GRIP, first, stop_one, second, stop_two)
+    assert told == [(first, second), (GRIP,)]
+    assert plant.robots.messages == [stop_one, stop_two]
+    turn(plant, first)
+    assert told[2:] == [(first,)]
+
+
+def test_latches_of_the_same_robot_are_kept_in_their_order(plant, store, monkeypatch):
+    (on, stop), (off, clear) = latched("ra1"), latched("ra1", "cleared")
+    told = commits(store, monkeypatch)
+    turn(plant, on, stop, off, clear)
+    assert told == [(on,), (off,)]
+
+
+def test_stops_leave_a_plant_whose_latches_cannot_be_kept(plant, store, crashes, monkeypatch):
+    break_disk(store, monkeypatch)
+    (first, stop_one), (second, stop_two) = latched("ra1"), latched("rm_sis_a")
+    turn(plant, first, stop_one, second, stop_two)
+    assert plant.robots.messages == [stop_one, stop_two]
+    assert [str(crash) for crash in crashes] == ["The disk is full."]
+
+
 @pytest.mark.parametrize("lost", [GRIP, ACT, TASK], ids=["fact", "journal", "task"])
 def test_once_something_cannot_be_kept_robots_are_only_told_to_stop(plant, store, crashes, monkeypatch, lost):
     break_disk(store, monkeypatch)

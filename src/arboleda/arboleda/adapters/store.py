@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,6 +76,7 @@ SINCE = {
 }
 PRUNED = 20  # ended tasks that are forgotten with one that ends: many more than end meanwhile, and soon done
 IN_MEMORY = Path(":memory:")
+Statement = tuple[str, tuple[object, ...]]  # with its values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,14 +132,15 @@ class Store:
             self._opened.close()
             self._opened = None
 
-    def keep(self, fact: Remember) -> None:
-        """Commit the fact, or forget it where its value is None."""
-        key = (fact.fact.value, fact.name)
-        durable = outlives_power(fact)
-        if fact.value is None:
-            self._commit("DELETE FROM fact WHERE fact = ? AND name = ?", key, durable=durable)
-        else:
-            self._commit("INSERT OR REPLACE INTO fact VALUES (?, ?, ?)", (*key, fact.value), durable=durable)
+    def keep(self, *facts: Remember) -> None:
+        """Commit facts, or forget those whose value is None: all of them, or none."""
+        durable = any(outlives_power(fact) for fact in facts)
+        with self._explained(ArboledaError):
+            self._sync(durable=durable)
+            if len(facts) == 1:
+                self._db.execute(*_kept(facts[0]))
+            else:
+                _carry_out(self._db, [_kept(fact) for fact in facts])
 
     def facts(self, fact: Fact) -> dict[str, str]:
         """Name to value of what is remembered."""
@@ -258,10 +260,14 @@ class Store:
 
     def _commit(self, statement: str, values: tuple[object, ...], *, durable: bool) -> None:
         with self._explained(ArboledaError):
-            if durable is not self._durable:  # most commits are as the one before: a command waits for them
-                self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
-                self._durable = durable
+            self._sync(durable=durable)
             self._db.execute(statement, values)
+
+    def _sync(self, *, durable: bool) -> None:
+        """Whether the next commits survive a power cut."""
+        if durable is not self._durable:  # most commits are as the one before: a command waits for them
+            self._db.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
+            self._durable = durable
 
     def _prepare(self, db: sqlite3.Connection) -> None:
         """Refuse what cannot be used now, rather than at the first fact."""
@@ -319,9 +325,16 @@ class Store:
         return explained(self.path, kind)
 
 
-def _carry_out(db: sqlite3.Connection, statements: tuple[str, ...]) -> None:
+def _kept(fact: Remember) -> Statement:
+    key = (fact.fact.value, fact.name)
+    if fact.value is None:
+        return "DELETE FROM fact WHERE fact = ? AND name = ?", key
+    return "INSERT OR REPLACE INTO fact VALUES (?, ?, ?)", (*key, fact.value)
+
+
+def _carry_out(db: sqlite3.Connection, statements: Iterable[str | Statement]) -> None:
     """All of them, or none."""
     with db:
         db.execute("BEGIN IMMEDIATE")
-        for statement in statements:
-            db.execute(statement)
+        for each in statements:
+            db.execute(*((each,) if isinstance(each, str) else each))

@@ -42,8 +42,9 @@ class Loop(Generic[Event, Message]):
     """Sleeps until an event arrives or a deadline passes, steps once, sends what comes out.
 
     A `step` (or an error handler) that raises ends the loop: `on_crash(name, error)`. A `send` that raises
-    does not: `on_send_error(message, error)`. `on_step(now, events, messages)` sees every step. All of them
-    are called in the loop's thread. `wait(condition, timeout_s)` is there for tests that move time by hand.
+    does not: `on_send_error(message, error)`. `before_send(messages)` sees what comes out of a step before it
+    is sent, `on_step(now, events, messages)` every step after that. All of them are called in the loop's
+    thread. `wait(condition, timeout_s)` is there for tests that move time by hand.
     """
 
     def __init__(
@@ -55,6 +56,7 @@ class Loop(Generic[Event, Message]):
         clock: Callable[[], float] = seconds,
         on_crash: Callable[[str, BaseException], None] = log_crash,
         on_send_error: Callable[[Any, Exception], None] = log_send_error,
+        before_send: Callable[[Sequence[Any]], None] | None = None,
         on_step: Callable[[float, Sequence[Any], Sequence[Any]], None] | None = None,
         wait: Callable[[threading.Condition, float | None], object] = threading.Condition.wait,
     ) -> None:
@@ -64,6 +66,7 @@ class Loop(Generic[Event, Message]):
         self._clock = clock
         self._on_crash = on_crash
         self._on_send_error = on_send_error
+        self._before_send = before_send
         self._on_step = on_step
         self._wait = wait
         self._inbox: deque[Event] = deque()
@@ -122,6 +125,8 @@ class Loop(Generic[Event, Message]):
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
+        if messages and self._before_send is not None:
+            self._before_send(messages)
         for message in messages:
             self._deliver(message)
         if self._on_step is not None:

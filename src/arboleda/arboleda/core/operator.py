@@ -210,7 +210,8 @@ class Operator:
         if firm or len(refusals) == len(cells):
             raise Refused(refusals[firm[0]] if firm else next(iter(refusals.values())))
         able = [cell for cell in cells if cell.cell.name not in refusals]
-        return partial(self._do_in, able, act, robots)
+        acts = [FIRST[verb], act] if verb in FIRST else [act]
+        return partial(self._do_in, able, acts, robots)
 
     def _of_robots(self, robots: set[str]) -> list[CellRun]:
         """Their cells in the order of the file; one cell, as screens ask about it, comes without a search."""
@@ -220,9 +221,10 @@ class Operator:
             return [self._cells[names.pop()]]
         return [cell for name, cell in self._cells.items() if name in names]
 
-    def _do_in(self, cells: list[CellRun], act: Do, robots: set[str]) -> None:
-        for cell in cells:
-            self._do(act, cell, robots)
+    def _do_in(self, cells: list[CellRun], acts: list[Do], robots: set[str]) -> None:
+        for act in acts:
+            for cell in cells:
+                self._do(act, cell, robots)
 
     def _do(self, act: Do, cell: CellRun, robots: set[str]) -> None:
         """Do it in one cell; what that raises must not keep the others from a stop."""
@@ -415,11 +417,10 @@ class Operator:
         obstacle = self._dispatcher.obstacle_to_homing(name)
         return obstacle.sentence if obstacle else None
 
-    def _stop(self, cell: CellRun, robots: set[str]) -> None:
+    def _latch(self, cell: CellRun, robots: set[str]) -> None:
         for robot in cell.cell.robots:
             if robot.name in robots:
                 self._dispatcher.latch(robot.name)
-        cell.stop()
 
     def _not_clearable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
         if cell.state not in (CellState.ABORTED, CellState.CLEARING):
@@ -580,7 +581,7 @@ def _cancelled_by(request: OperatorRequest) -> Failure:
 Check = Callable[[Operator, CellRun, "set[str]"], "Sentence | None"]
 Do = Callable[[Operator, CellRun, "set[str]"], None]
 ACTS: dict[Verb, tuple[Check, Do]] = {
-    Verb.STOP: (_always, Operator._stop),
+    Verb.STOP: (_always, lambda operator, cell, robots: cell.stop()),
     Verb.CLEAR: (Operator._not_clearable, Operator._clear),
     Verb.RESET: (_in(CellState.STOPPED), Operator._reset),
     Verb.HOLD: (_in(CellState.EXECUTE), lambda operator, cell, robots: cell.hold()),
@@ -590,6 +591,8 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.ABANDON: (_not_abandonable, lambda operator, cell, robots: cell.abandon()),
     Verb.RELEASE: (Operator._not_releasable, Operator._release),
 }
+# What is done in all cells before the act itself in any: no robot's stop waits for what ends in other cells.
+FIRST: dict[Verb, Do] = {Verb.STOP: Operator._latch}
 OF_ALL_WHO_SHARE = (Verb.STOP, Verb.CLEAR, Verb.RESET)
 STOPPING = (CellState.ABORTING, CellState.ABORTED)
 UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)

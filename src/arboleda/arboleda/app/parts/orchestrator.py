@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
@@ -25,6 +26,7 @@ from arboleda.model.messages import (
     ENDED,
     Absence,
     Event,
+    Fact,
     InternalError,
     Journal,
     KeptTask,
@@ -127,6 +129,7 @@ class Orchestrator:
             self._send,
             on_crash=crash,
             on_send_error=self._not_sent,
+            before_send=self._keep_latches,
             on_step=self._stepped,
         )
         self.listeners: list[Callable[[TaskChanged], None]] = []
@@ -139,6 +142,7 @@ class Orchestrator:
         self._drops_waiting = drops_waiting
         self._crash = crash
         self._amnesia: Exception | None = None
+        self._kept: Sequence[Remember] = ()  # what of a step's messages is in the store already
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
@@ -278,13 +282,25 @@ class Orchestrator:
         if is_too_late(message, self.plant, now):
             raise TooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
+    def _keep_latches(self, messages: Sequence[Any]) -> None:
+        """Stops of one step wait for one commit, and not each for its own and for all before it."""
+        self._kept = ()
+        latches = [each for each in messages if isinstance(each, Remember) and each.fact is Fact.LATCH]
+        once_each = len({each.name for each in latches}) == len(latches)  # else their order counts
+        if len(latches) < 2 or not once_each or self._store is None or self._amnesia is not None:
+            return
+        with suppress(ArboledaError):  # then each is tried alone, and says what it is
+            self._store.keep(*latches)
+            self._kept = latches
+
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
             OPERATORS.info("%s", act_line(message))
         if self._store is None or self._amnesia is not None:
             return
         if isinstance(message, Remember):
-            self._store.keep(message)
+            if message not in self._kept:
+                self._store.keep(message)
             return
         self._store.journal(message, time.time())
         if message.verb is Verb.RETRY:
