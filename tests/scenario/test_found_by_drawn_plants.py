@@ -475,6 +475,24 @@ FOUND = {
               zone_1: {poses: [cell_1 pickup]}
         """,
     ),
+    "a stop that is said again to a board whose low numbers count in hindsight was not expected": Found(
+        seed=5634,
+        faults=(
+            Fault(kind="stuck_bit", at=5.8, seconds=13.248, target="mobile_1", word="seq"),
+            Fault(kind="operator_stop", at=12.148, target="mobile_1"),
+        ),
+        file="""
+            name: drawn_5634
+            cells:
+              cell_1:
+                arm: {name: arm_1, model: cr10a, link: mqtt, evidence: joints}
+                mobile: {name: mobile_1, link: mqtt, evidence: ids}
+                home: {deg: [-172.3, -229.9, 55.5, -65.1, 325.7, -296.0]}
+                pickup: {deg: [254.7, 311.6, 96.9, 286.9, 3.4, -99.8]}
+                paths: {6a: [0, 1, 4, 1, 0]}
+                stations: {columns_q1_deg: [146.8, 45.8, -194.7], rows_q2_deg: [316.2, 94.1]}
+        """,
+    ),
 }
 
 

@@ -427,10 +427,14 @@ class _Board:
             self._check_body(command, publication, place)
         for publication in orders:
             again = publication.topic.endswith("/paro") and b'"paro":1' in publication.payload
-            if again and self._latched and self._rose:
+            if again and self._latched and (self._rose or self._is_heard_again(reports)):
                 self._number_of("", publication, len(self._orders))
             else:
                 self._say(COMMANDS, f"{name} is sent {publication.payload!r}, which nobody commanded")
+
+    def _is_heard_again(self, reports: list[Report]) -> bool:
+        """Whether a lost board is reported by telemetry that counts only in hindsight."""
+        return any(report.at == delivery.at for delivery, _ in self._maybe for report in reports)
 
     def _check_body(self, command: Command, publication: Publication, place: int) -> None:
         body = json.loads(publication.payload)
