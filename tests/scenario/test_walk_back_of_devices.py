@@ -17,6 +17,7 @@ from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator import hands
 from arboleda.testing import Rig
 from arboleda.views import view
+from arboleda.wire.transport import Publication
 
 from ..unit.kinds.lab import model as bench
 from ..unit.kinds.tending import plant
@@ -58,6 +59,12 @@ def late(cell: Kit):  # type: ignore[no-untyped-def]
     return cell.timeout(work(left.go("feed_2"), cell.wait(4.0), left.home()), 6.0)
 
 
+@recipe("wave")
+def wave(cell: Kit):  # type: ignore[no-untyped-def]
+    left, jaw = cell.devices("left", "jaw")
+    return work(jaw.open(), left.go("feed_2"), left.home())
+
+
 def sent(rig: Rig) -> list[str]:
     """What was sent to devices, but for stops: who, and where to or which verb."""
     found = []
@@ -88,6 +95,27 @@ def asked(rig: Rig) -> str | None:
 def resumed(rig: Rig, cell: str, after_s: float = 3.0) -> None:
     rig.wait(after_s)
     assert rig.operate(Verb.RESUME, cell) is None
+
+
+def test_a_switch_that_was_done_before_its_board_took_it_is_known_to_have_been_on_its_way() -> None:
+    rig = Rig(plant(wave))
+    rig.wait(0.5)
+    late: list[Publication] = []
+
+    def held_up(each: Publication) -> bool:
+        if each.topic == "jaw/orden" and not late:
+            late.append(each)
+            return True
+        return False
+
+    rig.lost = held_up
+    rig.submit("tending wave #one")
+    assert rig.wait(5.0, until=lambda: rig.plant.cells["tending"].context.moves("left"))
+    rig.inject(late[0])
+    rig.wait(0.3)
+    restart(rig)
+    resumed(rig, "tending")
+    assert rig.wait(20.0, until=lambda: state(rig) is TaskState.DONE)
 
 
 def test_an_answer_stays_given_and_an_open_question_is_asked_again() -> None:

@@ -1,10 +1,10 @@
-"""Which commands may still be on their way to an arm that shares zones."""
+"""Which commands may still be on their way to a robot."""
 
 from __future__ import annotations
 
 from arboleda.app.simulate.request import shared
 from arboleda.dispatch.evidence import QUIET_S
-from arboleda.dispatch.underway import PATIENCE_S, UnderWay
+from arboleda.dispatch.underway import PATIENCE_S, UnderWay, Unnamed
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence
@@ -52,3 +52,19 @@ def test_work_of_an_arm_that_names_no_command_is_under_way_until_its_end_or_the_
     under_way.left(move)
     under_way.ended(move)
     assert under_way.ids == {}
+
+
+def test_what_left_for_a_board_is_counted_until_it_or_a_later_one_is_named() -> None:
+    unnamed = Unnamed(MODEL)
+    for move in MOVES:
+        unnamed.left(move)
+    unnamed.hear(Report(at=1.0, robot=ARM, accepted="7-1"))
+    assert unnamed.of(ARM) == 1
+    unnamed.hear(Report(at=1.1, robot=ARM, rejected="7-2"))
+    assert unnamed.of(ARM) == 0
+
+
+def test_who_numbers_nothing_has_nothing_to_name() -> None:
+    unnamed = Unnamed(MODEL)
+    unnamed.left(MoveJoints(id="7-1", robot=MUTE, q=(0.0, 0.0, 0.0)))
+    assert unnamed.of(MUTE) == 0

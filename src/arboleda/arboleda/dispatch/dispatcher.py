@@ -30,7 +30,7 @@ from .belief import Belief
 from .evidence import Before, Verdict
 from .interference import Interferences
 from .ledger import Entry, Feed, Ledger, State
-from .underway import UnderWay
+from .underway import UnderWay, Unnamed
 
 Make = Callable[..., Command]  # called with id=<the new command's id>
 Guard = Callable[[str, Callable[[], None]], None]  # runs what belongs to the cell of that name
@@ -116,6 +116,7 @@ class Dispatcher:
             (fact, name): value for fact, kept in memory.items() for name, value in kept.items()
         }
         self.under_way = UnderWay(model)
+        self.unnamed = Unnamed(model)
         self.unheard_clears: set[str] = set()  # robots whose stop was cleared while they were offline
         self.last_sent: dict[str, Entry] = {}  # each robot's last command, a stop or halt left out
         self._last_work: dict[str, Entry] = {}  # of each robot
@@ -372,6 +373,7 @@ class Dispatcher:
             verdict = evidence.judge(entry, before, belief, report)
             if verdict is not None:
                 self._book(entry, verdict, now)
+        self.unnamed.hear(report)
         if name in self.under_way.ids or name in self.unheard_clears:
             self.under_way.hear(report, now)
             if belief.online:
@@ -431,6 +433,7 @@ class Dispatcher:
             return
         self.outbox.append(command)
         self.under_way.left(command)
+        self.unnamed.left(command)
 
     def _say_again(self, belief: Belief, now: float) -> None:
         """A robot that is heard may have missed a clear, or the last command of all."""

@@ -1,4 +1,4 @@
-"""Commands that may still be on their way to an arm that shares zones."""
+"""Commands that may still be on their way to a robot."""
 
 from __future__ import annotations
 
@@ -12,8 +12,35 @@ PATIENCE_S = 1.0  # in which an arm that is heard, and hears us, names our last 
 KEPT = 64  # commands per arm; whatever settles a later one settles those before it
 
 
+class Unnamed:
+    """How many commands left for each board that numbers them, and were not named by it yet.
+
+    What proves that a command is done need not name it: a switch may already be as it was told.
+    """
+
+    def __init__(self, model: PlantModel) -> None:
+        robots = model.robots.values()
+        self._ids: dict[str, list[str]] = {
+            robot.name: [] for robot in robots if robot.evidence is Evidence.IDS
+        }
+
+    def left(self, command: Command) -> None:
+        """A command leaves for its robot."""
+        if (ids := self._ids.get(command.robot)) is not None:
+            ids.append(command.id)
+            del ids[:-KEPT]
+
+    def hear(self, report: Report) -> None:
+        """A robot reports, and may name commands."""
+        if ids := self._ids.get(report.robot):
+            _settle(ids, report)
+
+    def of(self, robot: str) -> int:
+        return len(self._ids.get(robot, ()))
+
+
 class UnderWay:
-    """The commands to each arm that no report has settled.
+    """The commands to each arm that shares zones that no report has settled.
 
     Until then the arm may carry out something that it has not heard yet, so where it stands does not prove
     that it stays there. An arm that tells command ids, and can be stopped, settles them by naming them.
@@ -44,11 +71,7 @@ class UnderWay:
         heard_since = self._heard_since.setdefault(report.robot, now)
         if report.robot in self._others and now >= heard_since + QUIET_S:
             ids.clear()
-        for taken in (report.accepted, report.done):
-            if taken in ids:
-                del ids[: ids.index(taken) + 1]
-        if report.rejected in ids:
-            ids.remove(report.rejected)
+        _settle(ids, report)
         if not ids:
             del self.ids[report.robot]
 
@@ -61,6 +84,15 @@ class UnderWay:
         """Whether one of them must have been lost."""
         waits = robot in self.ids and robot in self._naming
         return waits and now >= self._heard_since.get(robot, now) + PATIENCE_S
+
+
+def _settle(ids: list[str], report: Report) -> None:
+    """Take out those that a report names, and those that left before one that was taken."""
+    for taken in (report.accepted, report.done):
+        if taken in ids:
+            del ids[: ids.index(taken) + 1]
+    if report.rejected in ids:
+        ids.remove(report.rejected)
 
 
 def _names_commands(robot: Robot) -> bool:

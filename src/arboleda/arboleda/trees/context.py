@@ -380,7 +380,7 @@ class Context:
 
     def known(self, robot: str) -> Known:
         """What a robot has told of its commands, as it is kept."""
-        return Known.of(self._dispatcher.beliefs[robot], self._dispatcher.ledger.of_robot(robot))
+        return Known.of(self._dispatcher.beliefs[robot], self._dispatcher.unnamed.of(robot))
 
     def moments(self) -> dict[str, Moment]:
         """Now, as each robot of the cell tells the time, for `moving_since`."""
