@@ -26,6 +26,8 @@ MODEL = (
         ('<Repeat num_cycles="1.5"><A/></Repeat>', "3:9", "must be a whole number, is '1.5'"),
         ('<Script code="x :="/>', "3:9", "'x :=': a value or a variable is expected, and the script ends"),
         ('<A _skipIf="1 +"/>', "3:4", "a value or a variable is expected"),
+        ('<A _skipIf="{x}"/>', "3:4", "is nothing here"),
+        ('<SubTree ID="Main2" _autoremap="yes"/>', "3:21", "_autoremap must be true or false, is 'yes'"),
         ("<Sequnce><A/></Sequnce>", "3:1", "did you mean Sequence?"),
         ("<Mine><A/></Mine>", "3:1", "declare it"),
         ("<Main/>", "3:1", 'Main is a tree; write <SubTree ID="Main"/>'),

@@ -39,6 +39,7 @@ def test_statements_are_separated_by_semicolons_the_last_may_have_one() -> None:
         ("", "empty, at character 1"),
         ("x := ", "the script ends, at character 6"),
         ("3x", "nothing here, at character 1"),
+        ("0x1F..x", "nothing here, at character 1"),
         ("a == 'b", "without its closing quote, at character 6"),
         ("(1 + 2", r"a \) is missing, at character 7"),
         ("1 := 2", "only a variable can stand before :=, at character 3"),

@@ -17,6 +17,7 @@ from .nodes import OF_LIBRARY, Category, Kind, Port, Way
 from .values import Variable
 
 MOST_LOOPS = 20
+SHARING = ("_autoremap", "__autoremap", "__shared_blackboard")
 OLD_PARALLEL = ("success_threshold", "failure_threshold", "threshold")
 
 
@@ -78,6 +79,12 @@ class _Checker:
         for name in names.SCRIPTS:
             if name in node.own:
                 self._check_script(node, node.own[name])
+        for name in SHARING:
+            if name in node.own and node.own[name].value not in values.BOOLS:
+                place = Place(node.place.file, node.own[name].mark)
+                self.findings.mistake(
+                    place, f"{name} must be true or false, is {quoted(node.own[name].value)}"
+                )
         if node.is_subtree:
             self._check_subtree(node)
             return
@@ -154,7 +161,8 @@ class _Checker:
 
     def _check_value(self, node: Node, port: Port, attribute: Attribute) -> None:
         if port.type == "script":
-            self._check_script(node, attribute)
+            if not isinstance(values.read(port.name, attribute.value), Variable):  # made while the tree runs
+                self._check_script(node, attribute)
             return
         said = values.read(port.name, attribute.value)
         place = Place(node.place.file, attribute.mark)
@@ -174,8 +182,6 @@ class _Checker:
             self.findings.mistake(place, sentence)
 
     def _check_script(self, node: Node, attribute: Attribute) -> None:
-        if isinstance(values.read("code", attribute.value), Variable):
-            return  # a script that is made while the tree runs
         try:
             script.parse(attribute.value)
         except script.ScriptFault as fault:
