@@ -9,11 +9,20 @@ from py_trees.behaviour import Behaviour
 from py_trees.composites import Sequence
 
 from arboleda.model.task import Order
+from arboleda.recipes import Kit, recipe, work
 from arboleda.recipes import storage as recipes
 from arboleda.simulator.invariants.invariant import Look, When, invariant
 from arboleda.testing import Misuse, Sim, shipped
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Dwell
+
+from ..kinds.tending import plant
+
+
+@recipe("thrice")
+def thrice(cell: Kit):  # type: ignore[no-untyped-def]
+    left = cell.device("left")
+    return cell.repeat(work(left.go("feed_2"), left.home()), 3)
 
 
 @pytest.fixture
@@ -37,6 +46,14 @@ def test_a_task_is_followed_to_its_end(sim: Sim) -> None:
     assert task.history == ["queued", "running", "done"]
     assert task.id is not None
     assert sim.now == pytest.approx(8.35, abs=0.1)
+
+
+def test_a_step_that_a_recipe_repeats_may_give_its_command_in_each_turn() -> None:
+    sim = Sim()
+    sim.plant(plant(thrice))
+    task = sim.submit("tending thrice")
+    sim.run(until=lambda: task.ended)
+    assert task.state == "done"
 
 
 def test_a_refused_text_is_a_handle_too(sim: Sim) -> None:

@@ -163,10 +163,12 @@ def _waits(leaves: Iterable[object], now: float) -> Iterator[str]:
 
 @invariant(When.COMMANDED)
 def retries_bounded(look: Look) -> Iterable[str]:
-    """A step gives its command once, once per retry, and once more each time that an operator says so."""
+    """A step gives its command once, once per retry, and once more each time that an operator says so; in a
+    recipe that repeats it, in each turn.
+    """
     for cell in look.record.cells.values():
         most = cell.cell.retry.times + 1 + cell.again
-        for leaf, count in cell.sends.items() if cell.looked else ():
+        for (leaf, _), count in cell.sends.items() if cell.looked else ():
             if count > most:
                 yield f"{cell.name}: {leaf.name} gave its command {count} times, allowed are {most}"
 

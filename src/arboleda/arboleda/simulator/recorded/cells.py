@@ -15,6 +15,7 @@ from arboleda.recipes.storage_cell import StorageCell
 from arboleda.trees.leaves import Act, TakeZones
 
 from .commands import SentCommand
+from .starts import turn_of
 
 LOOK_S = 1.0  # a tree that sends nothing is looked through this often
 PAUSED = (CellState.HOLDING, CellState.HELD)
@@ -24,8 +25,8 @@ class KnownCell:
     """A cell as it was after the last step; `stopped` outlives the plant: from stop to reset.
 
     `leaves` are those that run, `looked` whether they were looked up in this step; `sends` counts the
-    commands of each leaf of the tree, `again` how often an operator had an interrupted step given anew,
-    `retries` how often one had a step tried again, over all starts;
+    commands of each leaf of the tree in each turn of what repeats it, `again` how often an operator had an
+    interrupted step given anew, `retries` how often one had a step tried again, over all starts;
     `waited_s` is how long its arm has waited for its zones, in the cell's own time, a recovery since all
     before it were at work, `behind_work` whether those were when it last waited; `frozen_s` how much of that
     time did not pass since the last news although it was not held.
@@ -43,7 +44,7 @@ class KnownCell:
         self.state, self.task = run.state, run.task
         self.paused, self.queued = run.queue_paused, len(run.queue)
         self.tree: Behaviour | None = None
-        self.sends: dict[Behaviour, int] = {}
+        self.sends: dict[tuple[Behaviour, str], int] = {}
         self.again = 0
         self.holds_zones = False  # after the last step
         self.held_before_recovery = False
@@ -132,7 +133,8 @@ class KnownCell:
         self.leaves = _running(self.run.tree)
         for leaf in self.leaves:
             if isinstance(leaf, Act) and leaf.entry is not None and leaf.entry.command.id in sent:
-                self.sends[leaf] = self.sends.get(leaf, 0) + 1
+                turn = leaf, turn_of(leaf)
+                self.sends[turn] = self.sends.get(turn, 0) + 1
 
 
 def _runs(leaf: Behaviour, tree: Behaviour | None) -> bool:
