@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .conftest import Process, paths
+from arboleda.app.client import PlantClient
+from arboleda.model.messages import ENDED, TaskState, Verb
+
+from .conftest import PATIENCE_S, Process, paths
 
 PATIENCE_MS = 20_000
 PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
@@ -35,3 +39,22 @@ def connected(page: Any) -> None:
 
 def show(page: Any, part: str) -> None:
     page.click(f"[data-tab={part}]")
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait for what another process does."""
+    ends = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < ends
+        time.sleep(0.1)
+
+
+def ended(plant: PlantClient) -> None:
+    """Every task has ended, by advice too: a busy machine may hold cells, after a second of standstill."""
+    for _ in plant.changes():
+        now = plant.status()
+        for cell in now["cells"]:
+            if cell["state"] == "held":
+                plant.operate(Verb(cell["advice"][0]["do"]), cell["advice"][0]["scope"])
+        if all(TaskState(task["state"]) in ENDED for task in now["tasks"]):
+            return

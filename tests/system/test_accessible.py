@@ -10,10 +10,9 @@ import yaml
 
 from arboleda.app.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
-from arboleda.model.messages import ENDED, TaskState, Verb
 
 from .conftest import SHIPPED
-from .page import PARTS, PATIENCE_MS, connected, running, show
+from .page import PARTS, PATIENCE_MS, connected, ended, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "axe_playwright_python")]
 
@@ -82,17 +81,6 @@ def at_work(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with running(folder, "--plant", str(file), "sis_a 0B 7 #done", "sis_c 2A 5 #failed") as address:
         ended(PlantClient(folder))
         yield address
-
-
-def ended(plant: PlantClient) -> None:
-    """Every task has ended, by advice too: a busy machine may hold cells, after a second of standstill."""
-    for _ in plant.changes():
-        now = plant.status()
-        for cell in now["cells"]:
-            if cell["state"] == "held":
-                plant.operate(Verb(cell["advice"][0]["do"]), cell["advice"][0]["scope"])
-        if all(TaskState(task["state"]) in ENDED for task in now["tasks"]):
-            return
 
 
 @pytest.fixture(scope="module")

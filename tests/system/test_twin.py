@@ -16,7 +16,7 @@ import yaml
 
 from arboleda.app import config
 from arboleda.app.urdf import robot_urdf, root_link
-from arboleda.dashboard.page import assets
+from arboleda.dashboard.shell import assets
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.mobile import Mobile
 from arboleda.model.plant_model import MotionState, PlantModel, Robot

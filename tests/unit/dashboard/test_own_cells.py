@@ -8,6 +8,7 @@ from dataclasses import replace
 from arboleda.dashboard import page
 from arboleda.dashboard.faces import Face
 from arboleda.dashboard.faces.links import says
+from arboleda.dashboard.shell import parts_of
 from arboleda.dashboard.story import Story
 from arboleda.dashboard.wording import words
 from arboleda.model.messages import Event
@@ -127,8 +128,8 @@ def test_the_failed_step_of_a_recipe_of_ones_own_is_named() -> None:
 
 
 def test_there_is_no_twin_where_nothing_is_drawn() -> None:
-    assert "twin" not in page.parts_of(view.layout(model()))
-    assert list(page.parts_of(view.layout(shipped()))) == list(page.PARTS)
+    assert "twin" not in parts_of(page.PARTS, view.layout(model()))
+    assert list(parts_of(page.PARTS, view.layout(shipped()))) == list(page.PARTS)
 
 
 def test_the_time_line_tells_of_every_device() -> None:

@@ -232,6 +232,7 @@ class App:
             links=self.links,
             positions=self.positions,
             past_acts=lambda: self._past_acts,
+            recorded=None if options.recording is None else self._state.path,
         )
         mount = page.mounting(sources) if options.page else None
         metrics = self._metrics = Metrics(self.snapshot, self.links)

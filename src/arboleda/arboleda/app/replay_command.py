@@ -98,12 +98,24 @@ def replay(
     healthy: Annotated[
         bool, typer.Option("--healthy", help="A fork in which nothing befalls devices any more.")
     ] = False,
+    page: Annotated[
+        bool, typer.Option("--page", help="Look at it on the page, from --until or the end of --task on.")
+    ] = False,
+    port: Annotated[
+        int | None, typer.Option(metavar="PORT", min=0, max=65535, help="Of the page. [default: 8080]")
+    ] = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda.recorder import reader
 
     record = reader.opened(last_of(file, None, state))
     beginning = record.first.beginning
+    if page:
+        if speed or plant or fork_at or setting or recipe or healthy:
+            only = "only --until, --task and --port go with it"
+            raise ConfigError((f"--page shows a record as it was: {only}",))
+        _show(record, until, task, port)
+        return
     if record.missing:
         gone = f"its first {record.missing} files were deleted to make room"
         raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
@@ -144,6 +156,16 @@ def _fork(record: Record, options: Options) -> None:
         _say(f"the record ends early: {record.broken}")
     if not all(pair.same for pair in command.compared(found, options.task)):
         raise typer.Exit(DIFFERS)
+
+
+def _show(record: Record, until: str | None, task: str | None, port: int | None) -> None:
+    """The page, where a task ended or at a time; else at the last failure."""
+    from . import replay_page  # its libraries take a second
+
+    at_s = None if until is None else _time("--until", until, record.first.began_ns) / 1e9
+    query = {"at": "task" if task else "failure" if at_s is None else f"{at_s:.3f}"}
+    of_task = {"tab": "tasks", "task": task} if task else {}
+    replay_page.show(record, model_of(record.first.beginning, None), query | of_task, port)
 
 
 def _finish(record: Record, last: Replayed | None) -> None:

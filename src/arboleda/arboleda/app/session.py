@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import logging
-import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from importlib.metadata import entry_points
 from queue import SimpleQueue
-from types import FrameType
 from typing import Any
 
 from rich.console import Console
@@ -24,7 +22,7 @@ from .errand import Errand
 from .log_file import LogFile
 from .log_queue import LogQueue, log_to
 from .screen import Screen, logged, parting, summary
-from .waiting import taken_from
+from .waiting import interruptible, taken_from
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
@@ -67,7 +65,7 @@ class Session:
         self._app.watch(lambda snapshot: self._later(self._screen.stepped, snapshot, time.time()))
         self._app.watch(self._errand.seen)
         self._app.when_over(lambda: self._news.put(None))
-        with _interruptible(), self._logging() as self._log:
+        with interruptible(), self._logging() as self._log:
             self._start()
             try:
                 with suppress(KeyboardInterrupt):
@@ -130,20 +128,3 @@ class Session:
         self._show()
         for line in parting(self._app.snapshot()):
             self._console.print(Text(f"  {line}", style="dim"))
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """SIGTERM ends the plant like Ctrl-C; a second signal does not break the clean end."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        for each in before:
-            signal.signal(each, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    before = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .plant_side import Layout
-from .tags import link, live, tag
+from .tags import link, live, tag, way
 from .wording import LANGUAGES, Words
 
 
@@ -17,6 +17,20 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
         _tabs(words, parts)
         _tools(words, role)
         tag("p", words("page.connecting"), id="connection", role="status", data_lost=words("page.lost"))
+        tag("div", id="answer", role="status", aria_live="polite")
+
+
+def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, *, beside: bool) -> None:
+    """The same of a record: nothing can be stopped in it. `beside` a plant that runs it leads back there."""
+    with tag("header", classes="top"):
+        with tag("div", classes="brand"):
+            tag("h1", layout["plant"])
+            live("p", "sum", classes="sum")
+        _tabs(words, parts)
+        if beside:
+            way(words("record.leave"), {"at": None, "task": None}, classes="act record-leave")
+        _tools(words, role, sounds=False)
+        tag("p", words("record.reading"), id="connection", role="status", data_lost=words("record.lost"))
         tag("div", id="answer", role="status", aria_live="polite")
 
 
@@ -34,7 +48,7 @@ def _tabs(words: Words, parts: list[str]) -> None:
             link(words(f"tab.{name}"), tab=name, classes="tab", data_tab=name)
 
 
-def _tools(words: Words, role: str | None) -> None:
+def _tools(words: Words, role: str | None, *, sounds: bool = True) -> None:
     with tag("div", classes="tools"):
         for language in LANGUAGES:
             tag(
@@ -54,15 +68,8 @@ def _tools(words: Words, role: str | None) -> None:
             title=words("page.look"),
             aria_label=words("page.look"),
         )
-        tag(
-            "button",
-            "♪",
-            type="button",
-            classes="tool sound",
-            title=words("js.sound_off"),
-            aria_label=words("page.sound"),
-            aria_pressed="false",
-        )
+        if sounds:
+            _sound(words)
         if role is not None:
             with tag("form", action="/logout", method="post"):
                 tag(
@@ -72,3 +79,15 @@ def _tools(words: Words, role: str | None) -> None:
                     classes="tool",
                     title=words("page.log_out"),
                 )
+
+
+def _sound(words: Words) -> None:
+    tag(
+        "button",
+        "♪",
+        type="button",
+        classes="tool sound",
+        title=words("js.sound_off"),
+        aria_label=words("page.sound"),
+        aria_pressed="false",
+    )

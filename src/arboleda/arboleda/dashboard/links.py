@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import panel
 from .cell_filter import cell_filter
 from .plant_side import Layout
 from .tags import live, rows, tag
@@ -18,3 +19,9 @@ def build(layout: Layout, words: Words) -> None:
                 live("p", key, classes="fact")
         cell_filter("links", layout, words)
         rows("links", [words(f"column.{name}") for name in COLUMNS], classes="links")
+
+
+def of_record(layout: Layout, words: Words) -> None:
+    """The same, and the zones, which are elsewhere only beside what an operator can do."""
+    build(layout, words)
+    panel.zones(words)

@@ -54,9 +54,14 @@ def build(layout: Layout, words: Words) -> None:
                     _verb(name, verb, offer, words)
         tag("p", words("panel.not_safety"), classes="hint")
         _suggestions(layout)
+    zones(words, "acts")
+
+
+def zones(words: Words, *more: str) -> None:
+    """Who has which shared zone or device."""
     with tag("div", classes="box"):
         tag("h2", words("zones.title"))
-        columns = [words(f"column.{name}") for name in ("zone", "state", "robot", "waiting", "acts")]
+        columns = [words(f"column.{name}") for name in ("zone", "state", "robot", "waiting", *more)]
         rows("zones", columns, empty=words("zones.none"))
 
 

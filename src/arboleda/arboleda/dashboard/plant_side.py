@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.views.oee import Oee
+
+if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+    from .past.past import Past
+
 
 Snapshot = dict[str, Any]
 Layout = dict[str, Any]
@@ -23,13 +27,17 @@ class PlantSide(Protocol):
         """`views.view.snapshot` as of now."""
 
     def layout(self) -> Layout:
-        """`views.view.layout`: what never changes."""
+        """`views.view.layout`: what never changes. With `recorded` there is a `past`."""
 
     def positions(self) -> dict[str, Any]:
         """`views.twin_view.positions` as of now, and `now` on the plant's clock."""
 
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
+
+    def past(self) -> Past:
+        """The record of this start, up to some seconds ago; it waits for the disk, so not in the event loop.
+        An ArboledaError says why there is none."""
 
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}}."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from typing import Any
+from urllib.parse import urlencode
 
 from nicegui import ui
 from nicegui.element import Element
@@ -31,7 +32,14 @@ def link(
 ) -> Element:
     """A link to another place of the page, no task in particular; without a cell the chosen one stays."""
     there = {"tab": tab, "task": None} | ({} if cell is None else {"cell": cell})
-    return tag("a", label, classes=classes, href=f"/?tab={tab}", data_go=json.dumps(there), **attributes)
+    return way(label, there, classes=classes, **attributes)
+
+
+def way(label: str | None, there: dict[str, str | None], *, classes: str = "", **attributes: Any) -> Element:
+    """A link to where `assets/place.js` finds by these keys; what is not among them stays."""
+    named = {key: value for key, value in there.items() if value is not None}
+    href = f"/?{urlencode(named)}"
+    return tag("a", label, classes=classes, href=href, data_go=json.dumps(there), **attributes)
 
 
 def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Element:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import task_form
 from .cell_filter import cell_filter
 from .plant_side import Layout
-from .tags import link, live, rows, tag
+from .tags import link, live, rows, tag, way
 from .trees import heard, zooms
 from .wording import Words
 
@@ -18,15 +18,26 @@ COLUMNS = ("state", "text", "started", "ended", "took", "why", "id", "acts")
 def build(layout: Layout, words: Words) -> None:
     task_form.build(layout, words)
     with tag("div", classes="lists"):
-        _one(words)
-        with tag("div", classes="box"):
-            with tag("div", classes="box-head"):
-                tag("h2", words("tasks.list"))
-                cell_filter("tasks", layout, words)
-            columns = [words(f"column.{name}") for name in COLUMNS]
-            rows("tasks", columns, empty=words("tasks.none"), classes="tasks")
+        _one(layout, words)
+        _list(layout, words, COLUMNS)
         _oee(words)
         _history(words)
+
+
+def of_record(layout: Layout, words: Words) -> None:
+    """Queue and history as they were."""
+    with tag("div", classes="lists"):
+        _one(layout, words)
+        _list(layout, words, COLUMNS[:-1])
+
+
+def _list(layout: Layout, words: Words, names: tuple[str, ...]) -> None:
+    with tag("div", classes="box"):
+        with tag("div", classes="box-head"):
+            tag("h2", words("tasks.list"))
+            cell_filter("tasks", layout, words)
+        columns = [words(f"column.{name}") for name in names]
+        rows("tasks", columns, empty=words("tasks.none"), classes="tasks")
 
 
 def _oee(words: Words) -> None:
@@ -62,7 +73,7 @@ def _history(words: Words) -> None:
         tag("button", words("history.more"), id="history-more", type="button", classes="act", hidden="true")
 
 
-def _one(words: Words) -> None:
+def _one(layout: Layout, words: Words) -> None:
     """The task that the address names; the script shows it."""
     with tag("article", id="task", classes="box", hidden="true"):
         with tag("div", classes="box-head"):
@@ -73,6 +84,8 @@ def _one(words: Words) -> None:
         live("p", "task.cause", classes="trouble")
         heard("task.heard", words)
         live("p", "task.note", classes="note")
+        if layout.get("recorded"):
+            way(None, {"at": "task"}, classes="to-record", data_live="task.record")
         with tag("div", classes="tree-box"):
             with tag("div", classes="tree-tools"):
                 zooms(words)

@@ -13,8 +13,24 @@ COLUMNS = ("at", "cell", "event", "sentence")
 def build(layout: Layout, words: Words) -> None:
     with tag("div", classes="box"):
         with tag("div", classes="box-head"):
-            tag("h2", words("tab.events"))
-            cell_filter("events", layout, words)
+            _head(layout, words)
             act_button(words("events.download"), "download", "", words("events.download_does"))
-        columns = [words(f"column.{name}") for name in COLUMNS]
-        rows("events", columns, empty=words("events.none"), classes="events")
+        _rows(words)
+
+
+def of_record(layout: Layout, words: Words) -> None:
+    """Up to the moment that is shown."""
+    with tag("div", classes="box"):
+        with tag("div", classes="box-head"):
+            _head(layout, words)
+        _rows(words)
+
+
+def _head(layout: Layout, words: Words) -> None:
+    tag("h2", words("tab.events"))
+    cell_filter("events", layout, words)
+
+
+def _rows(words: Words) -> None:
+    columns = [words(f"column.{name}") for name in COLUMNS]
+    rows("events", columns, empty=words("events.none"), classes="events")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -59,6 +60,12 @@ class TreeMemory:
         if cell["tree"]:
             self._follow(cell, unix_s)
         return ended
+
+    def copy(self) -> TreeMemory:
+        """Another one that has seen the same."""
+        made = copy(self)
+        made.statuses, made.changes = dict(self.statuses), self.changes.copy()
+        return made
 
     @property
     def leaf(self) -> Row | None:

@@ -7,7 +7,7 @@ from typing import Any
 from arboleda.views.view import devices_once
 
 from .plant_side import Layout
-from .tags import link, live, rows, tag
+from .tags import link, live, rows, tag, way
 from .wording import Words
 
 MANY = 4  # cells; more than these are shown one tree at a time on a wall screen too
@@ -23,6 +23,9 @@ def build(layout: Layout, words: Words) -> None:
                 tree_box(cell, words)
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))
+                    if layout.get("recorded"):
+                        there = {"tab": "cells", "cell": cell["name"], "task": None, "at": "failure"}
+                        way(words("record.link"), there, classes="to-record")
                     rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
 
 

@@ -49,6 +49,10 @@ class Window:
     def times(self) -> list[int]:
         return [each.unix_ns for each in self.told]
 
+    def between(self, after_ns: int, until_ns: int) -> list[Told]:
+        """What was told after a moment and up to another."""
+        return self.told[bisect_right(self.times, after_ns) : bisect_right(self.times, until_ns)]
+
 
 class Views:
     """Snapshots of a record, by their time; NoRecord for one that has none. For one thread.
@@ -101,6 +105,31 @@ class Views:
         with _legible(self._files):
             found = {row["number"]: row for file in self._followed() for row in self._events_of(file)}
             return [found[number] for number in sorted(found)]
+
+    def rows(self, unix_ns: int) -> Rows:
+        """What was told up to a moment, to the last ns."""
+        with _legible(self._files):
+            return self._moment(unix_ns - EXACT_NS)[0]
+
+    def told(self, after_ns: int, until_ns: int) -> Iterator[Told]:
+        """All that was told after a moment and up to another, in order."""
+        with _legible(self._files):
+            for window in self._windows_from(after_ns, until_ns):
+                yield from window.between(after_ns, until_ns)
+
+    def _windows_from(self, after_ns: int, until_ns: int) -> Iterator[Window]:
+        first = self._window(after_ns) or self._first()
+        yield first
+        began_ns = first.times[0]
+        for file in self._followed():
+            chunks = file.index().chunks
+            for number in range(max(0, file.index().position(began_ns)), len(chunks)):
+                places = chunks[number].indexes.get(self._channels[VIEW])
+                for at_ns, place in file.times(places) if places else ():
+                    if at_ns > until_ns:
+                        return
+                    if at_ns > began_ns:
+                        yield self._read(file, number, place)
 
     def _followed(self) -> list[ChunkFile]:
         """Its files that are still there; where the last one was closed, also the one that came after it."""

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from fastapi import FastAPI
 
 from arboleda.model.plant_model import PlantModel
+from arboleda.model.sentence import Phrase
+from arboleda.recorder.errors import NoRecord
 from arboleda.views import view
 
 from ..urdf import robot_urdf
 from .web import Side
+
+if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record needs it
+    from arboleda.dashboard.past.past import Past
+
+FRESH_S = 5.0  # for so long a record that was opened is the one that is shown to others too
+NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +33,7 @@ class Sources:
     links: Callable[[], dict[str, Any]]
     positions: Callable[[], dict[str, Any]]
     past_acts: Callable[[], list[dict[str, Any]]]
+    recorded: Path | None  # the state directory of a plant that writes a record
 
 
 class PageSide:
@@ -30,7 +41,9 @@ class PageSide:
 
     def __init__(self, side: Side, sources: Sources) -> None:
         self._model = sources.model
-        self._layout = view.layout(sources.model)
+        self._layout = view.layout(sources.model) | {"recorded": sources.recorded is not None}
+        self._sources = sources
+        self._opened: tuple[float, Past] | None = None
         self.snapshot = side.snapshot
         self.submit = side.submit
         self.operate = side.operate
@@ -43,6 +56,23 @@ class PageSide:
 
     def layout(self) -> dict[str, Any]:
         return self._layout
+
+    def past(self) -> Past:
+        if self._opened is None or time.monotonic() - self._opened[0] > FRESH_S:
+            self._opened = time.monotonic(), self._read()
+        return self._opened[1]
+
+    def _read(self) -> Past:
+        from arboleda.dashboard.past.past import Past
+        from arboleda.recorder import files, reader
+        from arboleda.recorder.views import Views
+
+        state, epoch = self._sources.recorded, self.snapshot()["epoch"]
+        found = files.parts_in(state / files.FOLDER) if state else []
+        parts = [part for part in found if part.epoch == epoch]
+        if not parts:
+            raise NoRecord(NOT_YET())
+        return Past(Views(reader.opened(parts[-1].path)), self._layout)
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self._model, robot)

@@ -2,6 +2,7 @@
 
 import { value } from "./live.js";
 import * as question from "./question.js";
+import { answer } from "./shell.js";
 
 const PATIENCE_MS = 3000;
 const SECOND_WAY_MS = 300;
@@ -95,10 +96,3 @@ class SecondWay {
 }
 
 const isUnderWay = () => ["stopping", "stopped", "partly", "unconfirmed"].includes(value("text/stop")?.[1]);
-
-export function answer(sentence, good) {
-  const line = document.getElementById("answer");
-  line.textContent = sentence;
-  line.dataset.s = good ? "good" : "bad";
-  return false;
-}

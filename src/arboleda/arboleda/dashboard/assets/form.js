@@ -1,6 +1,7 @@
 // The task form: cell, recipe and the recipe's values write the task text, which may also be typed.
 
-import { answer, send } from "./acts.js";
+import { send } from "./acts.js";
+import { answer } from "./shell.js";
 import * as place from "./place.js";
 
 const words = window.arboledaPage.words;

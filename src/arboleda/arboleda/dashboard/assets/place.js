@@ -1,6 +1,7 @@
-// Where on the page somebody is, as its address says it: part, cell, task, language. Links and the browser's back lead there.
+// Where on the page somebody is, as its address says it: part, cell, task, language, and the moment of a record.
+// Links and the browser's back lead there.
 
-const KEYS = ["tab", "cell", "task", "lang"];
+const KEYS = ["tab", "cell", "task", "lang", "at"];
 let arrived = () => {};
 
 export function start(arrive) {
@@ -29,6 +30,11 @@ export function go(changes) {
   arrived();
 }
 
+// Have the address say where this is now, for whom it is sent to; nobody arrives anywhere.
+export function note(changes) {
+  history.replaceState(null, "", address(changes));
+}
+
 // Say where this is more exactly, without a step that "back" would undo.
 export function settle(changes) {
   history.replaceState(null, "", address(changes));
@@ -39,6 +45,10 @@ export function settle(changes) {
 function followed(event) {
   const link = event.target.closest?.("a[data-go]");
   if (!link || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+  const to = JSON.parse(link.dataset.go);
+  if (isRecord({ ...here(), ...to }) !== isRecord(here())) return; // another page: the browser opens it
   event.preventDefault();
-  go(JSON.parse(link.dataset.go));
+  go(to);
 }
+
+const isRecord = ({ at }) => at !== null;

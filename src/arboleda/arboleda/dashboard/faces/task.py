@@ -34,9 +34,15 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         "text/task.when": [when, ""],
         "text/task.cause": [cause, state[1]],
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
+        "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],
         **heard.rows(words, "task.heard", task["answers"] if task else []),
         **tree_face(words, TREE, tree or EndedTree(task=id, rows=[], statuses={}), title=title),
     }
+
+
+def _ended_here(task: Row | None, *, kept: bool) -> bool:
+    """Whether the record of this start has its end."""
+    return task is not None and not kept and task["ended_at"] is not None
 
 
 def _past(moment: Moment, kept: TaskRow) -> Row:

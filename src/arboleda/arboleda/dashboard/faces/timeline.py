@@ -16,11 +16,11 @@ def face(moment: Moment) -> Face:
     last = list(moment.events)[-SHOWN:][::-1]
     found: Face = {"rows/events": [str(event["number"]) for event in last]}
     for event in last:
-        found[f"row/events/{event['number']}"] = _row(moment, event)
+        found[f"row/events/{event['number']}"] = row(moment, event)
     return found
 
 
-def _row(moment: Moment, event: Event) -> dict[str, Any]:
+def row(moment: Moment, event: Event) -> dict[str, Any]:
     words = moment.words
     return {
         "state": event["what"],

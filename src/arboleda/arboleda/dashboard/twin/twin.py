@@ -18,6 +18,23 @@ class Twin:
 
     def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         self.scene = scene(places, drawings)
+        self._places = places
+        self._drawings = drawings
+        self._followed = Followed(places, drawings)
+
+    def frame(self, positions: Row, now: float) -> Row:
+        """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
+        return self._followed.frame(positions, now)
+
+    def still(self, positions: Row) -> Row:
+        """The same of one moment alone, whatever was drawn before; `positions` have their `now`."""
+        return Followed(self._places, self._drawings).frame(positions, positions["now"])
+
+
+class Followed:
+    """Robots and parts from frame to frame, as far as what is drawn of them depends on those before."""
+
+    def __init__(self, places: Row, drawings: Mapping[str, Body]) -> None:
         robots = {robot["name"]: robot for robot in places["robots"]}
         self._arms = {cell["name"]: cell["arm"] for cell in places["cells"]}
         stations = {cell["name"]: cell["stations"] for cell in places["cells"]}
@@ -27,7 +44,6 @@ class Twin:
         }
 
     def frame(self, positions: Row, now: float) -> Row:
-        """By robot/<name>, part/<cell>, stored/<cell>, zone/<name>: what is drawn at `now` of the plant."""
         rows = {row["name"]: row for row in positions["robots"]}
         robots = {name: track.see(rows[name], now) for name, track in self._tracks.items()}
         found: Row = {f"robot/{name}": drawn for name, drawn in robots.items()}

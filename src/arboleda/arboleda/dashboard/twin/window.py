@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import threading
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Protocol
 
 from fastapi import FastAPI, Response
 from nicegui import Client, ui
@@ -12,7 +13,6 @@ from nicegui.events import GenericEventArguments
 
 from arboleda.model.errors import ArboledaError
 
-from ..plant_side import PlantSide
 from . import bodies
 from .show import Show
 from .twin import Twin
@@ -50,24 +50,42 @@ class Window:
 
 def open_window(client: Client, show: Show) -> None:
     """Let the page of one browser show the twin."""
-    _ = ui.scene  # has NiceGUI serve its three.js; no scene of its own is made
+    bring_three()
     window = Window(client, show)
     ui.on(EVENT, window.hear)
     client.on_delete(lambda: show.leave(window))
 
 
-def serve(server: FastAPI, plant: PlantSide, show: Show) -> None:
-    """Have the browser's `SCENE` answered, and the show opened by the first who asks."""
-    store = _Store(plant, show)
+def bring_three() -> None:
+    """Have NiceGUI serve its three.js; no scene of its own is made."""
+    _ = ui.scene
+
+
+class Drawn(Protocol):
+    """A plant that can be drawn."""
+
+    def layout(self) -> dict[str, Any]: ...
+    def urdf(self, robot: str) -> str: ...
+
+
+class Opened(Protocol):
+    """What begins once there is a twin to draw; told from any thread."""
+
+    def open(self, twin: Twin) -> None: ...
+
+
+def serve(server: FastAPI, plant: Drawn, *shows: Opened) -> None:
+    """Have the browser's `SCENE` answered, and the shows opened by the first who asks."""
+    store = _Store(plant, shows)
     server.add_api_route(SCENE, store.answer, include_in_schema=False)
 
 
 class _Store:
     """The scene, made once, when somebody first wants to see it: drawing robots takes a while."""
 
-    def __init__(self, plant: PlantSide, show: Show) -> None:
+    def __init__(self, plant: Drawn, shows: Sequence[Opened]) -> None:
         self._plant = plant
-        self._show = show
+        self._shows = shows
         self._making = threading.Lock()
         self._scene: str | None = None
 
@@ -84,7 +102,8 @@ class _Store:
         places = self._plant.layout()["places"]
         drawings = {robot["name"]: bodies.read(self._plant.urdf(robot["name"])) for robot in places["robots"]}
         twin = Twin(places, drawings)
-        self._show.open(twin)
+        for show in self._shows:
+            show.open(twin)
         return json.dumps(twin.scene)
 
 

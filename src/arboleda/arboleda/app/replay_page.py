@@ -1,0 +1,79 @@
+"""`arboleda replay --page`: the page on a record, for this machine only."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlencode
+
+from fastapi import FastAPI
+from starlette.exceptions import HTTPException
+
+from arboleda.adapters.web.api import own_up, refuse
+from arboleda.adapters.web.auth import Door
+from arboleda.adapters.web.guard import Guard
+from arboleda.adapters.web.names import LOCAL, names_for
+from arboleda.adapters.web.server import Server
+from arboleda.dashboard.past import page
+from arboleda.dashboard.past.past import Past
+from arboleda.model.errors import ArboledaError
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.views import Views
+from arboleda.views import view
+
+from .urdf import robot_urdf
+from .waiting import interruptible, until
+
+if TYPE_CHECKING:
+    from arboleda.recorder.reader import Record
+
+
+class Recorded:
+    """`arboleda.dashboard.past.side.PastSide`; NoRecord where the record has nothing to see."""
+
+    def __init__(self, record: Record, model: PlantModel) -> None:
+        self._model = model
+        self._layout = view.layout(model)
+        self._past = Past(Views(record), self._layout)
+
+    def layout(self) -> dict[str, Any]:
+        return self._layout
+
+    def past(self) -> Past:
+        return self._past
+
+    def urdf(self, robot: str) -> str:
+        return robot_urdf(self._model, robot)
+
+
+class RecordServer:
+    """Serves the page from `start`, which returns its address, to `stop`."""
+
+    def __init__(self, side: Recorded, port: int | None) -> None:
+        app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None, redirect_slashes=False)
+        app.add_exception_handler(ArboledaError, refuse)
+        app.add_exception_handler(HTTPException, refuse)
+        app.add_exception_handler(Exception, own_up)
+        page.mount(app, side)
+        self._server = Server(Guard(app, names_for(LOCAL, None), Door(None)), host=LOCAL, port=port)
+
+    def start(self) -> str:
+        return f"http://{LOCAL}:{self._server.start()}/"
+
+    def stop(self) -> None:
+        self._server.stop()
+
+
+def show(record: Record, model: PlantModel, query: dict[str, str], port: int | None) -> None:
+    """Serve the page until Ctrl-C; `query` is where in the record its address leads."""
+    server = RecordServer(Recorded(record, model), port)
+    with interruptible():
+        try:
+            address = server.start()
+            print(f"Page: {address}?{urlencode(query)}", flush=True)
+            print("Ctrl-C ends it.", flush=True)
+            with suppress(KeyboardInterrupt):
+                until(threading.Event())
+        finally:
+            server.stop()

@@ -1,0 +1,99 @@
+// What every page of ours does: parts, cells, filters, language, look, the browser's tab.
+
+import { drawList, setRowFilter, value } from "./live.js";
+import * as place from "./place.js";
+
+export const all = (selector) => [...document.querySelectorAll(selector)];
+export const words = window.arboledaPage.words;
+export const parts = () => all("[data-part]").map((part) => part.dataset.part);
+export const cells = () => all("[data-choose]").map((card) => card.dataset.choose);
+const filters = {};
+
+export function start() {
+  document.documentElement.lang = window.arboledaPage.language;
+  look(lookNow());
+  setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
+  document.addEventListener("click", clicked);
+}
+
+// A line below the header; false where the sentence is one of trouble.
+export function answer(sentence, good) {
+  const line = document.getElementById("answer");
+  line.textContent = sentence;
+  line.dataset.s = good ? "good" : "bad";
+  return false;
+}
+
+// Whether somebody is at a place that this page has, in its language; else they are led to the nearest one.
+export function settled({ tab, cell, task, lang }) {
+  if (task && tab !== "tasks") return place.settle({ tab: "tasks" });
+  if (!parts().includes(tab)) return place.settle({ tab: parts()[0] });
+  if (cell && !cells().includes(cell)) return answer(words.no_cell.replace("{cell}", cell), false), place.settle({ cell: null });
+  if (lang !== window.arboledaPage.language) return place.settle({ lang: window.arboledaPage.language });
+  return true;
+}
+
+export function showPart(chosen) {
+  all("[data-part]").forEach((part) => (part.hidden = part.dataset.part !== chosen));
+  all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
+}
+
+export function showCell(chosen) {
+  all("article[data-cell]").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
+  all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
+}
+
+const ICONS = { trouble: "tree_trouble", waits: "tree_waits" };
+
+// The tab of the browser, its icon and the header show trouble and who is waited for, also to whom another tab is open.
+export function alarm() {
+  const [title, state] = value("text/title") ?? ["Arboleda", "well"];
+  if (document.title !== title) document.title = title;
+  if (document.documentElement.dataset.stands === state) return;
+  document.documentElement.dataset.stands = state;
+  const icon = document.querySelector("link[rel~=icon]");
+  const home = document.querySelector("link[href$='/page.css']").href.replace("page.css", "");
+  if (icon) icon.href = `${home}${ICONS[state] ?? "tree"}.svg`;
+}
+
+function filterBy(list, cell) {
+  filters[list] = cell;
+  all(`[data-filter="${list}"]`).forEach((each) => each.setAttribute("aria-pressed", each.dataset.value === cell));
+  drawList(list);
+}
+
+function cookie(name, what) {
+  document.cookie = `arboleda_${name}=${what}; path=/; max-age=31536000; SameSite=Strict`;
+}
+
+const LOOKS = ["auto", "light", "dark"];
+const lookNow = () => document.cookie.match(/arboleda_look=(\w+)/)?.[1] ?? "auto";
+
+function look(how) {
+  document.documentElement.dataset.look = how;
+  const button = document.querySelector(".look");
+  button.dataset.look = how;
+  button.title = `${words.look}: ${words[`look_${how}`]}`;
+}
+
+function nextLook() {
+  const next = LOOKS[(LOOKS.indexOf(lookNow()) + 1) % LOOKS.length];
+  cookie("look", next);
+  look(next);
+}
+
+function clicked(event) {
+  const button = event.target.closest("button");
+  if (!button) return;
+  const { choose, twinCell, filter, value: cell, language } = button.dataset;
+  if (choose ?? twinCell) place.go({ cell: choose ?? twinCell });
+  if (filter) filterBy(filter, cell);
+  if (language) cookie("language", language), location.assign(place.address({ lang: language }));
+  if (button.classList.contains("look")) nextLook();
+}
+
+// Begin once the page is there; `begin` is called once.
+export function whenReady(begin) {
+  if (document.querySelector(".app") && window.socket) begin();
+  else setTimeout(() => whenReady(begin), 20);
+}

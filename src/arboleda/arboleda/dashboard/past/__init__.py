@@ -1,0 +1,1 @@
+"""The page on a record: the plant as it was, to look at only."""

@@ -1,0 +1,81 @@
+"""The page on a record: the parts of the page that only show, and the bar of the record below them."""
+
+from __future__ import annotations
+
+from fastapi import FastAPI, Request
+from nicegui import Client, ui
+
+from .. import header, links, shell, tasks, timeline, trees
+from ..shell import Parts
+from ..twin import pane, window
+from ..wording import words
+from . import bar
+from .side import PastSide
+from .stills import Stills
+from .turns import Turns
+from .visitor import Arrival, Visitor
+
+KEY, OF_TASK = "at", "task"  # of the page's address: which moment of a record
+PARTS: Parts = {
+    "cells": trees.build,
+    "twin": pane.build,
+    "tasks": tasks.of_record,
+    "links": links.of_record,
+    "events": timeline.of_record,
+}
+
+
+def asked(request: Request) -> bool:
+    """Whether the address is one of a record."""
+    return KEY in request.query_params
+
+
+def mount(server: FastAPI, side: PastSide) -> None:
+    """Put the page on a record at `/` of this app, for whom no plant runs; StartError where this process
+    shows a page already."""
+    stills, turns = Stills(), Turns()
+
+    def build(request: Request, client: Client) -> None:
+        open_page(client, side, stills, turns, request)
+
+    window.serve(server, side, stills)
+    shell.serve(server, side.layout(), build)
+
+
+def open_page(
+    client: Client,
+    side: PastSide,
+    stills: Stills,
+    turns: Turns,
+    request: Request,
+    *,
+    beside: bool = False,
+) -> None:
+    """Build the page of one browser on a record; `beside` a plant that runs it has a link to that."""
+    layout, said = {**side.layout(), "recorded": False}, words(shell.language_of(request))
+    visitor = Visitor(client, side, stills, turns, said, arrival(request))
+    ui.on("arboleda-past", visitor.hear)
+    ui.on(window.EVENT, visitor.hear)
+    window.bring_three()
+    client.on_connect(visitor.come)
+    role = shell.role_shown(request)
+    shell.fill(
+        layout,
+        said,
+        PARTS,
+        script="record.js",
+        header=lambda parts: header.of_record(layout, said, parts, role, beside=beside),
+        footer=lambda: bar.build(layout, said),
+    )
+
+
+def arrival(request: Request) -> Arrival:
+    """Where the address leads: `at=1795324375.912` is Unix time, `at=task` the end of the task that it names,
+    anything else the last failure."""
+    query = request.query_params
+    asked = query.get(KEY, "")
+    try:
+        moment = round(float(asked) * 1000)
+    except (OverflowError, ValueError):
+        moment = None
+    return Arrival(moment=moment, task=query.get("task"), at_its_end=asked == OF_TASK, cell=query.get("cell"))

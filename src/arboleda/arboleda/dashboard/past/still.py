@@ -1,0 +1,55 @@
+"""Faces of the past: what was offered then is told, as nothing of it can be done any more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..faces import Face, timeline
+from ..faces.moment import Moment
+from .moments import address, dated, moment_of
+
+Row = dict[str, Any]
+
+
+def without_acts(face: Face) -> Face:
+    """The same face with no button; what one was called stands in its row where nothing else would."""
+    found = {key: _told(each) if key.startswith("row/") else each for key, each in face.items()}
+    return found | {key: ["", ""] for key in found if key.endswith(".offer")}
+
+
+def _told(row: Row) -> Row:
+    acts = row.get("acts", ())
+    rest = {key: each for key, each in row.items() if key != "acts"}
+    labels = " / ".join(act["label"] for act in acts)
+    if not labels or (row["texts"] and row["texts"][0]):
+        return rest
+    return rest | {"texts": [labels, *row["texts"][1:]]}
+
+
+def of_record(then: Moment, moment: int) -> Face:
+    """Where in the record this is: the moment, what happened last by then, and the browser's title."""
+    event = then.events[-1] if then.events else None
+    title, state = then.words("record.title", plant=then.snapshot["plant"]), "well"
+    return {
+        "past/at": moment,
+        "text/record.at": [dated(moment), ""],
+        "text/record.event": ["" if event is None else said(then, event), ""],
+        "text/title": [title, state],
+    }
+
+
+def with_links(face: Face, events: Sequence[Row]) -> Face:
+    """The rows of the time line, each leading to its moment."""
+    keys = ((f"row/events/{each['number']}", each) for each in events)
+    return {
+        key: face[key] | {"link": {"column": 0, "to": {"at": address(moment_of(each["at"]))}}}
+        for key, each in keys
+        if key in face
+    }
+
+
+def said(then: Moment, event: Row) -> str:
+    """An event in one line."""
+    _, cell, what, sentence = timeline.row(then, event)["texts"]
+    return " · ".join(part for part in (cell, what, sentence) if part)

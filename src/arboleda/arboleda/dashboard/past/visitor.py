@@ -1,0 +1,164 @@
+"""One browser on a record: the moment it looks at, and frames of that."""
+
+from __future__ import annotations
+
+import json
+import logging
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from nicegui import Client
+from nicegui.events import GenericEventArguments
+
+from arboleda.model.errors import ArboledaError
+from arboleda.views.changes import changed
+
+from ..faces import Face
+from ..wording import Words
+from .side import PastSide
+from .stills import Stills
+from .turns import Turns
+
+if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
+    from .past import Past
+
+GO, STEP, FAILURE, TASK, LOOK, LEAVE = "go", "step", "failure", "task", "look", "leave"
+LONGEST = 300  # characters of what a browser may name
+LATEST = 2**53  # what its numbers can tell apart
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arrival:
+    """Where in the record a page is opened: at a moment, at the end of the task whose page it is, else at the
+    last failure, of a cell where one is named."""
+
+    moment: int | None = None
+    task: str | None = None
+    at_its_end: bool = False
+    cell: str | None = None
+
+
+class Visitor:
+    """One open page. Its moment changes at once with each event, frames follow as fast as they are made."""
+
+    def __init__(
+        self, client: Client, side: PastSide, stills: Stills, turns: Turns, words: Words, arrival: Arrival
+    ) -> None:
+        self._client = client
+        self._side = side
+        self._stills = stills
+        self._turns = turns
+        self._words = words
+        self._arrival = arrival
+        self._past: Past | None = None
+        self._moment = 0
+        self._task = arrival.task
+        self._shown: Face = {}
+        self._drawn: dict[str, Any] = {}
+        self._looks = False
+        self._number = 0
+        self._busy = self._again = False
+
+    async def come(self) -> None:
+        """The page was opened, or is back: it is told everything."""
+        self._shown, self._drawn = {}, {}
+        if self._past is None:
+            try:
+                self._past = await self._turns.take(self._side.past)
+            except ArboledaError as error:
+                self._say(self._words.say(error.sentence))
+                return
+            self._arrive(self._past)
+        await self._show()
+
+    async def hear(self, event: GenericEventArguments) -> None:
+        """One event of the page: [what, of, cell]; anything else is ignored."""
+        asked = event.args if isinstance(event.args, list) else [event.args]
+        what, of, cell = [*asked, None, None, None][:3]
+        if self._past is None:
+            return
+        of_cell = cell if isinstance(cell, str) and cell else None
+        if self._takes(self._past, what, of, of_cell):
+            await self._show()
+
+    def _takes(self, past: Past, what: Any, of: Any, cell: str | None) -> bool:
+        """Whether there is something else to show."""
+        if what == GO and isinstance(of, int) and abs(of) < LATEST:
+            self._moment = past.within(of)
+        elif what in (STEP, FAILURE) and of in (1, -1):
+            return self._step(past, of, failures=what == FAILURE, cell=cell)
+        elif what == TASK and (of is None or (isinstance(of, str) and len(of) <= LONGEST)):
+            self._task = of
+        elif what in (LOOK, LEAVE):
+            self._looks, self._drawn = what == LOOK, {}
+        else:
+            return False
+        return True
+
+    def _step(self, past: Past, way: int, *, failures: bool, cell: str | None) -> bool:
+        found = past.step(self._moment, way=way, failures=failures, cell=cell)
+        if found is None:
+            where = "last" if way > 0 else "first"
+            self._say(self._words(f"record.{where}_{'failure' if failures else 'event'}"))
+            return False
+        self._moment = found
+        return True
+
+    def _arrive(self, past: Past) -> None:
+        """Begin where the address says."""
+        asked = self._arrival
+        if asked.moment is not None:
+            self._moment = past.within(asked.moment)
+            return
+        of_task = asked.task if asked.at_its_end else None
+        found = past.end_of(of_task) if of_task else past.last_failure(asked.cell)
+        if found is None:
+            self._say(self._words("record.no_task" if of_task else "record.no_failure"))
+        self._moment = past.ended if found is None else found
+
+    async def _show(self) -> None:
+        """Send frames until the last moment that was asked for is shown; of those before it some are left
+        out."""
+        self._again = True
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            while self._again:
+                self._again = False
+                await self._frame(self._moment, self._task)
+        except ArboledaError as error:
+            self._say(self._words.say(error.sentence))
+        except Exception as error:
+            log.error("a frame of a record failed (%s: %s)", type(error).__name__, error)
+            log.debug("the frame that failed, whole", exc_info=error)
+            self._say(self._words("record.unreadable"))
+        finally:
+            self._busy = False
+
+    async def _frame(self, moment: int, task: str | None) -> None:
+        past = self._past
+        assert past is not None
+        looks = self._looks and self._stills.ready
+        face, drawn = await self._turns.take(
+            lambda: (
+                past.face(moment, self._words.language, task),
+                self._stills.at(past, moment) if looks else {},
+            )
+        )
+        if looks:
+            self._draw(changed(self._drawn, drawn))
+            self._drawn = drawn
+        face["past/span"] = [past.began, past.ended, past.marks()]
+        patch = changed(self._shown, face) | {"past/at": moment}
+        self._shown = face
+        self._number += 1
+        self._client.run_javascript(f"arboleda.live({self._number}, {json.dumps(patch)})")
+
+    def _draw(self, patch: dict[str, Any]) -> None:
+        self._client.run_javascript(f"arboledaTwin.frame(0, {json.dumps(patch)})")
+
+    def _say(self, sentence: str) -> None:
+        self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, false)")

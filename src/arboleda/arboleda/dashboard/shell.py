@@ -1,0 +1,118 @@
+"""What every page of ours consists of: its head, a header, its parts, and where those are served."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from functools import cache
+from importlib import resources
+
+from fastapi import FastAPI, Request
+from nicegui import Client, app, ui
+
+from arboleda.adapters.web.api import refuse
+from arboleda.model.errors import StartError
+
+from . import trees
+from .plant_side import Layout
+from .tags import tag
+from .unopened import Unopened
+from .wording import LANGUAGES, Words
+
+RECONNECT_S = 30.0
+LANGUAGE_COOKIE = "arboleda_language"
+Parts = dict[str, Callable[[Layout, Words], None]]
+_here: list[FastAPI] = []
+
+
+def serve(server: FastAPI, layout: Layout, build: Callable[[Request, Client], None]) -> None:
+    """Put the page that `build` makes at `/` of this app, after all else that it serves; StartError where
+    this process shows a page already."""
+    if _here:
+        raise StartError(
+            "This process shows the page of another plant already; NiceGUI has one page a process."
+        )
+    _here.append(server)
+    unopened = Unopened()
+    app.add_static_files(assets(), str(resources.files(__package__).joinpath("assets")), max_cache_age=3600)
+
+    @ui.page("/", title=f"{layout['plant']} · Arboleda")
+    def page(request: Request, client: Client) -> None:
+        unopened.add(client)
+        build(request, client)
+
+    app.add_exception_handler(404, refuse)  # NiceGUI makes a page for each address that is not there
+    app.add_exception_handler(405, refuse)
+    ui.run_with(
+        server,
+        title="Arboleda",
+        dark=None,
+        tailwind=False,
+        binding_refresh_interval=None,
+        reconnect_timeout=RECONNECT_S,
+        show_welcome_message=False,
+        favicon=str(resources.files(__package__).joinpath("assets", "tree.svg")),
+    )
+
+
+def language_of(request: Request) -> str:
+    """That of the address, else the one chosen before, else the first of the browser's that we have."""
+    spoken = [each.strip()[:2].lower() for each in request.headers.get("accept-language", "").split(",")]
+    asked = [request.query_params.get("lang"), request.cookies.get(LANGUAGE_COOKIE), *spoken]
+    return next((each for each in asked if each in LANGUAGES), LANGUAGES[0])
+
+
+def role_shown(request: Request) -> str | None:
+    """The role somebody logged in with; None where nobody needs to log in."""
+    door = request.scope.get("arboleda.door")
+    return None if door is None or door.open else request.scope["arboleda.role"].value
+
+
+def fill(
+    layout: Layout,
+    said: Words,
+    parts: Parts,
+    *,
+    script: str,
+    header: Callable[[list[str]], None],
+    footer: Callable[[], None] = lambda: None,
+) -> None:
+    """Fill the page of one browser; `header` is given the names of the parts, `script` is its entry."""
+    ui.add_head_html(head(said, script))
+    shown = parts_of(parts, layout)
+    with tag("div", classes="app"):
+        header(list(shown))
+        with tag("div", id="parts"):
+            for name, build in shown.items():
+                label = said(f"tab.{name}")
+                with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
+                    build(layout, said)
+        trees.detail(said)
+        footer()
+
+
+def parts_of(parts: Parts, layout: Layout) -> Parts:
+    """Those that this plant has something to show in: there is no twin where no robot is drawn."""
+    return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
+
+
+def head(said: Words, script: str) -> str:
+    """What the page's head needs: our style, our script, and the few words that the script says itself."""
+    spoken = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
+    data = json.dumps({"language": said.language, "words": spoken}).replace("<", "\\u003c")
+    styles = "".join(
+        f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record")
+    )
+    return (
+        f"{styles}<script>window.arboledaPage = {data};</script>"
+        f'<script type="module" src="{assets()}/{script}"></script>'
+        f'<script type="module" src="{assets()}/twin.js"></script>'
+    )
+
+
+@cache
+def assets() -> str:
+    """Where our files are served: another place when one of them has changed, as browsers keep them."""
+    files = sorted(resources.files(__package__).joinpath("assets").iterdir(), key=lambda file: file.name)
+    return f"/arboleda/{hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:12]}"

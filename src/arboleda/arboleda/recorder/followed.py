@@ -1,0 +1,69 @@
+"""What became of one cell in a time of a record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .plain_data import value_from
+from .rows import Row, Rows
+from .views import Views
+
+NEEDED = ("state", "task", "tree")  # of a cell's row
+AT_ONCE_NS = 60 * 10**9  # of so long all that was told is read
+
+
+@dataclass(frozen=True)
+class Looked:
+    """A cell at a moment at which something of its tree or its tasks had changed: its name, state, task and
+    tree, whose spans are moments on the plant's clock; and its tasks."""
+
+    unix_ns: int
+    cell: Row
+    tasks: list[Row]
+
+
+def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[Looked]:
+    """Each change of a cell in that time, in order.
+
+    Where a long time begins and ends with the same rows, nothing is looked for in between: each has the
+    moment at which it last changed.
+    """
+    if until_ns - after_ns <= AT_ONCE_NS:
+        yield from _changes(views, cell, after_ns, until_ns)
+    elif after_ns < views.began_ns or _of(views.rows(after_ns), cell) != _of(views.rows(until_ns), cell):
+        middle_ns = (after_ns + until_ns) // 2
+        yield from followed(views, cell, after_ns, middle_ns)
+        yield from followed(views, cell, middle_ns, until_ns)
+
+
+def _changes(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[Looked]:
+    known: Rows = {} if after_ns < views.began_ns else _of(views.rows(after_ns), cell)
+    made = {key: value_from(row) for key, row in known.items()}
+    for told in views.told(after_ns, until_ns):
+        news = {key: {**known.get(key, {}), **row} for key, row in _of(told.rows, cell).items()}
+        news = {key: row for key, row in news.items() if known.get(key) != row}
+        gone = [key for key in told.gone if key in known]
+        for key in gone:
+            del known[key], made[key]
+        known.update(news)
+        made.update({key: value_from(row) for key, row in news.items()})
+        if news or gone:
+            yield _looked(told.unix_ns, made, cell)
+
+
+def _looked(unix_ns: int, made: Rows, cell: str) -> Looked:
+    row = made[f"cells/{cell}"]
+    tree = [made[f"tree/{cell}/{path}"] for path in row["tree"]]
+    tasks = [each for key, each in made.items() if key.startswith("tasks/") and each["cell"] == cell]
+    task = next((each for each in tasks if each["id"] == row["task"]), None)
+    return Looked(unix_ns, {"name": cell, "state": row["state"], "task": task, "tree": tree}, tasks)
+
+
+def _of(rows: Rows, cell: str) -> Rows:
+    """The rows that its tree depends on; of its own what that needs."""
+    mine = (f"tree/{cell}/", "tasks/")
+    found = {key: row for key, row in rows.items() if key.startswith(mine)}
+    own = rows.get(f"cells/{cell}", {})
+    needed = {name: own[name] for name in NEEDED if name in own}
+    return {**found, f"cells/{cell}": needed} if needed else found

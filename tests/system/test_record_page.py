@@ -1,0 +1,203 @@
+"""The page on a record, from `arboleda replay --page` and beside the plant that writes it."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from arboleda.app.client import PlantClient
+from arboleda.model.messages import Verb
+from arboleda.recorder import reader
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.files import FOLDER, parts_in
+from arboleda.recorder.views import Views
+
+from .conftest import Process, paths
+from .page import PATIENCE_MS, connected, running, show, until
+from .test_accessible import Eye, eye
+
+__all__ = ["eye"]  # a fixture
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
+
+MAIN = "from arboleda.app.cli import main; main()"
+AT = "[data-live='record.at']"
+FAILED = "article.cell.chosen g.node.is-failure"
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]]:
+    """A plant where one task was done and one failed, and its state directory; its record has both."""
+    state = tmp_path_factory.mktemp("recorded")
+    with running(state, "--rate", "4", "sis_a 0B 7 #done", "sis_c 2A 5 #failed") as address:
+        client = PlantClient(state)
+        until(lambda: client.status()["cells"][2]["step"] == "drive path 2A")
+        client.operate(Verb.STOP, "sis_c")
+        until(lambda: kept(state) >= {("done", "done"), ("failed", "failed")})
+        yield address, state
+
+
+def kept(state: Path) -> set[tuple[str, str]]:
+    (part,) = parts_in(state / FOLDER)
+    try:
+        events = Views(reader.opened(part.path)).events()
+    except NoRecord:  # nothing is on the disk yet
+        return set()
+    return {(each["subject"], each["what"]) for each in events if each["kind"] == "task"}
+
+
+@pytest.fixture(scope="module")
+def replay(plant: tuple[str, Path]) -> Iterator[str]:
+    """The address of the page on that record."""
+    command = (MAIN, "replay", "--page", "--port", "0", "--state", str(plant[1]))
+    process = Process(sys.executable, "-c", *command, env={"PYTHONPATH": paths()})
+    try:
+        process.wait_for("Ctrl-C ends it.")
+        yield next(line.split()[-1] for line in process.lines if line.startswith("Page:"))
+        assert process.interrupt() == 0, process.output
+        assert len(process.lines) == 2, process.output
+    finally:
+        process.kill()
+
+
+@pytest.fixture
+def tab(browser: Any) -> Iterator[Any]:
+    context = browser.new_context(locale="en")
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    broken: list[str] = []
+    page.on("pageerror", lambda error: broken.append(str(error)))
+    yield page
+    context.close()
+    assert broken == []
+
+
+def look(tab: Any, address: str) -> None:
+    tab.goto(address)
+    connected(tab)
+
+
+def moved(tab: Any, act: Any) -> str:
+    """Do something that leads to another moment; that moment."""
+    before = tab.text_content(AT)
+    act()
+    tab.wait_for_function(f"document.querySelector(\"{AT}\").textContent !== '{before}'")
+    return str(tab.text_content(AT))
+
+
+def noted(tab: Any) -> str:
+    """The address, once it says the moment that is shown."""
+    tab.wait_for_function("new URLSearchParams(location.search).get('at')?.includes('.')")
+    return str(tab.url)
+
+
+def test_it_opens_at_the_last_failure_with_the_tree_as_it_was(tab: Any, replay: str) -> None:
+    look(tab, f"{replay}&cell=sis_c")
+    tab.wait_for_selector(FAILED)
+    assert "sis_c" in tab.text_content("[data-live='record.event']")
+    assert tab.title() == "Record of arboleda"
+    before = moved(tab, lambda: tab.click("[data-past=event_before]"))
+    tab.wait_for_selector(FAILED, state="detached")
+    tab.wait_for_selector("article.cell.chosen g.node.current")
+    assert moved(tab, lambda: tab.keyboard.press("PageDown")) != before
+    tab.wait_for_selector(FAILED)
+    tab.keyboard.press("PageDown")
+    tab.wait_for_selector("#answer:has-text('no failure after that')")
+
+
+def test_an_address_leads_a_colleague_to_the_same_moment(tab: Any, browser: Any, replay: str) -> None:
+    look(tab, replay)
+    moment = moved(tab, lambda: tab.keyboard.press("ArrowLeft"))
+    tab.wait_for_timeout(600)  # until the address has followed
+    colleague = browser.new_page(locale="es")
+    look(colleague, noted(tab).replace("lang=en", "lang=es"))
+    assert colleague.text_content(AT) == moment
+    colleague.close()
+
+
+def test_the_slider_leads_anywhere_and_it_runs_on_from_there(tab: Any, replay: str) -> None:
+    look(tab, replay)
+    tab.wait_for_selector("#record-marks i")
+    first = moved(tab, lambda: tab.fill("#record-slider", "0"))
+    assert tab.text_content("article.cell.chosen .pill").startswith("idle")
+    tab.select_option("#record-speed", "4")
+    moved(tab, lambda: tab.click("#record-play"))
+    tab.wait_for_selector("g.node.current")
+    tab.click("#record-play")
+    assert tab.text_content(AT) > first
+
+
+def test_the_time_line_and_the_twin_are_of_the_moment(tab: Any, replay: str) -> None:
+    look(tab, replay)
+    show(tab, "events")
+    rows = tab.locator("[data-rows=events] .row")
+    tab.wait_for_selector("[data-rows=events] .row")
+    count = rows.count()
+    moved(tab, lambda: tab.click("[data-rows=events] .row:nth-child(6) a"))
+    tab.wait_for_function(f"document.querySelectorAll('[data-rows=events] .row').length < {count}")
+    show(tab, "twin")
+    tab.wait_for_selector("#twin-robots [data-robot=ra1]")
+    drawn = tab.evaluate("JSON.stringify(arboledaTwin.drawn())")
+    tab.fill("#record-slider", "0")
+    tab.wait_for_function("drawn => JSON.stringify(arboledaTwin.drawn()) !== drawn", arg=drawn)
+
+
+def test_a_task_shows_its_end_and_nothing_can_be_done(tab: Any, replay: str) -> None:
+    look(tab, re.sub("at=[^&]*", "at=task&tab=tasks&task=failed", replay))
+    tab.wait_for_selector("#task g.node.is-failure")
+    assert tab.locator("#stop, form, [data-act], [data-choice]").count() == 0
+    origin = replay.partition("/?")[0]
+    with httpx.Client(base_url=origin, trust_env=False) as client:
+        assert client.get("/api/plant").status_code == 404
+        assert client.get("/", headers={"host": "evil.example"}).status_code == 403
+
+
+@pytest.mark.parametrize(
+    "event",
+    [[], ["go", "x"], ["go", 1e99], ["step", 7], ["task", {"a": 1}], ["__class__"], [["go"], 1]],
+    ids=str,
+)
+def test_events_that_no_button_sends_change_nothing(tab: Any, replay: str, event: list[Any]) -> None:
+    look(tab, replay)
+    tab.evaluate("event => window.emitEvent('arboleda-past', ...event)", event)
+    moved(tab, lambda: tab.click("[data-past=event_before]"))
+
+
+@pytest.mark.requires("axe_playwright_python")
+def test_axe_finds_nothing_on_a_record(replay: str, eye: Callable[[str], Eye]) -> None:
+    eyes = eye(f"{replay}&cell=sis_c")
+    eyes.page.wait_for_selector(FAILED)
+    for part in ("cells", "twin", "tasks", "links", "events"):
+        show(eyes.page, part)
+        eyes.look(part)
+    show(eyes.page, "tasks")
+    eyes.page.click("[data-row=failed] a")
+    eyes.page.wait_for_selector("#task g.node.is-failure")
+    eyes.look("a task that failed")
+    eyes.page.click("[data-past=failure_after]")
+    eyes.page.wait_for_selector("#answer:not(:empty)")
+    eyes.look("no failure after that")
+    assert not eyes.violations, "\n".join(eyes.violations)
+
+
+def test_a_running_plant_leads_into_its_record_and_back(tab: Any, plant: tuple[str, Path]) -> None:
+    look(tab, f"{plant[0]}/?task=failed")
+    tab.click("#task .to-record")
+    tab.wait_for_selector("#record")
+    connected(tab)
+    tab.wait_for_selector("#task g.node.is-failure")
+    tab.click(".record-leave")
+    tab.wait_for_selector("#stop")
+    connected(tab)
+    show(tab, "cells")
+    tab.click("[data-choose=sis_c]")
+    tab.click("article.cell.chosen .to-record")
+    tab.wait_for_selector("#record")
+    connected(tab)
+    tab.wait_for_selector(FAILED)

@@ -1,0 +1,56 @@
+"""What became of a cell is found without reading what happened to nobody."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.model.messages import Verb
+from arboleda.recorder import followed, reader, recorder
+from arboleda.recorder.views import Views
+
+from .recorded import Site
+
+
+@pytest.fixture
+def views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Views:
+    """Of a cell that was held for a minute and a half in the middle of its task, and others that waited."""
+    monkeypatch.setattr(followed, "AT_ONCE_NS", 5 * 10**9)
+    monkeypatch.setattr(
+        recorder, "SHARE", 1e9
+    )  # time runs faster here than where snapshots are bounded by it
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=8.0)
+    site.rig.operate(Verb.HOLD, "sis_a")
+    site.work(s=90.0)
+    site.rig.operate(Verb.RESUME, "sis_a")
+    site.work(s=30.0)
+    site.end()
+    return Views(reader.opened(site.files[0]))
+
+
+def test_every_change_is_found_and_in_order(views: Views, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = [*followed.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
+    monkeypatch.setattr(followed, "AT_ONCE_NS", 10**15)
+    every = [*followed.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
+    assert found == every
+    times = [looked.unix_ns for looked in found]
+    assert times == sorted(times) and len(times) > 12
+    assert {looked.cell["state"] for looked in found} == {"idle", "execute", "holding", "held"}
+
+
+def test_where_nothing_happens_nothing_is_read(views: Views, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[int] = []
+    told = views.told
+
+    def counted(after_ns: int, until_ns: int) -> object:
+        read.append(until_ns - after_ns)
+        return told(after_ns, until_ns)
+
+    monkeypatch.setattr(views, "told", counted)
+    after_ns = views.began_ns + 20 * 10**9
+    assert [*followed.followed(views, "sis_a", after_ns, after_ns + 70 * 10**9)] == []
+    assert read == []
+    assert [*followed.followed(views, "sis_a", after_ns, views.ended_ns)] != []
+    assert 0 < sum(read) < 45 * 10**9
