@@ -40,6 +40,7 @@ from .parts.drivers import DriversPart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
+from .parts.reports import ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
 from .rate import at_rate
@@ -280,7 +281,15 @@ class App:
         logs, view = [RosLog(self.model)], ViewLog(self._past_acts, self.links)
         recorder = Recorder(Writing(self._state.path / FOLDER, beginning, wanted.limits, logs, view=view))
         plant.recorder = recorder
-        return [recorder]
+        return [*self._reports(wanted), recorder]
+
+    def _reports(self, wanted: Recording) -> list[Part]:
+        """What has reports written, where they are wanted."""
+        if not wanted.reports:
+            return []
+        reports = ReportsPart(self._state.path)
+        self.listen(reports.changed)
+        return [reports]
 
     def _build(self, parts: set[str], options: Options) -> None:
         now, bridge, drivers = int(time.time()), None, None

@@ -49,7 +49,8 @@ Offers = Callable[[Sequence[Cell]], Mapping[str, tuple[Recipe, ...]]]
 SHARED = ("paths", "stations", "palletizing")
 SHIPPED = "plant.yaml"
 RECORD: Place = ("record",)
-OFF = "off"
+REPORTS: Place = ("reports",)
+ON, OFF = "on", "off"
 
 
 def load(path: Path | None = None, *, recipes: bool = True) -> PlantModel:
@@ -66,7 +67,8 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
     plant, document = _parsed(*_content(path), recipes=True)
     if document.value(RECORD) == OFF:
         return plant, None
-    return plant, Recording(files=_files(document), limits=_limits(document) or Limits())
+    reports = document.has(REPORTS) and document.value(REPORTS) == ON
+    return plant, Recording(files=_files(document), limits=_limits(document) or Limits(), reports=reports)
 
 
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
@@ -108,7 +110,11 @@ def _files(document: Document) -> PlantFiles:
 
 def _limits(document: Document) -> Limits | None:
     """How much of the record is kept; None, with its problems kept, where that cannot be read."""
-    if not document.has(RECORD) or document.value(RECORD) == OFF:
+    if document.has(RECORD) and document.value(RECORD) == OFF:
+        if document.has(REPORTS) and document.value(REPORTS) == ON:
+            document.problem(REPORTS, "reports are made of the record, which is off")
+        return Limits()
+    if not document.has(RECORD):
         return Limits()
     shape = document.read(RecordShape, RECORD)
     return None if shape is None else Limits(**shape.model_dump())

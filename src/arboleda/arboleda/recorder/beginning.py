@@ -37,12 +37,14 @@ class PlantFiles:
 class Recording:
     """What is recorded of a start beside its events, and within which limits.
 
-    `virtual`: its devices with drivers of their own had virtual boards instead.
+    `virtual`: its devices with drivers of their own had virtual boards instead. `reports`: a report of each
+    task that fails is written.
     """
 
     files: PlantFiles
     virtual: bool = False
     limits: Limits = field(default_factory=Limits)
+    reports: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

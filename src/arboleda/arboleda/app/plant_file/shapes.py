@@ -83,6 +83,7 @@ class FileShape(PlantShape):
     """All of the file: the plant, and what is recorded of it."""
 
     record: Any = None
+    reports: Literal["on", "off"] = "off"
 
 
 class RecordShape(Shape):

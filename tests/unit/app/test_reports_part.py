@@ -1,0 +1,117 @@
+"""Reports that a plant has written by itself: bounded, one at a time, and never in its way."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from arboleda.app import config
+from arboleda.app.parts import reports
+from arboleda.app.parts.reports import MOST_KEPT, MOST_WAITING, ReportsPart
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import TaskChanged, TaskState
+
+SHIPPED = config.load_recorded()[1]
+
+
+def ended(task: str, state: TaskState = TaskState.FAILED, request: str | None = None) -> TaskChanged:
+    return TaskChanged(task=task, text="sis_a 0B 7", cell="sis_a", state=state, request=request)
+
+
+def running(code: str) -> Callable[[str, Path, Path], list[str]]:
+    return lambda task, state, target: [sys.executable, "-c", code, task, str(target)]
+
+
+def until(holds: Callable[[], bool]) -> None:
+    end = time.monotonic() + 20.0
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+WRITES = "import sys; open(sys.argv[2], 'w').write('why'); print('the cause')"
+
+
+def test_a_task_that_failed_gets_its_report_and_no_other_one(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.INFO)
+    part = ReportsPart(tmp_path, running(WRITES), after_s=0.0)
+    part.start()
+    for change in (
+        ended("done", TaskState.DONE),
+        ended("again", request="asked for again"),
+        ended("lot-1"),
+        ended("lot-2"),
+    ):
+        part.changed(change)
+    until(lambda: "why lot-2 failed: the cause" in caplog.text)
+    part.stop()
+    part.stop()
+    folder = tmp_path / reports.FOLDER
+    assert sorted(path.name for path in folder.iterdir()) == ["lot-1.html", "lot-2.html"]
+    assert (folder / "lot-1.html").stat().st_mode & 0o077 == 0
+
+
+def test_a_report_that_cannot_be_made_is_a_line_in_the_log(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    part = ReportsPart(tmp_path, running("import sys; print('a\\nno record'); sys.exit(2)"), after_s=0.0)
+    part.start()
+    part.changed(ended("lot"))
+    until(lambda: "no report of lot: no record" in caplog.text)
+    part.stop()
+
+
+def test_only_so_many_wait_and_the_end_of_the_plant_waits_for_none(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    part = ReportsPart(tmp_path, running("import time; time.sleep(600)"), after_s=0.0)
+    for number in range(MOST_WAITING + 2):
+        part.changed(ended(f"lot-{number}"))
+    assert caplog.text.count("others wait") == 2
+    part.start()
+    until(lambda: (tmp_path / reports.FOLDER).is_dir())
+    began = time.monotonic()
+    part.stop()
+    assert time.monotonic() - began < 10.0
+
+
+def test_the_oldest_reports_go(tmp_path: Path) -> None:
+    folder = tmp_path / reports.FOLDER
+    folder.mkdir()
+    for number in range(MOST_KEPT + 5):
+        (folder / f"old-{number}.html").write_text("")
+    part = ReportsPart(tmp_path, running(WRITES), after_s=0.0)
+    part.start()
+    part.changed(ended("lot"))
+    until(lambda: (folder / "lot.html").exists())
+    part.stop()
+    assert len(list(folder.iterdir())) == MOST_KEPT
+
+
+@pytest.mark.parametrize(("text", "expected"), [("", False), ("reports: off", False), ("reports: on", True)])
+def test_reports_are_as_the_plant_file_says(tmp_path: Path, text: str, expected: bool) -> None:
+    assert SHIPPED is not None
+    file = tmp_path / "plant.yaml"
+    file.write_bytes(SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode())
+    recording = config.load_recorded(file)[1]
+    assert recording is not None and recording.reports is expected
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("reports: yes", "reports: "),
+        ("record: off\nreports: on", "reports are made of the record, which is off"),
+    ],
+)
+def test_wrong_reports_are_a_problem_of_the_plant_file(text: str, problem: str) -> None:
+    assert SHIPPED is not None
+    with pytest.raises(ConfigError, match=problem):
+        config.parse("p.yaml", SHIPPED.files.contents["plant.yaml"] + f"\n{text}\n".encode())
