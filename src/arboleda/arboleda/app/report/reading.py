@@ -13,8 +13,8 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.incident import Incident, Reader
 from arboleda.recorder.reader import Record, opened
-from arboleda.recorder.recorder import FLUSH_S
 from arboleda.recorder.replay import plant_of
+from arboleda.recorder.writing import FLUSH_S
 
 from ..recorded_plant import model_of
 
