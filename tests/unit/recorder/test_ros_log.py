@@ -14,10 +14,11 @@ from mcap.reader import make_reader
 from mcap.records import Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Report, Verb
 from arboleda.recorder import cdr, recorder, ros_types
 from arboleda.recorder.ros_log import DIAGNOSTICS, RosLog
 from arboleda.recorder.ros_types import JOINT_STATE, STRING, UINT8
+from arboleda.recorder.steps import Step
 from arboleda.testing.plants import shipped
 from arboleda.views.diagnostics import diagnostics
 
@@ -146,3 +147,15 @@ def test_diagnostics_of_any_texts_are_read_back(statuses: list[cdr.Status]) -> N
 @given(TEXTS)
 def test_a_text_is_read_back(text: str) -> None:
     assert decoded(STRING, cdr.string(text)).data == text
+
+
+@pytest.mark.parametrize(
+    "report",
+    [
+        Report(at=1.0, robot="nobody", q=(0.0,)),
+        Report(at=1.0, robot="ra1", q=(0.0,)),
+        Report(at=1.0, robot="rm_sis_a", node=999),
+    ],
+)
+def test_a_report_that_means_nothing_is_passed_over(log: RosLog, report: Report) -> None:
+    assert list(log.stepped(Step(0, 1.0, (report,), (), {}))) == []

@@ -42,7 +42,7 @@ class RosLog:
         """What robots have reported, and what became of tasks."""
         self._ns = step.unix_ns
         for event in step.events:
-            if isinstance(event, Report):
+            if isinstance(event, Report) and event.robot in self._robots:
                 yield from self._robots[event.robot].heard(event, step.unix_ns)
         for message in step.messages:
             if isinstance(message, TaskChanged):
@@ -90,7 +90,9 @@ class _Topics:
             self.channels.append(ros_types.channel(self._joints, ros_types.JOINT_STATE))
 
     def heard(self, report: Report, unix_ns: int) -> Iterator[Message]:
-        """What is new in a report."""
+        """What is new in a report; nothing of one that means nothing to the plant, either."""
+        if self._robot.objection(report) is not None:
+            return
         if report.state is not None and report.state != self._said:
             self._said = int(report.state)
             yield self._state, unix_ns, cdr.uint8(self._said)
