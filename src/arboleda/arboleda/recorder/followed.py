@@ -12,6 +12,8 @@ from .views import Views
 NEEDED = ("state", "task", "tree")  # of a cell's row
 AT_ONCE_NS = 60 * 10**9  # of so long all that was told is read
 
+At = tuple[int, Rows]
+
 
 @dataclass(frozen=True)
 class Looked:
@@ -29,16 +31,24 @@ def followed(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[
     Where a long time begins and ends with the same rows, nothing is looked for in between: each has the
     moment at which it last changed.
     """
+    first = {} if after_ns < views.began_ns else _of(views.rows(after_ns), cell)
+    yield from _between(views, cell, (after_ns, first), (until_ns, _of(views.rows(until_ns), cell)))
+
+
+def _between(views: Views, cell: str, first: At, last: At) -> Iterator[Looked]:
+    """`first` and `last` are the ends of a time, each with the rows of then."""
+    (after_ns, before), (until_ns, after) = first, last
     if until_ns - after_ns <= AT_ONCE_NS:
-        yield from _changes(views, cell, after_ns, until_ns)
-    elif after_ns < views.began_ns or _of(views.rows(after_ns), cell) != _of(views.rows(until_ns), cell):
+        yield from _changes(views, cell, first, until_ns)
+    elif before != after:
         middle_ns = (after_ns + until_ns) // 2
-        yield from followed(views, cell, after_ns, middle_ns)
-        yield from followed(views, cell, middle_ns, until_ns)
+        middle = (middle_ns, _of(views.rows(middle_ns), cell))
+        yield from _between(views, cell, first, middle)
+        yield from _between(views, cell, middle, last)
 
 
-def _changes(views: Views, cell: str, after_ns: int, until_ns: int) -> Iterator[Looked]:
-    known: Rows = {} if after_ns < views.began_ns else _of(views.rows(after_ns), cell)
+def _changes(views: Views, cell: str, first: At, until_ns: int) -> Iterator[Looked]:
+    after_ns, known = first[0], dict(first[1])
     made = {key: value_from(row) for key, row in known.items()}
     for told in views.told(after_ns, until_ns):
         news = {key: {**known.get(key, {}), **row} for key, row in _of(told.rows, cell).items()}
