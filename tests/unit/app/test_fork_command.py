@@ -96,6 +96,13 @@ def test_a_fork_needs_a_time_where_nothing_is_changed(failed: Path) -> None:
         said(failed, "--healthy", "--task", "other", status=2)
 
 
+def test_a_time_outside_the_record_is_refused_with_the_times_that_it_has(failed: Path) -> None:
+    with pytest.raises(ConfigError, match=f"before the first step of the record, of {stamp(0.0)[:10]}"):
+        said(failed, "--fork-at", stamp(-60.0), status=2)
+    with pytest.raises(ConfigError, match=f"after the last step of the record, of {stamp(0.0)[:10]}"):
+        said(failed, "--fork-at", stamp(3600.0), status=2)
+
+
 def test_a_recipe_stands_for_the_file_of_its_name(failed: Path, tmp_path: Path) -> None:
     other = tmp_path / "mine.py"
     other.write_text("")

@@ -9,6 +9,7 @@ from typing import Any
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
+from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Builders
@@ -21,6 +22,7 @@ from arboleda.recorder.troubles import Trouble, Troubles
 from arboleda.simulator.takeover import taken_over
 from arboleda.simulator.world import World
 
+from ..record_command import moment
 from ..simulate.plants import ELSEWHERE
 from . import again
 from .builders import Switched
@@ -82,6 +84,8 @@ def forked(beginning: Beginning, steps: Iterable[Recorded], asked: Asked, words:
     parted = _execute(plant, rest, asked, found, troubles)
     if found.difference is not None:
         return found
+    if not found.steps or (parted[0] is None and not asked.changed):
+        raise _outside(found, parted[0])
     builders.switch(asked.builders)
     first, *others = parted
     inputs: list[tuple[float, tuple[Event, ...]]] = []
@@ -98,6 +102,14 @@ def forked(beginning: Beginning, steps: Iterable[Recorded], asked: Asked, words:
     found.troubles = [each for each in troubles.of(found.until) if each.ends > found.at]
     found.world = _go_on(plant, found, inputs, asked, words)
     return found
+
+
+def _outside(found: Forked, first: Recorded | None) -> ConfigError:
+    """The record has nothing before the fork, or nothing after it."""
+    when = moment(found.unix_ns if first is None else first.unix_ns, "milliseconds")
+    if first is None:
+        return ConfigError((f"a fork after the last step of the record, of {when}, has nothing after it",))
+    return ConfigError((f"a fork before the first step of the record, of {when}, has no plant to fork",))
 
 
 def _supervised(model: PlantModel) -> frozenset[str]:
