@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -38,7 +39,8 @@ def written(folder: Path, plant_file: Path | None, text: str, act: tuple[float, 
     plant = world.plant
     assert isinstance(plant, TapedPlant)
     path = folder / "7-0001.mcap"
-    part = PartFile(path, plant.beginning, 1, plant.tape[0].unix_ns)
+    beginning = replace(plant.beginning, simulated=False)  # as of a plant that runs
+    part = PartFile(path, beginning, 1, plant.tape[0].unix_ns)
     for step in plant.tape:
         part.put(TOPIC, step.unix_ns, as_json(step))
     part.close()

@@ -8,7 +8,8 @@ from arboleda.recorder import reader
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.files import parts_in
 from arboleda.recorder.replay import plant_of, replayed
-from arboleda.recorder.simulated import SECOND, SimulatedRecorder
+from arboleda.recorder.simulated import SimulatedRecorder
+from arboleda.recorder.tape import SECOND
 from arboleda.recorder.views import Views
 from arboleda.simulator.world import PLANT, World
 from arboleda.testing.plants import shipped

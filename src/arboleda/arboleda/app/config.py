@@ -71,6 +71,12 @@ def load_recorded(path: Path | None = None) -> tuple[PlantModel, Recording | Non
     return plant, Recording(files=_files(document), limits=_limits(document) or Limits(), reports=reports)
 
 
+def load_with_files(path: Path | None = None) -> tuple[PlantModel, PlantFiles]:
+    """The same plant, and all that was read for it."""
+    plant, document = _parsed(*_content(path), recipes=True)
+    return plant, _files(document)
+
+
 def parse(name: str, content: bytes, folder: Path | None = None, *, recipes: bool = True) -> PlantModel:
     """The same for the content of a file that problems call `name`; `folder` is where those beside it are."""
     return _parsed(name, content, folder, recipes=recipes)[0]

@@ -13,6 +13,7 @@ from arboleda.recorder.errors import NoRecord
 
 from . import config
 from .rate import at_rate
+from .simulate.plants import ELSEWHERE
 
 
 def model_of(beginning: Beginning, other: Path | None = None) -> PlantModel:
@@ -27,6 +28,8 @@ def model_of(beginning: Beginning, other: Path | None = None) -> PlantModel:
 
 def as_it_ran(beginning: Beginning, model: PlantModel) -> PlantModel:
     """The same with the boards and at the rate that the recorded plant had."""
+    if beginning.simulated:
+        return model.on_boards(*ELSEWHERE)
     return at_rate(model.on_boards(Link.DRIVER) if beginning.virtual else model, beginning.rate)
 
 

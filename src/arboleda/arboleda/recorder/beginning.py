@@ -33,6 +33,9 @@ class PlantFiles:
     contents: Mapping[str, bytes] = field(default_factory=dict)
 
 
+NO_FILES = PlantFiles(plant="plant.yaml")  # of a plant that no file describes
+
+
 @dataclass(frozen=True, kw_only=True)
 class Recording:
     """What is recorded of a start beside its events, and within which limits.
@@ -49,7 +52,10 @@ class Recording:
 
 @dataclass(frozen=True, kw_only=True)
 class Beginning:
-    """A start: which plant, what was remembered of earlier ones, and when, on the plant's clock."""
+    """A start: which plant, what was remembered of earlier ones, and when, on the plant's clock.
+
+    `virtual`: its devices with drivers had virtual boards instead. `simulated`: all of its devices had.
+    """
 
     plant: str
     version: str
@@ -60,6 +66,7 @@ class Beginning:
     memory: Mapping[Fact, Mapping[str, str]]
     kept: Sequence[KeptTask]
     files: PlantFiles
+    simulated: bool = False
 
     def data(self) -> bytes:
         """All but the files, in JSON."""
@@ -71,6 +78,7 @@ class Beginning:
                 "now": self.now,
                 "rate": self.rate,
                 "virtual": self.virtual,
+                "simulated": self.simulated,
                 "memory": plain(self.memory),
                 "kept": plain(list(self.kept)),
                 "file": self.files.plant,
@@ -94,6 +102,7 @@ def beginning_from(data: bytes, contents: Mapping[str, bytes]) -> Beginning:
             memory=memory,
             kept=[kept_from(each) for each in rows["kept"]],
             files=files,
+            simulated=bool(rows.get("simulated", False)),
         )
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise NoRecord("its beginning is not as a plant writes it") from error

@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from arboleda.core.plant import Plant
-from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import twin_view, view
 
 from .beginning import Limits, PlantFiles
 from .ros_log import RosLog
-from .state import state_of
 from .steps import Step
-from .tape import began
+from .tape import SECOND, ToldPlant
 from .view_log import Seen
 from .writing import Writing
 
-SECOND = 1_000_000_000
+
+class Unwritten(BaseException):
+    """The record cannot be written, `error` says why; an Exception would be laid to the plant."""
+
+    def __init__(self, error: OSError) -> None:
+        self.error = error
 
 
 class SimulatedRecorder:
     """Makes the plants of a world (`World(make_plant=...)`), each start with a record of its own in `folder`.
 
-    `began_ns` is what the clock on the wall says where the world's time is 0.
+    A start that never made a step has none. `began_ns` is what the clock on the wall says where the world's
+    time is 0. Unwritten leaves a step that cannot be written.
     """
 
     def __init__(self, folder: Path, files: PlantFiles, limits: Limits, began_ns: int = 0) -> None:
@@ -33,27 +37,18 @@ class SimulatedRecorder:
         self._files = files
         self._limits = limits
         self._began_ns = began_ns
-        self._now = 0.0
-        self._shown = self._turn = -1
+        self._now_ns = began_ns
+        self._shown = -1
+        self._plant: ToldPlant | None = None
         self._writing: Writing | None = None
 
     def plant(self, model: PlantModel, **made_of: Any) -> Plant:
         """The plant of a start that begins now; the record of the one before ends."""
         self.close()
-        self._now, self._shown, self._turn = made_of["now"], -1, 0
-        beginning = began(model, self._files, **made_of)
-        logs = [RosLog(model)]
-        self._writing = Writing(self._folder, beginning, self._limits, logs, unix_ns=self._unix_ns)
-        self._writing.open()
-        return _Recorded(self, model, made_of)
-
-    def stepped(self, plant: Plant, now: float, events: Sequence[Event], messages: Sequence[Any]) -> None:
-        """Write a step, and what screens would see after it."""
-        self._now, self._turn = now, self._turn + 1
-        self._put(Step(self._unix_ns(), now, events, messages, state_of(plant, self._turn)))
-        if plant.version != self._shown:
-            self._shown = plant.version
-            self._put(Seen(self._unix_ns(), view.snapshot(plant), twin_view.positions(plant)))
+        self._now_ns, self._shown = self._began_ns + round(made_of["now"] * SECOND), -1
+        told = partial(ToldPlant, tell=self._stepped, files=self._files, began_ns=self._began_ns)
+        self._plant = told(model, **made_of)
+        return self._plant
 
     def close(self) -> None:
         """End the record. Idempotent."""
@@ -61,25 +56,29 @@ class SimulatedRecorder:
             self._writing.close()
             self._writing = None
 
-    def _put(self, item: Step | Seen) -> None:
-        assert self._writing is not None
-        for _ in self._writing.put(item):
+    def _stepped(self, step: Step) -> None:
+        """Write a step, and what screens would see after it."""
+        plant = self._plant
+        assert plant is not None
+        try:
+            writing = self._writing or self._opened(plant)
+            self._now_ns = step.unix_ns
+            self._put(writing, step)
+            if plant.version != self._shown:
+                self._shown = plant.version
+                self._put(writing, Seen(step.unix_ns, view.snapshot(plant), twin_view.positions(plant)))
+        except OSError as error:
+            raise Unwritten(error) from error
+
+    def _opened(self, plant: ToldPlant) -> Writing:
+        logs = [RosLog(plant.model)]
+        self._writing = Writing(
+            self._folder, plant.beginning, self._limits, logs, unix_ns=lambda: self._now_ns
+        )
+        self._writing.open()
+        return self._writing
+
+    def _put(self, writing: Writing, item: Step | Seen) -> None:
+        for _ in writing.put(item):
             pass
-        self._writing.tend()
-
-    def _unix_ns(self) -> int:
-        return self._began_ns + round(self._now * SECOND)
-
-
-class _Recorded(Plant):
-    """A plant that tells of each of its steps."""
-
-    def __init__(self, recorder: SimulatedRecorder, model: PlantModel, made_of: dict[str, Any]) -> None:
-        super().__init__(model, **made_of)
-        self._recorder = recorder
-
-    def step(self, now: float, events: Iterable[Event]) -> list[Any]:
-        events = tuple(events)
-        messages = super().step(now, events)
-        self._recorder.stepped(self, now, events, tuple(messages))
-        return messages
+        writing.tend()

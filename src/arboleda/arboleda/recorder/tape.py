@@ -1,8 +1,8 @@
-"""A record that is kept in memory: what simulated plants did, for whatever reads records."""
+"""What simulated plants did, for whatever reads records: each step is told, or kept in memory."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from arboleda import __version__
@@ -10,15 +10,59 @@ from arboleda.core.plant import Plant
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
 
-from .beginning import Beginning, PlantFiles
+from .beginning import NO_FILES, Beginning, PlantFiles
 from .state import state_of
 from .steps import Recorded, Step, hash_of, outcome
 
-NO_FILES = PlantFiles(plant="plant.yaml")
+SECOND = 1_000_000_000
 
 
-def began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:
-    """What the record of a simulated plant begins with."""
+class ToldPlant(Plant):
+    """A simulated plant that tells what each of its steps was made of and what it did.
+
+    `beginning` is what a record of it begins with; `began_ns` what the clock on the wall says where its own
+    is 0.
+    """
+
+    def __init__(
+        self,
+        model: PlantModel,
+        *,
+        tell: Callable[[Step], None],
+        files: PlantFiles = NO_FILES,
+        began_ns: int = 0,
+        **made_of: Any,
+    ) -> None:
+        super().__init__(model, **made_of)
+        self.beginning = _began(model, files, **made_of)
+        self._tell = tell
+        self._began_ns = began_ns
+        self._turn = 0
+
+    def step(self, now: float, events: Iterable[Event]) -> list[Any]:
+        events = tuple(events)
+        messages = super().step(now, events)
+        self._turn += 1
+        unix_ns = self._began_ns + round(now * SECOND)
+        self._tell(Step(unix_ns, now, events, tuple(messages), state_of(self, self._turn)))
+        return messages
+
+
+class TapedPlant(ToldPlant):
+    """A plant that keeps its steps."""
+
+    def __init__(self, model: PlantModel, *, files: PlantFiles = NO_FILES, **made_of: Any) -> None:
+        self.tape: list[Step] = []
+        super().__init__(model, tell=self.tape.append, files=files, **made_of)
+
+    def steps(self) -> Iterator[Recorded]:
+        """All of them, as they are read from a file; their Unix time is the plant's own."""
+        for step in self.tape:
+            said = outcome(step.messages, step.state)
+            yield Recorded(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))
+
+
+def _began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:
     return Beginning(
         plant=model.name,
         version=__version__,
@@ -29,26 +73,5 @@ def began(model: PlantModel, files: PlantFiles, **made_of: Any) -> Beginning:
         memory={fact: dict(kept) for fact, kept in (made_of.get("memory") or {}).items()},
         kept=tuple(made_of.get("kept", ())),
         files=files,
+        simulated=True,
     )
-
-
-class TapedPlant(Plant):
-    """A plant that keeps what each of its steps was made of and what it did."""
-
-    def __init__(self, model: PlantModel, *, files: PlantFiles = NO_FILES, **made_of: Any) -> None:
-        super().__init__(model, **made_of)
-        self.tape: list[Step] = []
-        self.beginning = began(model, files, **made_of)
-
-    def step(self, now: float, events: Iterable[Event]) -> list[Any]:
-        events = tuple(events)
-        messages = super().step(now, events)
-        state = state_of(self, len(self.tape) + 1)
-        self.tape.append(Step(round(now * 1e9), now, events, tuple(messages), state))
-        return messages
-
-    def steps(self) -> Iterator[Recorded]:
-        """All of them, as they are read from a file; their Unix time is the plant's own."""
-        for step in self.tape:
-            said = outcome(step.messages, step.state)
-            yield Recorded(step.unix_ns, step.now, tuple(step.events), said, hash_of(said))

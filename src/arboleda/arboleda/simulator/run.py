@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
+from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
@@ -55,8 +56,11 @@ class Simulation:
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,
+        make_plant: Callable[..., Plant] | None = None,
     ) -> None:
-        self.watched = Watched(model, invariants=invariants, keep=keep, tell=tell, recipes=recipes)
+        self.watched = Watched(
+            model, invariants=invariants, keep=keep, tell=tell, recipes=recipes, make_plant=make_plant
+        )
         self.world, self.trace = self.watched.world, self.watched.trace
         self.result = Result(seed=seed, faults=self.watched.faults)
         self._plan = plan

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
+from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
@@ -46,8 +47,9 @@ class Watched:
         keep: bool = False,
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,
+        make_plant: Callable[..., Plant] | None = None,
     ) -> None:
-        self.world = World(model, recipes=recipes)
+        self.world = World(model, recipes=recipes, make_plant=make_plant)
         self._start = self.world.now
         self.faults: list[Fault] = []
         general = is_general(model)

@@ -42,6 +42,7 @@ from arboleda.wire.transport import Connection, Delivery, Publication
 from .disk import Content, Disk, DiskFull, is_kept
 from .network import Broker, Client, Hop, Line
 
+START_S = 100.0  # what its clock says where a world begins
 PLANT, BRIDGE = "plant", "bridge"
 ENDS_S = 6.0  # how long a plant that ends waits for its robots to stand
 BY_HAND_S = 1.0  # from a robot put right to the word that it is
@@ -150,7 +151,7 @@ class World:
         self,
         model: PlantModel,
         *,
-        now: float = 100.0,
+        now: float = START_S,
         epoch: int = 1000,
         watchers: Iterable[Callable[[], None]] = (),
         carriers: Iterable[Carry] = (),

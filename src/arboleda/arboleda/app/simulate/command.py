@@ -21,6 +21,7 @@ arboleda simulate --plant my_plant.yaml      your plant
 arboleda simulate --drawn-plants             a plant of its own for each seed
 arboleda simulate --until-failure            seed after seed until something breaks
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
+arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
 arboleda simulate --seeds 500 --json out.json
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
 
@@ -63,7 +64,11 @@ Json = Annotated[
 ]
 Record = Annotated[
     Path | None,
-    typer.Option("--record", metavar="FILE", help="Write all that happens in one seed, an object per line."),
+    typer.Option(
+        "--record",
+        metavar="FILE",
+        help="Write one seed: to FILE.mcap as a flight record, else all that happens, an object per line.",
+    ),
 ]
 Trace = Annotated[bool, typer.Option("--trace", help="Print all that happens in one seed.")]
 Jobs = Annotated[
@@ -91,6 +96,7 @@ def simulate(
     jobs: Jobs = None,
 ) -> None:
     from . import one, screen  # the simulator takes a while to load, and only this command needs it
+    from .flight import SUFFIX, check_new
     from .many import Many
     from .request import Request
     from .workers import processors
@@ -109,9 +115,10 @@ def simulate(
         faults=faults,
         until_failure=until_failure,
     )
-    for file in (json, record):
-        if file is not None:
-            check_writable(file)
+    if json is not None:
+        check_writable(json)
+    if record is not None:
+        (check_new if record.suffix == SUFFIX else check_writable)(record)
     console = screen.console()
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)

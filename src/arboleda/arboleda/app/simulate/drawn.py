@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from arboleda.model.errors import ConfigError
+from arboleda.recorder.beginning import PlantFiles
 from arboleda.simulator import plants
 
 from .. import config
@@ -29,9 +30,9 @@ class Drawn:
 
 def loaded(file: dict[str, Any]) -> Plant:
     """The plant of such a content; ConfigError as for a user's file."""
-    return Plant(
-        declared=config.parse(f"{file.get('name', 'plant')}.yaml", as_yaml(file).encode()), file=file
-    )
+    name, content = f"{file.get('name', 'plant')}.yaml", as_yaml(file).encode()
+    files = PlantFiles(plant=name, contents={name: content})
+    return Plant(declared=config.parse(name, content), file=file, files=files)
 
 
 def as_yaml(file: dict[str, Any]) -> str:

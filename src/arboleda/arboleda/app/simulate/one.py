@@ -10,7 +10,7 @@ from rich.text import Text
 
 from arboleda.simulator.run import Result
 
-from . import report, story, summary
+from . import flight, report, story, summary
 from .many import BROKEN, HELD, INTERRUPTED
 from .request import Request
 from .tally import Tally
@@ -21,8 +21,12 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     """Runs the first seed; the exit status."""
     if trace:
         story.plant(console, request.plants.of(request.first))
+    flown: list[str] = []
     try:
-        result = _told(request, trace=trace, record=record)
+        if record is not None and record.suffix == flight.SUFFIX:
+            result = _flown(request, trace=trace, record=record, said=flown)
+        else:
+            result = _told(request, trace=trace, record=record)
     except KeyboardInterrupt:
         console.print(Text("interrupted", style="yellow"))
         return INTERRUPTED
@@ -33,9 +37,20 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     if file is not None:
         summary.write(file, request, tally, None, complete=True)
     story.breach(console, result, request.setting.plant(result.seed).name)
+    for line in flown:
+        console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)
     console.print(report.verdict(tally), soft_wrap=True)
     return BROKEN if result.broken else HELD
+
+
+def _flown(request: Request, *, trace: bool, record: Path, said: list[str]) -> Result:
+    """Runs it with a flight record; `said` gets a line for each file."""
+    tell = Teller(printed=True, file=None) if trace else None
+    with flight.recorded(record, request.plants.of(request.first)) as flown:
+        result = request.setting.run(request.first, tell=tell, make_plant=flown.make_plant)
+    said += flown.said
+    return result
 
 
 def _told(request: Request, *, trace: bool, record: Path | None) -> Result:

@@ -8,16 +8,21 @@ from functools import cached_property
 from typing import Any, Protocol
 
 from arboleda.model.plant_model import Link, PlantModel
+from arboleda.recorder.beginning import NO_FILES, PlantFiles
 
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # who has no board on MQTT, and gets a virtual one
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plant:
-    """One plant: `declared` as its file says it, `file` its content where no file of the user has it."""
+    """One plant: `declared` as its file says it, `file` its content where no file of the user has it.
+
+    `files` are those that it was read from, for a record of it.
+    """
 
     declared: PlantModel
     file: dict[str, Any] | None = None
+    files: PlantFiles = NO_FILES
 
     @property
     def name(self) -> str:

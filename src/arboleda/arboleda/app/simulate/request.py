@@ -13,6 +13,7 @@ from pathlib import Path
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.beginning import PlantFiles
 from arboleda.simulator.climate import BadFaults
 from arboleda.simulator.levels import LEVELS
 
@@ -76,8 +77,8 @@ class Request:
 
     @property
     def _by_files(self) -> tuple[Plant, ...]:
-        models = (config.load(self.plant),) if self.plant else (shared(), config.load())
-        plants = tuple(Plant(declared=model) for model in models)
+        known = [config.load_with_files(self.plant)] if self.plant else [_shared(), config.load_with_files()]
+        plants = tuple(Plant(declared=model, files=read) for model, read in known)
         wanted = self.told.plant if self.told else None
         if wanted is None:
             return plants
@@ -136,5 +137,9 @@ class Request:
 
 def shared() -> PlantModel:
     """The second packaged plant: what the shipped one does not use."""
+    return _shared()[0]
+
+
+def _shared() -> tuple[PlantModel, PlantFiles]:
     with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as path:
-        return config.load(path)
+        return config.load_with_files(path)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.core.plant import Plant as CorePlant
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
@@ -17,6 +18,7 @@ from .plants import Plant, Plants
 
 Tell = Callable[[str], None]
 Tick = Callable[[], None]
+MakePlant = Callable[..., CorePlant]
 
 copyreg.pickle(Broken, lambda broken: (Broken, (broken.invariant, broken.sentence)))
 
@@ -45,11 +47,17 @@ class Setting:
         return Climate.draw(self.plant(seed), seed, self.level)
 
     def run(
-        self, seed: int, *, keep: bool = False, tell: Tell | None = None, tick: Tick | None = None
+        self,
+        seed: int,
+        *,
+        keep: bool = False,
+        tell: Tell | None = None,
+        tick: Tick | None = None,
+        make_plant: MakePlant | None = None,
     ) -> Result:
         """One seed from its first step to rest; `keep` and `tell` are those of the trace.
 
-        `tick` is called for every minute that it simulates.
+        `tick` is called for every minute that it simulates, `make_plant` makes the plant of each start.
         """
         drawn = self.climate(seed).faults
 
@@ -58,17 +66,13 @@ class Setting:
                 tick()
             return drawn(minute)
 
-        simulation = self._simulation(self.plants.of(seed), seed, plan, keep=keep, tell=tell)
+        model = self.plant(seed)
+        simulation = Simulation(model, seed, plan, keep=keep, tell=tell, make_plant=make_plant)
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
         """A seed on such a plant with these faults, for so long."""
-        return self._simulation(plant, seed, plan, keep=keep).run(seconds=seconds)
-
-    def _simulation(
-        self, plant: Plant, seed: int, plan: Plan, *, keep: bool = False, tell: Tell | None = None
-    ) -> Simulation:
-        return Simulation(plant.model, seed, plan, keep=keep, tell=tell)
+        return Simulation(plant.model, seed, plan, keep=keep).run(seconds=seconds)
 
 
 def rules() -> dict[str, str]:

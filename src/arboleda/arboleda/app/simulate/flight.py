@@ -1,0 +1,66 @@
+"""One seed as flight records: of each start of its plant one, in files beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from arboleda.model.counting import counted
+from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.recorder import copying, reader
+from arboleda.recorder.beginning import Limits
+from arboleda.recorder.files import parts_in
+from arboleda.recorder.simulated import SimulatedRecorder, Unwritten
+from arboleda.recorder.tape import SECOND
+from arboleda.simulator.world import START_S
+
+from ..user_file import check_writable
+from .plants import Plant
+from .setting import MakePlant
+
+SUFFIX = ".mcap"
+NOON_NS = 946_728_000 * SECOND  # 2000-01-01 12:00 UTC: a seed's record has the same times always
+ALL = Limits(megabytes=1e6, days=1e6)
+
+
+def check_new(file: Path) -> None:
+    """ConfigError now rather than after minutes of work, where `file` is there or cannot be."""
+    if file.exists():
+        raise ConfigError((f"{file}: is there already; name another file",))
+    check_writable(file)
+    file.unlink()
+
+
+@dataclass
+class Flight:
+    """What is recorded: `make_plant` for the world; once it is over, `said` has a line for each file."""
+
+    make_plant: MakePlant
+    said: list[str] = field(default_factory=list)
+
+
+@contextmanager
+def recorded(file: Path, plant: Plant) -> Iterator[Flight]:
+    """Have the first start of a plant in `file`, later ones in files beside it; ArboledaError."""
+    with TemporaryDirectory(prefix=".arboleda-", dir=file.parent) as made:
+        recorder = SimulatedRecorder(Path(made), plant.files, ALL, NOON_NS - round(START_S * SECOND))
+        flight = Flight(recorder.plant)
+        try:
+            yield flight
+            recorder.close()
+        except Unwritten as lost:
+            raise ArboledaError(f"{file}: cannot be written: {lost.error.strerror or lost.error}") from lost
+        flight.said += _copied(Path(made), file)
+
+
+def _copied(made: Path, file: Path) -> Iterator[str]:
+    firsts = [part.path for part in parts_in(made) if part.number == 1]
+    for number, first in enumerate(firsts, start=1):
+        record = reader.opened(first)
+        target = file if number == 1 else file.with_name(f"{file.stem}-{number}{SUFFIX}")
+        steps = copying.as_mcap(record, target, record.numbers)
+        of = f", of start {number} of {len(firsts)}" if len(firsts) > 1 else ""
+        yield f"{target} has {counted(steps, 'step')}{of}"
