@@ -275,7 +275,7 @@ def test_the_commands_of_each_step_of_a_tree_are_counted(world, record):
     world.advance(1)
     verb(world, Verb.HOLD)
     verb(world, Verb.RESUME, wait_s=0.1)
-    assert [(leaf.name, count) for leaf, count in record.cells["sis_a"].sends.items()] == [
+    assert [(leaf.name, count) for (leaf, _), count in record.cells["sis_a"].sends.items()] == [
         ("drive path 0B", 2)
     ]
 
