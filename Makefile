@@ -45,13 +45,13 @@ drawn-campaign: install  ## simulate 500 plants that are drawn from seeds, with 
 	$(BIN)/python scripts/campaign drawn.json $(DRAWN_SEEDS)
 
 devices-campaign: install  ## simulate the examples of cells of devices with every kind of fault; DEVICE_SEEDS=... for more seeds
-	@for plant in lab_bench assembly machine_tending; do \
+	@for plant in lab_bench assembly machine_tending own_tree; do \
 		$(BIN)/arboleda simulate --plant examples/$$plant/plant.yaml --seeds $(DEVICE_SEEDS) --cycles $(DEVICE_CYCLES) || exit 1; \
 	done
 
 crash-campaign: install  ## simulate plants that die again and again, also of power cuts; CRASH_SEEDS=... for more seeds
 	$(BIN)/arboleda simulate --faults crashes --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES)
-	@for plant in lab_bench machine_tending; do \
+	@for plant in lab_bench machine_tending own_tree; do \
 		$(BIN)/arboleda simulate --faults crashes --plant examples/$$plant/plant.yaml --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES) || exit 1; \
 	done
 

@@ -11,6 +11,7 @@ setup(
             "dashboard/assets/*",
             "dashboard/words/*.yaml",
             "examples/*/*.py",
+            "examples/*/*.xml",
             "examples/*/*.yaml",
             "examples/*/*/*.py",
             "examples/*/*/*.urdf",

@@ -26,6 +26,7 @@ TOLD_BY = (
     "recipes",
     "drivers",
     "views",
+    "bt_xml",
     "recorder",
     "wire",
     "app.parts",

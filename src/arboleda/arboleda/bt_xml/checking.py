@@ -30,11 +30,17 @@ class Checked:
     unknown: Mapping[str, Place]
 
 
-def check(forest: Forest, findings: Findings, known: Mapping[str, Kind] | None = None) -> Checked:
+def check(
+    forest: Forest,
+    findings: Findings,
+    known: Mapping[str, Kind] | None = None,
+    *,
+    leaves_are_checked_later: bool = False,
+) -> Checked:
     """Keeps all that is wrong. `known`: the kinds of nodes of one's own that there are, and no others; None:
-    there may be any, and what the files declare counts.
+    there may be any, and what the files declare counts, unless they are checked later, in a cell.
     """
-    checker = _Checker(forest, findings, known)
+    checker = _Checker(forest, findings, {} if leaves_are_checked_later else known, leaves_are_checked_later)
     for tree in forest.trees.values():
         for node in tree.root.iterate():
             checker.look_at(node)
@@ -55,6 +61,7 @@ class _Checker:
     forest: Forest
     findings: Findings
     known: Mapping[str, Kind] | None = None
+    is_open: bool = False
     number: int = 0
     unknown: dict[str, Place] = field(default_factory=dict)
 
@@ -90,7 +97,8 @@ class _Checker:
             return
         kind = self.kind(node)
         if kind is None:
-            self._check_unknown(node)
+            if not self.is_open:
+                self._check_unknown(node)
             return
         if kind.ports is None and kind.category in (Category.ACTION, Category.CONDITION):
             self.unknown.setdefault(node.kind, node.place)

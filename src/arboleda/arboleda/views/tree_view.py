@@ -102,7 +102,8 @@ def kind(node: Behaviour) -> str:
     """One word of KINDS, OWN for a node of a user's own."""
     known = _KIND_OF.get(type(node))
     if known is None:
-        known = next((KINDS[base] for base in type(node).__mro__ if base in KINDS), OWN)
+        own = getattr(node, "sign", OWN)  # of trees from files, which say it themselves
+        known = next((KINDS[base] for base in type(node).__mro__ if base in KINDS), own)
         _KIND_OF[type(node)] = known
     return known
 

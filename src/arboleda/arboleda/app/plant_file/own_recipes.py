@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -13,6 +14,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from arboleda.bt_xml import checking, reading, runnable
+from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
@@ -27,7 +31,7 @@ from .shapes import NAME_RULE, WORDS, is_name
 from .used import LONGEST, Spot, Used, Watch, Written, said
 
 SECTION: Place = ("uses",)
-ENDING = ".py"
+ENDING, TREES = ".py", ".xml"
 LARGEST = 256 * 1024  # bytes of a file
 TAKEN = tuple(each.name for each in RECIPES)
 LINKS = tuple(each.value for each in Link)
@@ -47,6 +51,9 @@ def imported(document: Document, words: Sequence[str], watch: Watch) -> Used:
     used = Used(watch=watch)
     for index, word in enumerate(words):
         place = (*SECTION, index)
+        if word.endswith(TREES):
+            _trees(document, place, word, used)
+            continue
         is_file = word.endswith(ENDING) or "/" in word
         module = (_file if is_file else _module)(document, place, word, used, watch)
         if module is None:
@@ -84,6 +91,48 @@ def _file(document: Document, place: Place, word: str, used: Used, watch: Watch)
         return None
     _check_twice(document, known_as, source)
     return module
+
+
+def _trees(document: Document, place: Place, word: str, used: Used) -> None:
+    """The recipe of a file of trees; nothing of it is executed."""
+    if document.folder is None:
+        document.problem(place, "this plant file lies in no folder, so no trees can lie beside it")
+        return
+    known_as = str(document.folder / word)
+
+    def fetch(file: str, path: str) -> tuple[str, bytes]:
+        if "\0" in path:
+            raise ConfigError(("this is not the name of a file",))
+        found = os.path.normpath(Path(file).parent / path)
+        content = user_file.read_bytes(Path(found), LARGEST)
+        document.files[Path(found).absolute()] = content
+        return found, content
+
+    findings = Findings()
+    try:
+        content = user_file.read_bytes(Path(known_as), LARGEST)
+    except ConfigError as error:
+        document.problem(place, plain(str(error), LONGEST))
+        used.is_whole = False
+        return
+    document.files[Path(known_as).absolute()] = content
+    forest = reading.read(known_as, content, findings, fetch)
+    checking.check(forest, findings, leaves_are_checked_later=True)
+    name = Path(word).stem
+    problems = list(findings.mistakes)
+    if not problems and forest.main not in forest.trees:
+        problems.append(f'{known_as}:1:1: which tree? <root main_tree_to_execute="...">')
+    elif not problems and forest.main is not None:
+        forest = runnable.part_of(forest, forest.main)
+        runnable.check(forest, findings)
+        problems += findings.mistakes
+    if not problems:
+        recipe = tree_recipe(name, known_as, forest)
+        problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
+        problems += [] if problem is None else [used.spot(recipe).problem(problem)]
+        used.recipes.setdefault(name, recipe)
+    for problem in problems:
+        used.keep(document, problem)
 
 
 def _module(document: Document, place: Place, word: str, used: Used, watch: Watch) -> ModuleType | None:

@@ -8,22 +8,25 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations as pairs
 
-from py_trees import behaviours, composites, decorators, timers
+from py_trees import behaviours, decorators, timers
 from py_trees.behaviour import Behaviour
 
+from arboleda.bt_xml.running.errors import TreeMistakes
 from arboleda.core.plant import Plant
 from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
+from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
 from arboleda.recipes.errors import RoleError
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act
+from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
-from .used import Used, Watch, said
+from .used import LONGEST, Used, Watch, said
 
 SPELLABLE = re.compile(r"(?!#)[!-~]+", re.ASCII)
 MOST = 200  # combinations of parameters that are tried
@@ -116,28 +119,30 @@ class Trial:
         for number, order in enumerate(_orders(cell, recipe)):
             self.watch(spot, f"building {recipe.name} for {cell.name}")
             try:
-                problem = self._look(recipe, order, context)
+                found = self._look(recipe, order, context)
             except RoleError as error:
                 problem = self.used.where(error, spot).problem(f"{recipe.name}: {error}")
                 if number == 0 and not named:
                     self.misfits.setdefault(recipe.name, []).append(problem)
                     return False
-            if problem is not None:
-                problems[problem] = None
+                found = (problem,)
+            problems |= dict.fromkeys(found)
         self._keep(list(problems))
         return True
 
-    def _look(self, recipe: Recipe, order: Order, context: Context) -> str | None:
+    def _look(self, recipe: Recipe, order: Order, context: Context) -> Sequence[str]:
         """What is wrong with the tree of an order, with its place; RoleError where a device is missing."""
         spot = self.used.spot(recipe)
         try:
             tree = recipe.build(order, context)
         except RoleError:
             raise
+        except TreeMistakes as error:
+            return [plain(line, LONGEST) for line in error.lines]
         except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-            return self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")
+            return [self.used.where(error, spot).problem(f"{recipe.name} cannot be built: {said(error)}")]
         objection = _objection(tree)
-        return None if objection is None else spot.problem(f"{recipe.name} {objection}")
+        return [] if objection is None else [spot.problem(f"{recipe.name} {objection}")]
 
     def _keep(self, problems: Sequence[str]) -> None:
         self.document.keep_those_of(ConfigError(tuple(problems)))
@@ -157,9 +162,7 @@ def _objection(tree: Behaviour) -> str | None:
 def _at_once(tree: Behaviour) -> Iterator[str]:
     """The devices that are given work by two branches of a parallel: the second would be refused."""
     for node in tree.iterate():
-        branches = (
-            [_at_work(child) for child in node.children] if isinstance(node, composites.Parallel) else []
-        )
+        branches = [_at_work(child) for child in node.children] if tree_view.kind(node) == "parallel" else []
         for one, other in pairs(branches, 2):
             yield from sorted(one & other)
 

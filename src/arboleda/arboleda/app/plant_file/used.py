@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from traceback import extract_tb
 
+from arboleda.bt_xml.recipe import TreeRecipe
+from arboleda.bt_xml.running.errors import NoDeviceError, TreeError
 from arboleda.drivers.port import DriverSpec
 from arboleda.kinds import WrittenKind
 from arboleda.model.errors import ArboledaError, ConfigError
@@ -25,13 +27,14 @@ Watch = Callable[["Spot", str], None]
 
 @dataclass(frozen=True, kw_only=True)
 class Spot:
-    """A line of a file of Python, as problems name it."""
+    """A place in a file of Python or XML, as problems name it."""
 
     file: str
     line: int = 1
+    column: int = 1
 
     def problem(self, sentence: str) -> str:
-        return f"{plain(self.file, LONGEST)}:{self.line}:1: {plain(sentence, LONGEST)}"
+        return f"{plain(self.file, LONGEST)}:{self.line}:{self.column}: {plain(sentence, LONGEST)}"
 
 
 def unwatched(spot: Spot, doing: str) -> None:
@@ -54,11 +57,16 @@ class Used:
 
     def spot(self, written: Written) -> Spot:
         """Where the function of a recipe or a kind begins, or the first method of a driver."""
+        if isinstance(written, TreeRecipe):
+            return Spot(file=written.file)
         code = inspect.unwrap(_function(written)).__code__
         return Spot(file=self.files.get(code.co_filename, code.co_filename), line=code.co_firstlineno)
 
     def where(self, error: BaseException, otherwise: Spot) -> Spot:
         """The line of a user's file that an error came by last."""
+        if isinstance(error, TreeError | NoDeviceError):
+            mark = error.place.mark
+            return Spot(file=error.place.file, line=mark.line, column=mark.column)
         frames = [frame for frame in extract_tb(error.__traceback__) if frame.filename in self.files]
         if isinstance(error, SyntaxError) and error.filename in self.files:
             return Spot(file=self.files[error.filename], line=error.lineno or 1)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
 
+from arboleda.bt_xml.running.leaves import Step as StepOfFile
 from arboleda.model.commands import Command, Motion, Query
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
@@ -135,7 +136,9 @@ def turn_of(leaf: Behaviour) -> str:
     """Where a step stands in its tree, and in which turn of each step around it that repeats it."""
     turns, node = [], leaf.parent
     while node is not None:
-        if isinstance(node, Times | Again):
+        if isinstance(node, StepOfFile):
+            turns.append(node.turn)  # trees of files have many nodes that repeat: each step counts itself
+        elif isinstance(node, Times | Again):
             turns.append(node.done if isinstance(node, Times) else node.tries)
         node = node.parent
     return f"{path_of(leaf)} in turn {turns[::-1]}" if turns else path_of(leaf)

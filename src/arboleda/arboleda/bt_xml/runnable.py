@@ -1,0 +1,136 @@
+"""What can be read and cannot be run as a recipe: each with its place, and what to take instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from difflib import get_close_matches
+from functools import cache
+
+from arboleda.model.outside import among, quoted
+
+from . import checking, nodes, values, variables
+from .findings import Findings, Place
+from .forest import Forest, Node
+from .nodes import Kind, Way
+from .running.errors import NoDeviceError, TreeMistakes
+from .values import Variable
+
+MOST_NODES = 2000  # of a recipe, each subtree counted wherever it stands
+MOST_LEVELS = 100  # of nodes below each other, through all subtrees
+COMPARE = "compare with a script: <Precondition if=...> or _skipIf"
+REMEMBER = "keep what you compare with in a variable: <Script code=...>"
+NO_ROBOT_OF_NAV2 = "a device of the plant says where it is: its node ..._says or ..._becomes"
+INSTEAD: Mapping[str, str] = {
+    "TryCatch": "take Fallback, with what answers a failure as its last child",
+    "ManualSelector": "ask a person of the plant, and take Switch2",
+    **dict.fromkeys([f"BlackboardCheck{each}" for each in ("Int", "Double", "String", "Bool")], COMPARE),
+    **dict.fromkeys(("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated"), REMEMBER),
+    **dict.fromkeys(("DistanceController", "SpeedController", "PathLongerOnApproach"), NO_ROBOT_OF_NAV2),
+    **dict.fromkeys(("GoalUpdater", "GoalUpdatedController"), NO_ROBOT_OF_NAV2),
+    "SingleTrigger": "take RunOnce",
+    "NonblockingSequence": "take Parallel",
+    "PersistentSequence": "take SequenceWithMemory",
+    "PauseResumeController": "an operator holds and resumes a cell",
+}
+"""The known nodes that are not run, and what to take."""
+
+
+def part_of(forest: Forest, main: str) -> Forest:
+    """The trees that the main tree is made of."""
+    found, waiting = {main: forest.trees[main]}, [main]
+    while waiting:
+        for node in found[waiting.pop()].root.iterate():
+            name = node.own["ID"].value if node.is_subtree else ""
+            if name in forest.trees and name not in found:
+                found[name] = forest.trees[name]
+                waiting.append(name)
+    return replace(forest, trees=found, main=main)
+
+
+def check(forest: Forest, findings: Findings) -> None:
+    """Keeps what of the trees cannot be run in any cell; they do not contain themselves."""
+    for tree in forest.trees.values():
+        for node in tree.root.iterate():
+            _check_node(forest, node, findings)
+    main = forest.trees[forest.main or ""]
+    model = forest.models.get(main.name)
+    for port in (model.ports or {}).values() if model is not None else ():
+        if port.way is not Way.IN:
+            sentence = f"the port {quoted(port.name)} gives a value; a recipe takes values: input_port"
+            findings.mistake(main.place, sentence)
+    many, levels = _size(forest, main.name)
+    if many > MOST_NODES:
+        findings.mistake(main.place, f"the whole tree has {many} nodes; a recipe has at most {MOST_NODES}")
+    if levels > MOST_LEVELS:
+        findings.mistake(
+            main.place, f"the whole tree has {levels} levels; a recipe has at most {MOST_LEVELS}"
+        )
+
+
+def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
+    """NoDeviceError where a cell, with leaves of these kinds, has no device for a node; TreeMistakes with all
+    that is wrong otherwise.
+    """
+    for tree in forest.trees.values():
+        for node in tree.root.iterate():
+            if not node.is_subtree and nodes.built_in(node.kind) is None and node.kind not in kinds:
+                raise NoDeviceError(_nobody(node, cell, kinds), node.place)
+    findings = Findings()
+    checking.check(forest, findings, kinds)
+
+    def kind(node: Node) -> Kind | None:
+        if node.is_subtree:
+            return forest.models.get(node.own["ID"].value)
+        return nodes.built_in(node.kind) or kinds[node.kind]
+
+    for place, name in variables.unwritten(forest, kind):
+        findings.mistake(place, f"the variable {quoted(name)} is read, and nothing gives it a value")
+    if findings.mistakes:
+        raise TreeMistakes(findings.mistakes)
+
+
+def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:
+    if node.children and not get_close_matches(node.kind, kinds, n=1):
+        return f"{node.kind} has children and is no node that Arboleda runs; take one of its own"
+    return f"no device of {cell} makes a node {node.kind}; {among(node.kind, sorted(kinds))}"
+
+
+def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
+    if node.is_subtree:
+        name = node.own["ID"].value
+        if name not in forest.trees:
+            place = Place(node.place.file, node.own["ID"].mark)
+            findings.mistake(place, f"the tree {quoted(name)} is in none of these files")
+        return
+    kind = nodes.built_in(node.kind)
+    if kind is None:
+        return
+    if node.kind in INSTEAD:
+        findings.mistake(node.place, f"{node.kind} can be drawn and not be run; {INSTEAD[node.kind]}")
+    for name, attribute in node.ports.items():
+        port = (kind.ports or {}).get(name)
+        place = Place(node.place.file, attribute.mark)
+        said = values.read(name, attribute.value)
+        if port is not None and port.type == "script" and isinstance(said, Variable):
+            sentence = f"{name} of {node.kind} is a variable; write the script itself"
+            findings.mistake(place, sentence)
+        if port is not None and port.type == "status" and said in ("RUNNING", "IDLE"):
+            sentence = f"{name} of {node.kind} must be SUCCESS, FAILURE or SKIPPED: {said} would never end"
+            findings.mistake(place, sentence)
+
+
+def _size(forest: Forest, main: str) -> tuple[int, int]:
+    """How many nodes a tree has with its subtrees, and on how many levels."""
+
+    @cache
+    def of_tree(name: str) -> tuple[int, int]:
+        return of_node(forest.trees[name].root) if name in forest.trees else (0, 0)
+
+    def of_node(node: Node) -> tuple[int, int]:
+        below = [of_node(child) for child in node.children]
+        if node.is_subtree:
+            below.append(of_tree(node.own["ID"].value))
+        return 1 + sum(many for many, _ in below), 1 + max((levels for _, levels in below), default=0)
+
+    return of_tree(main)

@@ -1,0 +1,168 @@
+"""A tree of a file -> nodes that run, with their variables; what leaves do is not known here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from arboleda.bt_xml import names, script, values
+from arboleda.bt_xml.forest import Forest
+from arboleda.bt_xml.forest import Node as Written
+from arboleda.bt_xml.leaves import ANSWER
+from arboleda.bt_xml.nodes import FOR_EACH
+from arboleda.bt_xml.values import Variable
+
+from . import controls, decorators, leaves, nav2
+from .decorators import ALL_DONE, ALL_FAILED, INVERTED, Turned
+from .errors import TreeError
+from .memory import Scope, Value
+from .node import FAILURE, SUCCESS, Clock, Node
+from .ports import Given
+from .scripts import Script
+
+Leaf = Callable[[Written, "list[Node]", Scope], "Node | None"]
+"""Makes a node of one's own, around those below it; None where there is no such node."""
+OUTPUTS = ("output_key", "key", "out", "index", "value", ANSWER)
+Make = Callable[[str, "list[Node]", Given], Node]
+
+
+@dataclass(frozen=True)
+class Builder:
+    """Makes the nodes of the trees of a forest."""
+
+    forest: Forest
+    leaf: Leaf
+    context: Clock
+    written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
+
+    def tree(self, name: str, scope: Scope) -> Node:
+        """The nodes of a tree."""
+        return self._node(self.forest.trees[name].root, scope)
+
+    def _node(self, node: Written, scope: Scope) -> Node:
+        made = self._subtree(node, scope) if node.is_subtree else self._made(node, scope)
+        self.written.extend(scope.place(name) for name in _writes(node))
+        made.scope = scope
+        made.context = self.context
+        scripts = {name: Script.of(node.own[name].value) for name in names.SCRIPTS if name in node.own}
+        made.before = {name: script for name, script in scripts.items() if name in names.PRE}
+        made.after = {name: script for name, script in scripts.items() if name in names.POST}
+        return made
+
+    def _made(self, node: Written, scope: Scope) -> Node:
+        below = [self._node(child, scope) for child in node.children]
+        make = MAKERS.get(node.kind)
+        if make is None and node.kind.startswith(FOR_EACH):
+            make = _for_each
+        if make is not None:
+            said = {name: attribute.value for name, attribute in node.ports.items()}
+            return make(node.name or node.kind, below, Given(node.kind, said))
+        found = self.leaf(node, below, scope)
+        if found is None:
+            raise TreeError(f"Arboleda does not run {node.kind}", node.place)
+        return found
+
+    def _subtree(self, node: Written, scope: Scope) -> Node:
+        name = node.own["ID"].value
+        given: dict[str, Value | Variable] = {}
+        model = self.forest.models.get(name)
+        for port in (model.ports or {}).values() if model is not None else ():
+            if port.default is not None:
+                given[port.name] = values.read(port.name, port.default)
+        for port_name, attribute in node.ports.items():
+            given[port_name] = values.read(port_name, attribute.value)
+        inner = Scope(
+            around=scope,
+            names={key: value.name for key, value in given.items() if isinstance(value, Variable)},
+            shares=node.shares_names,
+            values={key: _typed(value) for key, value in given.items() if not isinstance(value, Variable)},
+        )
+        return decorators.SubTree(node.name or name, [self.tree(name, inner)])
+
+
+def _writes(node: Written) -> set[str]:
+    """The variables that a node may give a value."""
+    found: set[str] = set()
+    scripts = [node.own[name].value for name in names.SCRIPTS if name in node.own]
+    scripts += [node.ports["code"].value] if node.kind in ("Script", "ScriptCondition") else []
+    for text in scripts:
+        found |= script.writes(script.parse(text))
+    for name in OUTPUTS:
+        if name in node.ports:
+            said = values.read(name, node.ports[name].value)
+            found.add(said.name if isinstance(said, Variable) else said)
+    return found
+
+
+def _typed(value: Value) -> Value:
+    """A number where a text spells one, so that scripts can calculate with it."""
+    text = str(value)
+    if values.objection("int", text) is None:
+        return int(values.number(text))
+    return values.number(text) if values.objection("double", text) is None else value
+
+
+def _control(kind: Callable[[str, list[Node]], Node]) -> Make:
+    return lambda name, below, given: kind(name, below)
+
+
+def _given(kind: Callable[[str, list[Node], Given], Node]) -> Make:
+    return lambda name, below, given: kind(name, below, given)
+
+
+def _around(kind: Callable[[str, Node, Given], Node]) -> Make:
+    return lambda name, below, given: kind(name, below[0], given)
+
+
+def _for_each(name: str, below: list[Node], given: Given) -> Node:
+    return decorators.ForEach(name, below[0], given, source="vector_in", out="out")
+
+
+def _loop(name: str, below: list[Node], given: Given) -> Node:
+    return decorators.ForEach(name, below[0], given, source="queue", out="value")
+
+
+def _alone(kind: Callable[[str, Given], Node]) -> Make:
+    return lambda name, below, given: kind(name, given)
+
+
+MAKERS: Mapping[str, Make] = {
+    "Sequence": _control(controls.InSequence),
+    "AsyncSequence": _control(controls.AsyncSequence),
+    "SequenceWithMemory": _control(controls.SequenceWithMemory),
+    "ReactiveSequence": _control(controls.ReactiveSequence),
+    "Fallback": _control(controls.InFallback),
+    "AsyncFallback": _control(controls.AsyncFallback),
+    "ReactiveFallback": _control(controls.ReactiveFallback),
+    "Parallel": _given(controls.Parallel),
+    "ParallelAll": _given(controls.ParallelAll),
+    "IfThenElse": _control(controls.IfThenElse),
+    "WhileDoElse": _control(controls.WhileDoElse),
+    **{f"Switch{number}": _given(controls.Switch) for number in range(2, 7)},
+    "RecoveryNode": _given(nav2.RecoveryNode),
+    "PipelineSequence": _control(nav2.PipelineSequence),
+    "RoundRobin": _given(nav2.RoundRobin),
+    "RateController": _around(decorators.RateController),
+    "Inverter": lambda name, below, given: Turned(name, below[0], INVERTED),
+    "ForceSuccess": lambda name, below, given: Turned(name, below[0], ALL_DONE),
+    "ForceFailure": lambda name, below, given: Turned(name, below[0], ALL_FAILED),
+    "KeepRunningUntilFailure": _control(decorators.KeepRunningUntilFailure),
+    "Repeat": lambda name, below, given: decorators.Loop(
+        name, below[0], given, port="num_cycles", goes_on=SUCCESS
+    ),
+    "RetryUntilSuccessful": lambda name, below, given: decorators.Loop(
+        name, below[0], given, port="num_attempts", goes_on=FAILURE
+    ),
+    "Timeout": lambda name, below, given: decorators.Timeout(name, below[0], given, "msec"),
+    "Delay": lambda name, below, given: decorators.Delay(name, below[0], given, "delay_msec"),
+    "RunOnce": _around(decorators.RunOnce),
+    "Precondition": _around(decorators.Precondition),
+    **dict.fromkeys(("LoopInt", "LoopBool", "LoopDouble", "LoopString"), _loop),
+    "AlwaysSuccess": lambda name, below, given: leaves.Always(name, SUCCESS),
+    "AlwaysFailure": lambda name, below, given: leaves.Always(name, FAILURE),
+    "Script": lambda name, below, given: leaves.RunScript(name, given.said["code"]),
+    "ScriptCondition": lambda name, below, given: leaves.ScriptCondition(name, given.said["code"]),
+    "SetBlackboard": _alone(leaves.SetBlackboard),
+    "UnsetBlackboard": _alone(leaves.UnsetBlackboard),
+    "Sleep": _alone(leaves.Sleep),
+}

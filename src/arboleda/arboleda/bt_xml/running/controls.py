@@ -1,0 +1,328 @@
+"""Nodes of several children: in order, at once, by a condition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from py_trees.common import Status
+
+from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, Node, Result
+from .ports import Given
+
+
+class Ordered(Node):
+    """One child after the other, until one ends as `stops` says; where it was, it goes on."""
+
+    counts = ("at", "skipped")
+    stops: ClassVar[Result]
+    ends: ClassVar[Result]
+    pauses: ClassVar[bool] = False  # between two children, where the first took no time
+
+    def __init__(self, name: str, children: Sequence[Node]) -> None:
+        super().__init__(name, children)
+        self.at = self.skipped = 0
+
+    def reset_counts(self) -> None:
+        self.at = self.skipped = 0
+
+    def work(self) -> Result:
+        if self.begin():
+            self.skipped = 0
+        while self.at < len(self.below):
+            child = self.below[self.at]
+            was_idle = child.status is Status.INVALID
+            result = child.execute()
+            if result is RUNNING:
+                return RUNNING
+            if result is self.stops:
+                return self.stopped()
+            self.at += 1
+            if result is SKIPPED:
+                self.skipped += 1
+            elif self.pauses and was_idle and self.at < len(self.below):
+                return self.again()
+        all_skipped = self.skipped == len(self.below)
+        self.reset_children()
+        self.at = self.skipped = 0
+        return SKIPPED if all_skipped else self.ends
+
+    def stopped(self) -> Result:
+        """A child ended so that no other one is ticked."""
+        self.reset_children()
+        self.at = 0
+        return self.stops
+
+
+class InSequence(Ordered):
+    """Sequence."""
+
+    sign = "sequence"
+    stops, ends = FAILURE, SUCCESS
+
+
+class InFallback(Ordered):
+    """Fallback."""
+
+    sign = "selector"
+    stops, ends = SUCCESS, FAILURE
+
+
+class AsyncSequence(InSequence):
+    """A Sequence that lets others look between two children."""
+
+    pauses = True
+
+
+class AsyncFallback(InFallback):
+    """A Fallback that lets others look between two children."""
+
+    pauses = True
+
+
+class SequenceWithMemory(InSequence):
+    """A Sequence that begins with the child that failed when it is ticked again, though it was halted."""
+
+    pauses = True
+
+    def reset_counts(self) -> None:
+        """It keeps where it was."""
+
+    def stopped(self) -> Result:
+        for child in self.below[self.at :]:
+            child.reset()
+        return FAILURE
+
+
+class Reactive(Node):
+    """All children from the first one on at every tick, until one ends as `stops` says or runs."""
+
+    stops: ClassVar[Result]
+    ends: ClassVar[Result]
+
+    def work(self) -> Result:
+        self.begin()
+        all_skipped = True
+        for child in self.below:
+            result = child.execute()
+            all_skipped = all_skipped and result is SKIPPED
+            if result is RUNNING:
+                for other in self.below:
+                    if other is not child:
+                        other.reset()
+                return RUNNING
+            if result is self.stops:
+                self.reset_children()
+                return self.stops
+            if result is SKIPPED:
+                child.reset()
+        self.reset_children()
+        return SKIPPED if all_skipped else self.ends
+
+
+class ReactiveSequence(Reactive):
+    """ReactiveSequence."""
+
+    sign = "sequence"
+    stops, ends = FAILURE, SUCCESS
+
+
+class ReactiveFallback(Reactive):
+    """ReactiveFallback."""
+
+    sign = "selector"
+    stops, ends = SUCCESS, FAILURE
+
+
+def _threshold(number: float, many: int) -> int:
+    """How many children a threshold means; a negative one counts from all of them."""
+    return max(many + int(number) + 1, 0) if number < 0 else int(number)
+
+
+class Parallel(Node):
+    """All children at once; done or failed once enough of them are, or can no longer be."""
+
+    sign = "parallel"
+    counts = ("ended", "done", "failed")
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+        self.ended: list[int] = []
+        self.done = self.failed = 0
+
+    def reset_counts(self) -> None:
+        self.ended = []
+        self.done = self.failed = 0
+
+    def work(self) -> Result:
+        success = self.given.number("success_count", self.scope, self._old("success_threshold", "-1"))
+        failure = self.given.number("failure_count", self.scope, self._old("failure_threshold", "1"))
+        many = len(self.below)
+        enough, too_many = _threshold(success, many), _threshold(failure, many)
+        self.begin()
+        skipped = 0
+        for number, child in enumerate(self.below):
+            if number not in self.ended:
+                result = child.execute()
+                skipped += result is SKIPPED
+                if result in ENDED:
+                    self.ended = [*self.ended, number]
+                    self.done += result is SUCCESS
+                    self.failed += result is FAILURE
+            if self.done >= enough or (success < 0 and self.done + skipped >= enough):
+                return self._over(SUCCESS)
+            if many - self.failed < enough or self.failed == too_many:
+                return self._over(FAILURE)
+        if skipped == many:
+            return SKIPPED
+        if any(child.status is Status.RUNNING for child in self.below):
+            return RUNNING
+        return self.again(after_s=PAUSE_S)  # those that were skipped are asked again
+
+    def _old(self, name: str, default: str) -> str:
+        """What version 3 has for it."""
+        return self.given.said.get(
+            name, self.given.said.get("threshold", default) if "succ" in name else default
+        )
+
+    def _over(self, result: Result) -> Result:
+        self.reset_counts()
+        self.reset_children()
+        return result
+
+
+class ParallelAll(Node):
+    """All children at once, until each has ended; failed where too many have."""
+
+    sign = "parallel"
+    counts = ("ended", "failed")
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+        self.ended: list[int] = []
+        self.failed = 0
+
+    def reset_counts(self) -> None:
+        self.ended = []
+        self.failed = 0
+
+    def work(self) -> Result:
+        many = len(self.below)
+        too_many = _threshold(self.given.number("max_failures", self.scope, "1"), many)
+        self.begin()
+        skipped = 0
+        for number, child in enumerate(self.below):
+            if number in self.ended:
+                continue
+            result = child.execute()
+            skipped += result is SKIPPED
+            if result in ENDED:
+                self.ended = [*self.ended, number]
+                self.failed += result is FAILURE
+        if skipped == many:
+            return SKIPPED
+        if skipped + len(self.ended) < many:
+            return RUNNING
+        result = FAILURE if self.failed >= too_many else SUCCESS
+        self.reset_children()
+        self.reset_counts()
+        return result
+
+
+class IfThenElse(Node):
+    """The first child once says which of the others is ticked."""
+
+    counts = ("at",)
+
+    def __init__(self, name: str, children: Sequence[Node]) -> None:
+        super().__init__(name, children)
+        self.at = 0
+
+    def reset_counts(self) -> None:
+        self.at = 0
+
+    def work(self) -> Result:
+        self.begin()
+        if self.at == 0:
+            result = self.below[0].execute()
+            if result is RUNNING:
+                return RUNNING
+            if result is FAILURE and len(self.below) < 3:
+                return FAILURE
+            if result is SKIPPED:  # BehaviorTree.CPP raises an error here
+                self.below[0].reset()
+                return SKIPPED
+            self.at = 1 if result is SUCCESS else 2
+        result = self.below[self.at].execute()
+        if result is not RUNNING:
+            self.reset_children()
+            self.at = 0
+        return result
+
+
+class WhileDoElse(Node):
+    """The first child at every tick says which of the others is ticked."""
+
+    def work(self) -> Result:
+        self.begin()
+        condition = self.below[0].execute()
+        if condition is RUNNING:
+            return RUNNING
+        result = SKIPPED  # where the condition is skipped; BehaviorTree.CPP raises an error there
+        if condition is SUCCESS:
+            if len(self.below) > 2:
+                self.below[2].reset()
+            result = self.below[1].execute()
+        elif condition is FAILURE and len(self.below) > 2:
+            self.below[1].reset()
+            result = self.below[2].execute()
+        elif condition is FAILURE:
+            result = FAILURE
+        if result is not RUNNING:
+            self.reset_children()
+        return result
+
+
+class Switch(Node):
+    """The child of the case that a variable has; the last one where it has none of them."""
+
+    counts = ("ran",)
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+        self.ran: int | None = None
+
+    def reset_counts(self) -> None:
+        self.ran = None
+
+    def work(self) -> Result:
+        chosen = self._chosen()
+        if self.ran is not None and self.ran != chosen:
+            self.below[self.ran].reset()
+        result = self.below[chosen].execute()
+        if result is SKIPPED:
+            self.ran = None
+        elif result is RUNNING:
+            self.ran = chosen
+        else:
+            self.reset_children()
+            self.ran = None
+        return result
+
+    def _chosen(self) -> int:
+        variable = self.given.found("variable", self.scope)
+        for number in range(len(self.below) - 1):
+            case = self.given.text(f"case_{number + 1}", self.scope)
+            if str(case) == str(variable) or _same_number(case, variable):
+                return number
+        return len(self.below) - 1
+
+
+def _same_number(one: object, other: object) -> bool:
+    try:
+        return float(str(one)) == float(str(other))
+    except ValueError:
+        return False

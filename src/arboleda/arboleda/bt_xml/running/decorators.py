@@ -1,0 +1,302 @@
+"""Nodes around one other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from py_trees.common import Status
+
+from .memory import Value
+from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, TICK_S, Decorator, Node, Result
+from .ports import Given
+from .scripts import Script, ScriptError
+
+STATUSES = {each.value: each for each in Result}
+
+
+class Turned(Decorator):
+    """It ends as `ends` says for each end of its child."""
+
+    def __init__(self, name: str, child: Node, ends: Mapping[Result, Result]) -> None:
+        super().__init__(name, [child])
+        self.ends = ends
+
+    def work(self) -> Result:
+        self.begin()
+        result = self.child.execute()
+        if result not in ENDED:
+            return result
+        self.child.reset()
+        return self.ends[result]
+
+
+INVERTED = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+ALL_DONE = {SUCCESS: SUCCESS, FAILURE: SUCCESS}
+ALL_FAILED = {SUCCESS: FAILURE, FAILURE: FAILURE}
+
+
+class KeepRunningUntilFailure(Decorator):
+    """Its child again and again, until it fails."""
+
+    def work(self) -> Result:
+        self.begin()
+        result = self.child.execute()
+        if result in ENDED:
+            self.child.reset()
+        if result is FAILURE:
+            return FAILURE
+        return RUNNING if result is RUNNING else self.again(after_s=PAUSE_S)
+
+
+class Loop(Decorator):
+    """Its child again while it ends as `goes_on` says, at most `times`; -1 means without end."""
+
+    counts = ("rounds",)
+
+    def __init__(self, name: str, child: Node, given: Given, *, port: str, goes_on: Result) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.port = port
+        self.goes_on = goes_on
+        self.rounds = 0
+
+    def reset_counts(self) -> None:
+        self.rounds = 0
+
+    def work(self) -> Result:
+        most = self.given.number(self.port, self.scope)
+        self.begin()
+        while self.rounds < most or most == -1:
+            was_idle = self.child.status is Status.INVALID
+            result = self.child.execute()
+            if result is RUNNING:
+                return RUNNING
+            self.child.reset()
+            if result is SKIPPED:
+                return SKIPPED
+            if result is not self.goes_on:
+                self.rounds = 0
+                return result
+            self.rounds += 1
+            if self.goes_on is FAILURE:
+                most = self.given.number(self.port, self.scope)
+            if was_idle and (self.rounds < most or most == -1):
+                return self.again(after_s=PAUSE_S if most == -1 else TICK_S)
+        self.rounds = 0
+        return self.goes_on
+
+
+class Timed(Decorator):
+    """A decorator with a time, which begins anew after a restart of the plant."""
+
+    counts = ("started",)
+
+    def __init__(self, name: str, child: Node, given: Given, port: str) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.port = port
+        self.started = False
+        self.until = 0.0
+
+    def reset_counts(self) -> None:
+        self.started = False
+
+    def begin_anew(self) -> None:
+        if self.started:
+            self.start()
+
+    def start(self) -> None:
+        """The time begins."""
+        self.started = True
+        self.begin()
+        self.until = self.context.now + self.given.number(self.port, self.scope) / 1000
+        self.context.wake_at(self.until)
+
+
+class Timeout(Timed):
+    """Its child, which is left and counts as failed after so many milliseconds; 0 means never."""
+
+    def work(self) -> Result:
+        if not self.started:
+            self.start()
+        endless = self.given.number(self.port, self.scope) <= 0
+        if not endless and self.child.status is Status.RUNNING and self.context.now >= self.until:
+            self.child.reset()
+            self.started = False
+            return FAILURE
+        result = self.child.execute()
+        if result in ENDED:
+            self.started = False
+            self.child.reset()
+        return result
+
+
+class Delay(Timed):
+    """Its child after so many milliseconds."""
+
+    def work(self) -> Result:
+        if not self.started:
+            self.start()
+        if self.context.now < self.until:
+            return RUNNING
+        result = self.child.execute()
+        if result in ENDED:
+            self.started = False
+            self.child.reset()
+        return result
+
+
+class RunOnce(Decorator):
+    """Its child once; then it is skipped, or ends as it ended then."""
+
+    counts = ("ended_as",)
+
+    def __init__(self, name: str, child: Node, given: Given) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.ended_as = ""
+
+    def work(self) -> Result:
+        if self.ended_as:
+            skips = self.given.is_set("then_skip", self.scope, "true")
+            return SKIPPED if skips else STATUSES[self.ended_as]
+        self.begin()
+        result = self.child.execute()
+        if result in ENDED:
+            self.ended_as = result.value
+            self.child.reset()
+        return result
+
+
+class Precondition(Decorator):
+    """Its child where a script holds when it begins."""
+
+    counts = ("is_under_way",)
+
+    def __init__(self, name: str, child: Node, given: Given) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.script = Script.of(given.said["if"])
+        self.is_under_way = False
+
+    def work(self) -> Result:
+        if not self.is_under_way:
+            self.is_under_way = self.script.holds(self.scope)
+        if not self.is_under_way:
+            return status(self.given.text("else", self.scope, "FAILURE"))
+        result = self.child.execute()
+        if result in ENDED:
+            self.child.reset()
+            self.is_under_way = False
+        return result
+
+
+def status(word: Value) -> Result:
+    """The result that a word of a port means."""
+    if str(word) not in STATUSES:
+        raise ScriptError(f"{word!r} is no status; there are {', '.join(STATUSES)}")
+    return STATUSES[str(word)]
+
+
+class ForEach(Decorator):
+    """Its child for each value of a list; done after the last one, failed as soon as the child fails."""
+
+    counts = ("left", "number", "is_under_way")
+
+    def __init__(
+        self, name: str, child: Node, given: Given, *, source: str, out: str, if_empty: str = "SUCCESS"
+    ) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.source = source
+        self.out = out
+        self.if_empty = if_empty
+        self.left: list[str] = []
+        self.number = 0
+        self.is_under_way = False
+
+    def reset_counts(self) -> None:
+        self.left, self.number, self.is_under_way = [], 0, False
+
+    def work(self) -> Result:
+        if self.status is Status.INVALID:
+            self.reset_counts()
+            self.left = _items(self.given.text(self.source, self.scope))
+        if not self.is_under_way:
+            if not self.left:
+                return status(self.given.text("if_empty", self.scope, self.if_empty))
+            self._hand_out()
+        self.begin()
+        result = self.child.execute()
+        self.is_under_way = result is RUNNING
+        if result is RUNNING:
+            return RUNNING
+        if result in ENDED:
+            self.child.reset()
+        return FAILURE if result is FAILURE else self.again()
+
+    def _hand_out(self) -> None:
+        value, *self.left = self.left
+        if self.out in self.given.said:
+            self.scope.set(self.given.variable(self.out), value)
+        if "index" in self.given.said:
+            self.scope.set(self.given.variable("index"), self.number)
+        self.number += 1
+
+
+def _items(value: Value) -> list[str]:
+    """A list as text has it: with semicolons between."""
+    return [each.strip() for each in str(value).split(";") if each.strip()]
+
+
+class RateController(Decorator):
+    """Its child again only after a time, counted from when it was done last."""
+
+    counts = ("has_begun",)
+
+    def __init__(self, name: str, child: Node, given: Given) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.has_begun = False
+        self.until = 0.0
+
+    def begin_anew(self) -> None:
+        self._wait()
+
+    def work(self) -> Result:
+        if self.begin():
+            self.has_begun = False
+            self._wait()
+        is_due = self.context.now >= self.until
+        if self.has_begun and self.child.status is not Status.RUNNING and not is_due:
+            return RUNNING
+        self.has_begun = True
+        result = self.child.execute()
+        if result is SUCCESS:
+            self._wait()
+        return result
+
+    def _wait(self) -> None:
+        hz = self.given.number("hz", self.scope, "10.0")
+        if hz <= 0:
+            raise ScriptError(f"hz of {self.name} must be more than 0")
+        self.until = self.context.now + 1 / hz
+        self.context.wake_at(self.until)
+
+
+class SubTree(Decorator):
+    """A tree with variables of its own, which are kept with it."""
+
+    def work(self) -> Result:
+        self.begin()
+        result = self.child.execute()
+        if result in ENDED:
+            self.child.reset()
+        return result
+
+    def kept(self) -> Mapping[str, Any] | None:
+        return {"values": self.child.scope.values} if self.child.scope.values else None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.child.scope.values.update(state["values"])

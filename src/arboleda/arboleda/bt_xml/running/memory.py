@@ -1,0 +1,52 @@
+"""The variables of a tree: each subtree has its own, and finds some of them in the tree around it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from arboleda.bt_xml.values import OUTER
+
+Value = float | int | str
+PRIVATE = "_"
+
+
+@dataclass(eq=False)
+class Scope:
+    """The variables of one tree. `names`: those that are another variable of the tree around it. `shares`: so
+    are all others, but for private ones.
+    """
+
+    around: Scope | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+    shares: bool = False
+    values: dict[str, Value] = field(default_factory=dict)
+
+    def place(self, name: str) -> tuple[Scope, str]:
+        """Where a variable is kept, and as what."""
+        scope: Scope = self
+        while True:
+            if name.startswith(OUTER):
+                while scope.around is not None:
+                    scope = scope.around
+                return scope, name.removeprefix(OUTER)
+            around = scope.around
+            if around is not None and name in scope.names:
+                scope, name = around, scope.names[name]
+            elif around is not None and scope.shares and not name.startswith(PRIVATE):
+                scope = around
+            else:
+                return scope, name
+
+    def get(self, name: str) -> Value | None:
+        """The value of a variable; None where it has none."""
+        scope, key = self.place(name)
+        return scope.values.get(key)
+
+    def set(self, name: str, value: Value) -> None:
+        scope, key = self.place(name)
+        scope.values[key] = value
+
+    def unset(self, name: str) -> None:
+        scope, key = self.place(name)
+        scope.values.pop(key, None)

@@ -1,0 +1,115 @@
+"""The control nodes of Nav2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Node, Result
+from .ports import Given
+
+
+class RecoveryNode(Node):
+    """The first child; where it fails, the second and then the first again, so many times at most."""
+
+    counts = ("recovers", "retries")
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+        self.recovers = False
+        self.retries = 0
+
+    def reset_counts(self) -> None:
+        self.recovers, self.retries = False, 0
+
+    def work(self) -> Result:
+        most = self.given.number("number_of_retries", self.scope, "1")
+        self.begin()
+        while self.retries <= most:
+            result = self.below[self.recovers].execute()
+            if result is RUNNING:
+                return RUNNING
+            if not self.recovers and (result is not FAILURE or self.retries >= most):
+                return self._over(result)
+            if not self.recovers:
+                self.below[0].reset()
+                self.recovers = True
+            elif result is SUCCESS:
+                self.below[1].reset()
+                self.recovers, self.retries = False, self.retries + 1
+            elif result is SKIPPED:  # no recovery is possible; this counts as no retry
+                self.below[1].reset()
+                self.recovers = False
+                return FAILURE
+            else:
+                return self._over(FAILURE)
+        return self._over(FAILURE)
+
+    def _over(self, result: Result) -> Result:
+        self.halt()
+        return result
+
+
+class PipelineSequence(Node):
+    """All children up to the one that runs, at every tick, those before it too though they may run."""
+
+    sign = "parallel"
+    counts = ("last",)
+
+    def __init__(self, name: str, children: Sequence[Node]) -> None:
+        super().__init__(name, children)
+        self.last = 0
+
+    def reset_counts(self) -> None:
+        self.last = 0
+
+    def work(self) -> Result:
+        skipped = 0
+        for number, child in enumerate(self.below):
+            result = child.execute()
+            skipped += result is SKIPPED
+            if result is FAILURE:
+                return self._over(FAILURE)
+            if result is RUNNING and number >= self.last:
+                self.last = number
+                return RUNNING
+        return self._over(SKIPPED if skipped == len(self.below) else SUCCESS)
+
+    def _over(self, result: Result) -> Result:
+        self.reset_children()
+        self.last = 0
+        return result
+
+
+class RoundRobin(Node):
+    """The next child at each tick until one is done; failed once all have."""
+
+    counts = ("at", "failed")
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+        self.at = self.failed = 0
+
+    def reset_counts(self) -> None:
+        self.at = self.failed = 0
+
+    def work(self) -> Result:
+        wraps = self.given.is_set("wrap_around", self.scope, "false")
+        self.begin()
+        many, skipped = len(self.below), 0
+        while self.failed + skipped < many and self.at < many:
+            result = self.below[self.at].execute()
+            if result is RUNNING:
+                return RUNNING
+            self.at += 1
+            if self.at == many and wraps:
+                self.at = 0
+            if result is SUCCESS and self.at < many:
+                self.failed = 0
+                self.reset_children()
+                return SUCCESS
+            self.failed += result is FAILURE
+            skipped += result is SKIPPED
+        self.halt()
+        return SKIPPED if skipped == many else FAILURE

@@ -1,0 +1,78 @@
+"""The outermost node of a running tree: what a failure of it is to the task."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.model.messages import Failure, Reason
+from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.recipes.authoring import FINAL
+from arboleda.trees.context import Context
+
+from .leaves import Step
+from .node import FAILURE, Node, Result
+from .scripts import ScriptError
+
+FAILED = Phrase("xml.failed", "the tree {tree} has failed")
+
+
+class Forgiving(Step):
+    """A step of the plant in a tree that may have an answer to its failure.
+
+    The cause is kept for when the whole tree fails; one that nothing in a recipe may answer ends the tree.
+    """
+
+    def __init__(self, name: str, step: Behaviour, context: Context, causes: list[Failure]) -> None:
+        super().__init__(name, step)
+        self.context: Context = context
+        self.causes = causes
+
+    def work(self) -> Result:
+        if self.context.failure is not None:
+            return FAILURE
+        result = super().work()
+        cause = self.context.failure
+        if result is FAILURE and cause is not None and cause.reason not in FINAL:
+            self.causes[:] = [cause]
+            self.context.forgive()
+        return result
+
+
+class Main(Node):
+    """A whole tree, with the variables of its outermost scope."""
+
+    def __init__(self, name: str, tree: Node, context: Context, causes: list[Failure]) -> None:
+        super().__init__(name, [tree])
+        self.context: Context = context
+        self.causes = causes
+        self.scope = tree.scope
+
+    def work(self) -> Result:
+        self.begin()
+        try:
+            result = self.below[0].execute()
+        except ScriptError as error:
+            self.below[0].reset()
+            self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=as_sentence(str(error)))]
+            result = FAILURE
+        if self.context.failure is not None:
+            self.below[0].reset()
+            return FAILURE
+        if result is FAILURE:
+            generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
+            self.context.fail(self.causes[0] if self.causes else generic, self)
+        return result
+
+    def halt(self) -> None:
+        self.below[0].reset()
+        self.status = Status.INVALID
+
+    def kept(self) -> Mapping[str, Any] | None:
+        return {"values": self.scope.values} if self.scope.values else None
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.scope.values.update(state["values"])

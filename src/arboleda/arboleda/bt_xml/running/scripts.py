@@ -1,0 +1,180 @@
+"""Scripts that are evaluated: with variables, numbers and texts, and nothing else."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+from arboleda.bt_xml import script
+from arboleda.bt_xml.script import Assignment, Choice, Comparison, Expression, Infix, Name, Prefix
+from arboleda.model.errors import ArboledaError
+from arboleda.model.facts import shown
+
+from .memory import Scope, Value
+
+LONGEST = 10_000  # characters of a text that a script makes
+BITS = 63
+
+
+class ScriptError(ArboledaError):
+    """What a script cannot do, while the tree runs."""
+
+
+@dataclass(frozen=True)
+class Script:
+    """A script that was read before."""
+
+    text: str
+    statements: tuple[Expression, ...]
+
+    @classmethod
+    def of(cls, text: str) -> Script:
+        return cls(text, script.parse(text))
+
+    def run(self, scope: Scope) -> Value:
+        """Do all of it; the value of the last statement."""
+        found: Value = 0
+        for statement in self.statements:
+            found = evaluate(statement, scope)
+        return found
+
+    def holds(self, scope: Scope) -> bool:
+        return is_true(self.run(scope))
+
+
+def is_true(value: Value) -> bool:
+    """Whether a value counts as true; a text does where it says so."""
+    if not isinstance(value, str):
+        return bool(value)
+    if value.lower() in ("true", "1"):
+        return True
+    if value.lower() in ("false", "0", ""):
+        return False
+    raise ScriptError(f"{value!r} is neither true nor false")
+
+
+def evaluate(expression: Expression, scope: Scope) -> Value:
+    """The value of an expression; ScriptError where it has none."""
+    if isinstance(expression, script.Value):
+        return expression.value
+    if isinstance(expression, Name):
+        return _known(expression.name, scope)
+    if isinstance(expression, Prefix):
+        return _prefix(expression.sign, evaluate(expression.operand, scope))
+    if isinstance(expression, Comparison):
+        return _compared(expression, scope)
+    if isinstance(expression, Choice):
+        way = expression.then if is_true(evaluate(expression.condition, scope)) else expression.otherwise
+        return evaluate(way, scope)
+    if isinstance(expression, Assignment):
+        return _assigned(expression, scope)
+    return _infix(expression, scope)
+
+
+def _known(name: str, scope: Scope) -> Value:
+    found = scope.get(name)
+    if found is None:
+        raise ScriptError(f"the variable {name} has no value")
+    return found
+
+
+def _prefix(sign: str, value: Value) -> Value:
+    if sign == "!":
+        return float(not is_true(value))
+    number = _number(value)
+    return -number if sign == "-" else ~_whole(number)
+
+
+def _infix(expression: Infix, scope: Scope) -> Value:
+    left = evaluate(expression.left, scope)
+    if expression.sign in ("&&", "||"):
+        if is_true(left) is (expression.sign == "||"):
+            return float(is_true(left))
+        return float(is_true(evaluate(expression.right, scope)))
+    return _joined(left, expression.sign, evaluate(expression.right, scope))
+
+
+def _joined(left: Value, sign: str, right: Value) -> Value:
+    if sign == ".." or (sign == "+" and isinstance(left, str) and isinstance(right, str)):
+        return _text(left, right)
+    one, other = _number(left), _number(right)
+    if sign in BITWISE:
+        return BITWISE[sign](_whole(one), _whole(other))
+    if sign == "/" and other == 0:
+        raise ScriptError("a division by zero")
+    try:
+        return CALCULATED[sign](one, other)
+    except OverflowError:
+        raise ScriptError("a number that is too large") from None
+
+
+def _text(left: Value, right: Value) -> str:
+    text = "".join(each if isinstance(each, str) else _spelled(each) for each in (left, right))
+    if len(text) > LONGEST:
+        raise ScriptError(f"a text of more than {LONGEST} characters")
+    return text
+
+
+def _spelled(number: float) -> str:
+    return shown(int(number)) if float(number).is_integer() else shown(number)
+
+
+def _compared(expression: Comparison, scope: Scope) -> float:
+    values = [evaluate(each, scope) for each in expression.operands]
+    rows = zip(pairwise(values), expression.signs, strict=True)
+    return float(all(_compare(left, sign, right) for (left, right), sign in rows))
+
+
+def _compare(left: Value, sign: str, right: Value) -> bool:
+    if isinstance(left, str) and isinstance(right, str):
+        return bool(COMPARED[sign](left, right))
+    if isinstance(left, str) or isinstance(right, str):
+        left, right = _number(left), _number(right)
+    return bool(COMPARED[sign](left, right))
+
+
+def _assigned(expression: Assignment, scope: Scope) -> Value:
+    value = evaluate(expression.value, scope)
+    if expression.sign != ":=":
+        there = _known(expression.name, scope)
+        if expression.sign != "=":
+            value = _joined(there, expression.sign[0], value)
+        elif isinstance(there, str) is not isinstance(value, str):
+            raise ScriptError(f"{expression.name} is {there!r} and cannot become {value!r}")
+    scope.set(expression.name, value)
+    return value
+
+
+def _number(value: Value) -> float | int:
+    if not isinstance(value, str):
+        return value
+    try:
+        return int(value) if value.lstrip("+-").isdigit() and len(value) < 18 else float(value)
+    except ValueError:
+        raise ScriptError(f"{value!r} is no number") from None
+
+
+def _whole(number: float) -> int:
+    if not float(number).is_integer() or abs(number) >= 2**BITS:
+        raise ScriptError(f"{number} is no whole number")
+    return int(number)
+
+
+Calculation = Callable[[float, float], float]
+CALCULATED: Mapping[str, Calculation] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+BITWISE: Mapping[str, Callable[[int, int], int]] = {"&": operator.and_, "|": operator.or_, "^": operator.xor}
+COMPARED: Mapping[str, Callable[[Value, Value], bool]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    ">": operator.gt,
+    "<=": operator.le,
+    ">=": operator.ge,
+}

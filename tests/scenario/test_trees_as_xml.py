@@ -1,0 +1,107 @@
+"""A recipe that is a tree of a file: it runs, is kept through a crash, and says what it cannot do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.model.messages import TaskState, Verb
+from arboleda.testing import Rig
+
+from .restarts import ENDED, restart
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "own_tree" / "plant.yaml"
+TASK = "cell tend slot_1 1001 #one"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    copytree(EXAMPLE.parent, tmp_path, dirs_exist_ok=True)
+    return tmp_path
+
+
+def state(rig: Rig) -> TaskState:
+    return rig.outcomes()["one"].state
+
+
+def attended(rig: Rig, at_most_s: float = 200.0) -> None:
+    """Somebody answers, and does what is advised first, until the task has ended."""
+    for _ in range(int(at_most_s / 2)):
+        if rig.wait(2.0, until=lambda: state(rig) in ENDED):
+            return
+        if rig.plant.dispatcher.question("operator") is not None:
+            rig.operate(Verb.ANSWER, "operator good")
+        for first in rig.plant.advice("cell")[:1]:
+            if isinstance(first.do, Verb):
+                rig.operate(first.do, first.scope)
+
+
+def begin(file: Path = EXAMPLE) -> Rig:
+    rig = Rig(load(file))
+    rig.wait(5.0)
+    rig.submit(TASK)
+    return rig
+
+
+def test_a_tree_of_a_file_is_a_recipe_with_its_ports_as_parameters() -> None:
+    (recipe,) = load(EXAMPLE).cells[0].recipes
+    (cell,) = load(EXAMPLE).cells
+    assert [each.name for each in recipe.parameters] == ["blank", "program"]
+    assert list(recipe.parameters[1].words(cell)) == ["1001", "1002"]
+
+
+def test_it_does_its_work() -> None:
+    rig = begin()
+    attended(rig)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+
+
+@pytest.mark.parametrize("at_s", [0.5, 3.0, 6.0, 9.0, 12.0, 15.0, 30.0, 35.0, 38.0, 40.0, 43.0])
+def test_it_goes_on_whenever_the_plant_is_killed(at_s: float) -> None:
+    rig = begin()
+    rig.wait(at_s)
+    assert state(rig) is TaskState.RUNNING
+    restart(rig, after_s=1.5)
+    attended(rig)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+
+
+def test_a_tree_that_was_changed_is_not_walked_into(folder: Path) -> None:
+    rig = begin(folder / "plant.yaml")
+    rig.wait(9.0)
+    tree = folder / "tend.xml"
+    tree.write_text(tree.read_text().replace('num_attempts="2"', 'num_attempts="3"'))
+    restart(rig, load(folder / "plant.yaml"), after_s=1.0)
+    rig.wait(1.0)
+    assert "its recipe or the plant file has changed" in str(rig.plant.cells["cell"].held_by)
+
+
+LOOP = '<Repeat num_cycles="300"><Script code="n := 1"/></Repeat>'
+SKIPS = (
+    '<Parallel success_count="2" failure_count="2"><AlwaysSuccess/>'
+    '<AlwaysSuccess _skipIf="true"/><Sleep msec="500"/></Parallel>'
+)
+FAILS = '<ScriptCondition code="1 / 0 == 1"/>'
+
+
+@pytest.mark.parametrize(
+    ("body", "ends", "why"),
+    [
+        (LOOP, TaskState.DONE, ""),
+        (SKIPS, TaskState.DONE, ""),
+        (FAILS, TaskState.FAILED, "a division by zero"),
+        ("<AlwaysFailure/>", TaskState.FAILED, "the tree tend has failed"),
+    ],
+)
+def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: str) -> None:
+    tree = f'<BehaviorTree ID="T"><Sequence><mill_open/>{body}</Sequence></BehaviorTree>'
+    (folder / "tend.xml").write_text(f'<root BTCPP_format="4">{tree}</root>')
+    rig = Rig(load(folder / "plant.yaml"))
+    rig.wait(5.0)
+    rig.submit("cell tend #one")
+    rig.wait(30.0, until=lambda: state(rig) in ENDED)
+    assert state(rig) is ends
+    assert str(rig.outcomes()["one"].sentence or "") == why

@@ -1,0 +1,101 @@
+"""What cannot be run is refused with the plant file, with its place and what to take instead."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.bt_xml.nodes import BUILT_IN
+from arboleda.bt_xml.runnable import INSTEAD
+from arboleda.bt_xml.running.build import MAKERS
+from arboleda.model.errors import ConfigError
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "own_tree"
+PAGE = Path(__file__).parents[3] / "docs/reference/bt-xml.md"
+CLOSE = "<mill_close/>"
+AT_CLOSE = "11:7: "
+WRONG = (
+    (CLOSE, f"<TryCatch>{CLOSE}<mill_open/></TryCatch>", AT_CLOSE + "TryCatch can be drawn and not be run"),
+    (CLOSE, "<mill_clos/>", "did you mean mill_close?"),
+    (CLOSE, f'<Decorator ID="Mine">{CLOSE}</Decorator>', AT_CLOSE + "tend: Mine has children and is no node"),
+    (CLOSE, "<mill_close><mill_open/></mill_close>", AT_CLOSE + "mill_close has 1 child; it needs none"),
+    (CLOSE, '<mill_close speed="1"/>', "11:19: mill_close has no port 'speed'"),
+    (CLOSE, f'<Precondition if="{{seen}}">{CLOSE}</Precondition>', "if of Precondition is a variable"),
+    (CLOSE, f'<Precondition if="true" else="RUNNING">{CLOSE}</Precondition>', "would never end"),
+    (CLOSE, f"<Parallel>{CLOSE}<mill_open/></Parallel>", "has mill do two things at once"),
+    (CLOSE, '<Script code="program := 1002"/>', "which the tree changes while it runs"),
+    (CLOSE, '<include path="a&#0;b"/>', "11:"),
+    ('target="vise"', 'target="vice"', "did you mean vise?"),
+    (
+        'to="vise"',
+        'to="{seen}"',
+        "31:7: tend cannot be built: target of loader_visit is '{to}', which is known",
+    ),
+    ('width_mm="30"', 'width_mm="30000"', "29:20: width_mm of jaw_close must be from 0 to 85"),
+    ("seen == 'good'", "sen == 'good'", "the variable 'sen' is read, and nothing gives it a value"),
+    ('ID="TakeOut" to="done"', 'ID="Take" to="done"', "the tree 'Take' is in none of these files"),
+    ('<input_port name="program">', '<input_port name="depth"/><input_port name="program">', "depth of tend"),
+    (
+        '<input_port name="program">',
+        '<output_port name="x"/><input_port name="program">',
+        "the port 'x' gives",
+    ),
+    ('main_tree_to_execute="Tend"', "", "tend.xml:1:1: which tree?"),
+)
+
+
+def refusal(folder: Path) -> str:
+    with pytest.raises(ConfigError) as refused:
+        load(folder / "plant.yaml")
+    return "\n".join(refused.value.problems)
+
+
+@pytest.mark.parametrize(("good", "wrong", "said"), WRONG)
+def test_what_cannot_be_run_is_refused_with_its_place(
+    tmp_path: Path, good: str, wrong: str, said: str
+) -> None:
+    copytree(EXAMPLE, tmp_path, dirs_exist_ok=True)
+    tree = tmp_path / "tend.xml"
+    text = tree.read_text("utf-8")
+    assert good in text
+    tree.write_text(text.replace(good, wrong, 1), "utf-8")
+    told = refusal(tmp_path)
+    assert said in told
+    assert str(tree) in told
+
+
+def test_a_tree_that_grows_with_its_subtrees_is_refused_at_once(tmp_path: Path) -> None:
+    copytree(EXAMPLE, tmp_path, dirs_exist_ok=True)
+    trees = [f'<SubTree ID="T{n + 1}"/><SubTree ID="T{n + 1}"/>' for n in range(60)] + ["<mill_open/>"]
+    written = "".join(
+        f'<BehaviorTree ID="T{n}"><Sequence>{each}</Sequence></BehaviorTree>' for n, each in enumerate(trees)
+    )
+    head = '<root BTCPP_format="4" main_tree_to_execute="T0">'
+    (tmp_path / "tend.xml").write_text(f"{head}{written}</root>", "utf-8")
+    told = refusal(tmp_path)
+    assert "a recipe has at most 2000" in told
+    assert "a recipe has at most 100" in told
+
+
+def test_a_tree_that_is_not_used_may_be_of_any_kind(tmp_path: Path) -> None:
+    copytree(EXAMPLE, tmp_path, dirs_exist_ok=True)
+    tree = tmp_path / "tend.xml"
+    other = (
+        '<BehaviorTree ID="Other"><SingleTrigger><of_another_plant/></SingleTrigger></BehaviorTree></root>'
+    )
+    tree.write_text(tree.read_text("utf-8").replace("</root>", other), "utf-8")
+    assert [each.name for each in load(tmp_path / "plant.yaml").cells[0].recipes] == ["tend"]
+
+
+def test_every_known_node_runs_or_is_refused_with_another_one() -> None:
+    assert set(BUILT_IN) - set(MAKERS) == set(INSTEAD)
+
+
+def test_the_reference_says_which_nodes_do_not_run() -> None:
+    part = PAGE.read_text("utf-8").split("## Which nodes run")[1].split("\n## ")[0]
+    names = {re.sub("(Double|String|Bool)$", "Int", name) for name in INSTEAD}
+    assert [name for name in sorted(names) if f"`{name}`" not in part] == []
