@@ -84,8 +84,9 @@ def forked(beginning: Beginning, steps: Iterable[Recorded], asked: Asked, words:
     parted = _execute(plant, rest, asked, found, troubles)
     if found.difference is not None:
         return found
-    if not found.steps or (parted[0] is None and not asked.changed):
-        raise _outside(found, parted[0])
+    if parted[0] is None and not asked.changed:
+        when = moment(found.unix_ns, "milliseconds")
+        raise ConfigError((f"a fork after the last step of the record, of {when}, has nothing after it",))
     builders.switch(asked.builders)
     first, *others = parted
     inputs: list[tuple[float, tuple[Event, ...]]] = []
@@ -102,14 +103,6 @@ def forked(beginning: Beginning, steps: Iterable[Recorded], asked: Asked, words:
     found.troubles = [each for each in troubles.of(found.until) if each.ends > found.at]
     found.world = _go_on(plant, found, inputs, asked, words)
     return found
-
-
-def _outside(found: Forked, first: Recorded | None) -> ConfigError:
-    """The record has nothing before the fork, or nothing after it."""
-    when = moment(found.unix_ns if first is None else first.unix_ns, "milliseconds")
-    if first is None:
-        return ConfigError((f"a fork after the last step of the record, of {when}, has nothing after it",))
-    return ConfigError((f"a fork before the first step of the record, of {when}, has no plant to fork",))
 
 
 def _supervised(model: PlantModel) -> frozenset[str]:
@@ -129,6 +122,8 @@ def _execute(
     found.at = found.until = plant.now
     for step in _until(steps, asked.until_ns):
         if step.unix_ns > asked.at_ns:
+            if not found.steps:  # it goes on from the plant's beginning
+                found.unix_ns = step.unix_ns - round((step.now - plant.now) * 1e9)
             return [step]
         found.steps, found.at, found.unix_ns = found.steps + 1, step.now, step.unix_ns
         found.until = step.now
