@@ -8,7 +8,6 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from pathlib import Path
 
 from arboleda.model.messages import TaskChanged, TaskState
@@ -47,6 +46,8 @@ class ReportsPart:
         self._waiting: deque[str] = deque()
         self._ending = threading.Event()
         self._failed = threading.Event()
+        self._starting = threading.Lock()  # a process that is started while the plant ends is ended, too
+        self._run: subprocess.Popen[str] | None = None
         self._thread = threading.Thread(target=self._work, name="reports", daemon=True)
 
     def start(self) -> None:
@@ -54,7 +55,10 @@ class ReportsPart:
 
     def stop(self) -> None:
         """End the report that is being written; what waits is left to `arboleda report`. Idempotent."""
-        self._ending.set()
+        with self._starting:
+            self._ending.set()
+            if self._run is not None:
+                self._run.kill()
         self._failed.set()
         if self._thread.ident is not None:
             self._thread.join()
@@ -87,29 +91,31 @@ class ReportsPart:
         folder.mkdir(mode=0o700, exist_ok=True)
         _prune(folder)
         target = folder / f"{task}.html"
-        run = subprocess.Popen(
-            self._command(task, self._state, target),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            umask=0o077,
-        )
-        said = self._said(run)
+        with self._starting:
+            if self._ending.is_set():
+                return
+            run = self._run = subprocess.Popen(
+                self._command(task, self._state, target),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                umask=0o077,
+            )
+        said = _said(run)
         if run.returncode == 0:
             LOG.info("why %s failed: %s (%s)", task, plain(said.partition("\n")[0], 200), target)
         elif not self._ending.is_set():
             LOG.warning("no report of %s: %s", task, plain(said.strip().rpartition("\n")[2], 300))
 
-    def _said(self, run: subprocess.Popen[str]) -> str:
-        """What it said until its end; it is ended where the plant ends, or it takes too long."""
-        waited_s = 0.0
-        while True:
-            with suppress(subprocess.TimeoutExpired):
-                return run.communicate(timeout=0.5)[0]
-            waited_s += 0.5
-            if self._ending.is_set() or waited_s > AT_MOST_S:
-                run.kill()
+
+def _said(run: subprocess.Popen[str]) -> str:
+    """What it said until its end; it is ended where it takes too long."""
+    try:
+        return run.communicate(timeout=AT_MOST_S)[0]
+    except subprocess.TimeoutExpired:
+        run.kill()
+        return run.communicate()[0]
 
 
 def _prune(folder: Path) -> None:
