@@ -1,0 +1,12 @@
+"""Every driver that takes part in the contract, by its name in a plant file: one row and one module each."""
+
+from __future__ import annotations
+
+from . import line_tcp, mqtt, ros
+from .bench import Bench
+
+BENCHES: dict[str, Bench] = {
+    "mqtt": mqtt.BENCH,
+    "ros": ros.BENCH,
+    "line_tcp": line_tcp.BENCH,
+}
