@@ -17,7 +17,8 @@ from .drivers.benches import BENCHES
 
 pytestmark = pytest.mark.system
 
-ASKED = pytest.mark.parametrize("shop", [name for name, bench in BENCHES.items() if bench.asks], indirect=True)
+ASKING = [name for name, bench in BENCHES.items() if bench.asks]
+ASKED = pytest.mark.parametrize("shop", ASKING, indirect=True)
 
 
 @pytest.fixture(params=BENCHES)
