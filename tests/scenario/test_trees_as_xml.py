@@ -8,7 +8,9 @@ from shutil import copytree
 import pytest
 
 from arboleda.app.config import load
+from arboleda.bt_xml.parameters import LARGEST
 from arboleda.model.messages import TaskState, Verb
+from arboleda.model.recipe import Limits
 from arboleda.testing import Rig
 
 from .restarts import ENDED, restart
@@ -105,3 +107,74 @@ def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: 
     rig.wait(30.0, until=lambda: state(rig) in ENDED)
     assert state(rig) is ends
     assert str(rig.outcomes()["one"].sentence or "") == why
+
+
+def ran(folder: Path, body: str, task: str = "cell tend #one", ports: str = "") -> Rig:
+    """A tree of this body, run to its end."""
+    tree = f'<BehaviorTree ID="T"><Sequence>{body}</Sequence></BehaviorTree>'
+    models = f'<TreeNodesModel><SubTree ID="T">{ports}</SubTree></TreeNodesModel>'
+    (folder / "tend.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="T">{tree}{models}</root>')
+    rig = Rig(load(folder / "plant.yaml"))
+    rig.wait(5.0)
+    rig.submit(task)
+    rig.wait(60.0, until=lambda: state(rig) in ENDED)
+    return rig
+
+
+def said(rig: Rig, fact: str, robot: str = "mill") -> object:
+    return dict(rig.plant.dispatcher.beliefs[robot].facts)[fact]
+
+
+CLAMPS = '<mill_clamp on="{on}"/>'
+SET, UNCLAMPED = '<Script code="on := true"/>', '<Script code="on := 0"/>'
+CLAMPED = f"{SET}{CLAMPS}"
+
+
+@pytest.mark.parametrize(
+    ("body", "clamped"),
+    [
+        (CLAMPED, True),
+        (f"{UNCLAMPED}{CLAMPS}", False),
+        (f'{CLAMPED}<Script code="on := on == 0"/>{CLAMPS}', False),
+        (f'{CLAMPED}<mill_tells clamped="{{is}}"/><Script code="on := !is"/>{CLAMPS}', False),
+        (f'<mill_tells door="{{d}}"/><Script code="on := d == \'open\'"/>{CLAMPS}', True),
+        (f'{UNCLAMPED}<Repeat num_cycles="2"><Sequence>{CLAMPS}{SET}</Sequence></Repeat>', True),
+    ],
+)  # fmt: skip
+def test_what_a_device_is_told_may_be_known_only_then(folder: Path, body: str, clamped: bool) -> None:
+    rig = ran(folder, body)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+    assert said(rig, "clamped") is clamped
+
+
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        ('<Script code="w := 300"/><jaw_close width_mm="{w}" force_n="4"/>',
+         "width_mm of jaw_close must be from 0 to 85, is '300'"),
+        ("<Script code=\"w := 'wide'\"/><jaw_close width_mm=\"{w}\" force_n=\"4\"/>",
+         "width_mm of jaw_close must be a number, is 'wide'"),
+        ('<Script code="p := 1003"/><mill_run program="{p}"/>', "program of mill_run is '1003'; there are"),
+        ('<Script code="p := 1"/><UnsetBlackboard key="p"/><mill_run program="{p}"/>',
+         "program of mill_run is the variable p, which has no value"),
+    ],
+)  # fmt: skip
+def test_a_value_that_a_device_does_not_take_fails_the_task(folder: Path, body: str, why: str) -> None:
+    rig = ran(folder, body)
+    assert state(rig) is TaskState.FAILED
+    assert why in str(rig.outcomes()["one"].sentence)
+
+
+def test_a_parameter_may_be_a_number(folder: Path) -> None:
+    ports = '<input_port name="width" type="double"/><input_port name="times" type="int"/>'
+    body = (
+        '<jaw_close width_mm="{width}" force_n="40"/><Repeat num_cycles="{times}"><mill_open/></Repeat>'
+        '<ScriptCondition code="width + times == 35.5"/>'
+    )
+    rig = ran(folder, body, "cell tend 33.5 times=2 #one", ports)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+    assert rig.submit("cell tend 90 2").state is TaskState.REFUSED
+    width, times = load(folder / "plant.yaml").cells[0].recipes[0].parameters
+    (cell,) = load(folder / "plant.yaml").cells
+    assert width.limits(cell) == Limits(lower=0.0, upper=85.0)
+    assert times.limits(cell) == Limits(lower=-LARGEST, upper=LARGEST, whole=True)

@@ -27,7 +27,12 @@ WRONG = (
     (CLOSE, f'<Precondition if="{{seen}}">{CLOSE}</Precondition>', "if of Precondition is a variable"),
     (CLOSE, f'<Precondition if="true" else="RUNNING">{CLOSE}</Precondition>', "would never end"),
     (CLOSE, f"<Parallel>{CLOSE}<mill_open/></Parallel>", "has mill do two things at once"),
-    (CLOSE, '<Script code="program := 1002"/>', "which the tree changes while it runs"),
+    (CLOSE, "<Script code=\"blank := 'slot_2'\"/>", "which the tree changes while it runs"),
+    (
+        'name="program">',
+        'name="program" type="bool">',
+        "13:19: program of mill_run must be a whole number; the port",
+    ),
     (CLOSE, '<include path="a&#0;b"/>', "11:"),
     ('target="vise"', 'target="vice"', "did you mean vise?"),
     (

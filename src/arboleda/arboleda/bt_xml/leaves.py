@@ -6,6 +6,7 @@ A node is called by the role of its device and what that does: `mill_run`, `load
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.kinds.person import PATIENCE_S, Person
@@ -17,6 +18,7 @@ from .nodes import Category, Kind, Port, Way, by_name, children
 
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 ANSWER = "answer"
+TELLS = "tells"
 
 
 def of_cell(cell: Cell) -> dict[str, Kind]:
@@ -77,7 +79,9 @@ def _of_verb(role: str, verb: DeviceVerb) -> Kind:
 def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     ports = [_port(name, type, is_needed=False) for name, type in facts.items()]
     within = Port(name="at_most_s", type="double", is_needed=True, about="how long it is waited for, in s")
+    told = [replace(each, way=Way.OUT) for each in ports]
     yield _kind(Category.CONDITION, f"{role}_says", *ports)
+    yield _kind(Category.ACTION, f"{role}_{TELLS}", *told)
     yield _kind(Category.ACTION, f"{role}_becomes", *ports, within)
 
 

@@ -9,7 +9,7 @@ from functools import cache
 
 from arboleda.model.outside import among, quoted
 
-from . import checking, nodes, values, variables
+from . import checking, nodes, parameters, values, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .nodes import Kind, Way
@@ -78,6 +78,7 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
                 raise NoDeviceError(_nobody(node, cell, kinds), node.place)
     findings = Findings()
     checking.check(forest, findings, kinds)
+    parameters.check(forest, forest.main or "", kinds, findings)
 
     def kind(node: Node) -> Kind | None:
         if node.is_subtree:

@@ -42,6 +42,13 @@ def objection(type: str, text: str) -> str | None:
     return known[0]
 
 
+def fits(given: str, taken: str) -> bool:
+    """Whether every value of a type is one of another; of types that nobody here knows it is."""
+    if given not in TYPES or taken not in TYPES or given == taken:
+        return True
+    return given in WHOLE and taken in NUMBERS
+
+
 def number(text: str) -> float:
     """The number that a text of a type of numbers spells."""
     return float(int(text, 16)) if "x" in text.lower() else float(text)
@@ -73,6 +80,8 @@ TYPES: Mapping[str, tuple[str, Callable[[str], bool]]] = {
     "bool": ("true or false", lambda text: text in BOOLS),
     "status": (" or ".join(STATUSES[:4]), lambda text: text in STATUSES),
 }
+WHOLE = ("int", "unsigned", "msec")
+NUMBERS = (*WHOLE, "double")
 SPELLINGS = {
     "unsigned int": "unsigned",
     "unsigned long": "unsigned",

@@ -202,7 +202,7 @@ def _read(cell: Cell, parameter: Parameter, word: str) -> str:
     if read is not None:
         return read
     called = parameter.called() if parameter.called else parameter.name
-    limits = parameter.limits
+    limits = parameter.limits(cell)
     if limits is None:
         raise TextError(_unknown(called, word, parameter.words(cell), cell.name))
     outside = OUTSIDE_WHOLE if limits.whole else OUTSIDE

@@ -33,6 +33,10 @@ def same_word(cell: Cell, word: str) -> object:
     return word
 
 
+def no_limits(cell: Cell) -> None:
+    """Of what is no number."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Limits:
     """Within which a number lies, both ends included."""
@@ -54,19 +58,20 @@ class Limits:
 class Parameter:
     """One word of a task: what it is called, what it can be in a cell, and what it means there.
 
-    `words`: all that it can be; of a number, whose `limits` say that, only examples. `called`: its name in
-    sentences, where they exist in several languages.
+    `words`: all that it can be; of a number, whose `limits` in a cell say that, only examples. `called`: its
+    name in sentences, where they exist in several languages.
     """
 
     name: str
     words: Callable[[Cell], Sequence[str]]
     value: Callable[[Cell, str], object] = same_word
     called: Phrase | None = None
-    limits: Limits | None = None
+    limits: Callable[[Cell], Limits | None] = no_limits
 
     def reads(self, cell: Cell, word: str) -> str | None:
         """The word as the cell has it, whatever its case; None where it is none of this parameter's."""
-        return self.limits.reads(word) if self.limits else known(word, self.words(cell))
+        limits = self.limits(cell)
+        return limits.reads(word) if limits else known(word, self.words(cell))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -46,7 +46,10 @@ class Number:
         ends = [shown(self.limits.lower), shown(self.limits.upper)]
         read = int if self.limits.whole else float
         return Parameter(
-            name=name, words=lambda cell: ends, value=lambda cell, word: read(word), limits=self.limits
+            name=name,
+            words=lambda cell: ends,
+            value=lambda cell, word: read(word),
+            limits=lambda cell: self.limits,
         )
 
 

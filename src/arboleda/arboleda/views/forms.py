@@ -40,7 +40,7 @@ def _parameter(cell: Cell, parameter: Parameter) -> Row:
 
 def _can_be(cell: Cell, parameter: Parameter) -> Row:
     """Its type, and what that allows: the words of a choice, the limits of a number."""
-    limits = parameter.limits
+    limits = parameter.limits(cell)
     if limits is None:
         return {"type": "choice", "choices": list(parameter.words(cell))}
     kind = "integer" if limits.whole else "number"

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from arboleda.bt_xml import names, script, values
+from arboleda.bt_xml import names, nodes, script, values
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.forest import Node as Written
-from arboleda.bt_xml.leaves import ANSWER
-from arboleda.bt_xml.nodes import FOR_EACH
+from arboleda.bt_xml.nodes import FOR_EACH, Kind, Way
 from arboleda.bt_xml.values import Variable
 
 from . import controls, decorators, leaves, nav2
@@ -22,7 +21,6 @@ from .scripts import Script
 
 Leaf = Callable[[Written, "list[Node]", Scope], "Node | None"]
 """Makes a node of one's own, around those below it; None where there is no such node."""
-OUTPUTS = ("output_key", "key", "out", "index", "value", ANSWER)
 Make = Callable[[str, "list[Node]", Given], Node]
 
 
@@ -33,6 +31,7 @@ class Builder:
     forest: Forest
     leaf: Leaf
     context: Clock
+    kinds: Mapping[str, Kind] = field(default_factory=dict)  # of the leaves
     written: list[tuple[Scope, str]] = field(default_factory=list)  # every variable that may get a value
 
     def tree(self, name: str, scope: Scope) -> Node:
@@ -41,7 +40,7 @@ class Builder:
 
     def _node(self, node: Written, scope: Scope) -> Node:
         made = self._subtree(node, scope) if node.is_subtree else self._made(node, scope)
-        self.written.extend(scope.place(name) for name in _writes(node))
+        self.written.extend(scope.place(name) for name in self._writes(node))
         made.scope = scope
         made.context = self.context
         scripts = {name: Script.of(node.own[name].value) for name in names.SCRIPTS if name in node.own}
@@ -79,19 +78,21 @@ class Builder:
         )
         return decorators.SubTree(node.name or name, [self.tree(name, inner)])
 
-
-def _writes(node: Written) -> set[str]:
-    """The variables that a node may give a value."""
-    found: set[str] = set()
-    scripts = [node.own[name].value for name in names.SCRIPTS if name in node.own]
-    scripts += [node.ports["code"].value] if node.kind in ("Script", "ScriptCondition") else []
-    for text in scripts:
-        found |= script.writes(script.parse(text))
-    for name in OUTPUTS:
-        if name in node.ports:
-            said = values.read(name, node.ports[name].value)
-            found.add(said.name if isinstance(said, Variable) else said)
-    return found
+    def _writes(self, node: Written) -> set[str]:
+        """The variables that a node may give a value."""
+        found: set[str] = set()
+        scripts = [node.own[name].value for name in names.SCRIPTS if name in node.own]
+        kind = nodes.built_in(node.kind) or self.kinds.get(node.kind)
+        for port in (kind.ports or {}).values() if kind is not None else ():
+            if port.name not in node.ports:
+                continue
+            text = node.ports[port.name].value
+            if port.type == "script":
+                scripts.append(text)
+            elif port.way is not Way.IN or node.kind == "UnsetBlackboard":
+                said = values.read(port.name, text)
+                found.add(said.name if isinstance(said, Variable) else said)
+        return found.union(*(script.writes(script.parse(text)) for text in scripts))
 
 
 def _typed(value: Value) -> Value:

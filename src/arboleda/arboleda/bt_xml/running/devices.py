@@ -3,34 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from arboleda.bt_xml import forest, leaves, values
-from arboleda.bt_xml.nodes import Kind
+from arboleda.bt_xml.nodes import Kind, Way
 from arboleda.bt_xml.values import Variable
 from arboleda.model.facts import Value
-from arboleda.model.messages import Failure
+from arboleda.model.messages import Failure, Reason
 from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
 from arboleda.recipes.errors import RecipeError
 from arboleda.recipes.handles import Ask, Step, handle
 from arboleda.trees.context import Context
+from arboleda.trees.leaves import Require
 from arboleda.trees.steps import framed
 
 from .errors import TreeError
 from .memory import Scope
-from .node import SUCCESS, Node, Result
-from .root import Forgiving
+from .node import Node
+from .scripts import ScriptError, spelled
+from .told import Asking, Order, Telling, Told, can_be_renewed, example_of, value_of
 
 ANSWER = leaves.ANSWER
+UNSAID = Phrase("xml.unsaid", "{robot} has said nothing of {fact}")
 
 
 @dataclass
 class Devices:
     """Makes the leaves of a tree in a cell.
 
-    What a device is told has to be known when the tree is built: a value that stands in the file, or a
-    parameter of the recipe.
+    Where a robot goes has to be known when the tree is built, for its way is planned then: a value that
+    stands in the file, or a parameter of the recipe. What else a device is told may be any variable.
     """
 
     context: Context
@@ -58,60 +63,86 @@ class Devices:
             return None
         try:
             return self._made(node, kind, below, scope)
-        except RecipeError as error:
+        except (RecipeError, ScriptError) as error:
             raise TreeError(str(error), node.place) from error
 
     def _made(self, node: forest.Node, kind: Kind, below: list[Node], scope: Scope) -> Node:
         role = self.roles[node.kind]
-        given = {name: self._value(node, kind, name, scope) for name in node.ports if name != ANSWER}
+        verb = node.kind.removeprefix(f"{role}_")
+        robot = self.context.cell.roles[role].name
+        name = node.name or node.kind
+        if verb == leaves.TELLS:
+            return self._telling(name, node, robot)
         device = handle(self.context.cell.roles[role], self.context)
-        step = self._step(device, node.kind.removeprefix(f"{role}_"), given, below)
-        leaf = Forgiving(node.name or node.kind, step, self.context, self.causes)
+        order = self._order(node, kind, scope, partial(_step, device, verb, below=below))
+        built = self._now(order, scope)
+        step = order.make(dict(built))
+        if not can_be_renewed(step):
+            self._fix(order, node, scope)
+            order = replace(order, variables={})
         if isinstance(step, Ask) and ANSWER in node.ports:
-            return Asking(leaf.name, step, self.context, self.causes, _variable(node))
-        return leaf
+            return Asking(name, step, self.context, self.causes, order, built, _variable(node, ANSWER))
+        return Told(name, step, self.context, self.causes, order, built)
 
-    def _step(self, device: Any, verb: str, given: dict[str, Value], below: list[Node]) -> Step:
-        if verb in SPECIAL:
-            return SPECIAL[verb](device, given, below)
-        step: Step = getattr(device, verb)(**given)
-        return step
+    def _order(
+        self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
+    ) -> Order:
+        ports = {name: port for name, port in (kind.ports or {}).items() if port.way is not Way.OUT}
+        said = {name: values.read(name, node.ports[name].value) for name in ports if name in node.ports}
+        written = {
+            name: value_of(node.kind, ports[name], each)
+            for name, each in said.items()
+            if not isinstance(each, Variable)
+        }
+        variables = {name: each.name for name, each in said.items() if isinstance(each, Variable)}
+        return Order(kind=node.kind, make=make, written=written, variables=variables, ports=ports)
 
-    def _value(self, node: forest.Node, kind: Kind, name: str, scope: Scope) -> Value:
-        port = (kind.ports or {})[name]
-        said = values.read(name, node.ports[name].value)
-        if isinstance(said, Variable):
-            place, key = scope.place(said.name)
-            found = place.values.get(key)
-            if found is None:
-                why = "known only while the tree runs; a device is told a value, or a parameter of the recipe"
-                raise RecipeError(f"{name} of {node.kind} is {quoted('{' + said.name + '}')}, which is {why}")
+    def _now(self, order: Order, scope: Scope) -> dict[str, Value]:
+        """Its values with those of variables that are known already, and examples of the others."""
+        found = dict(order.written)
+        for name, variable in order.variables.items():
+            known, port = scope.get(variable), order.ports[name]
+            found[name] = (
+                example_of(port)
+                if known is None
+                else value_of(order.kind, port, known if isinstance(known, str) else spelled(known))
+            )
+        return found
+
+    def _fix(self, order: Order, node: forest.Node, scope: Scope) -> None:
+        """Its variables must not change; RecipeError where one has no value yet."""
+        for name, variable in order.variables.items():
+            place, key = scope.place(variable)
+            if place.values.get(key) is None:
+                why = "known only while the tree runs; its way has to be known before"
+                shown = quoted("{" + variable + "}")
+                raise RecipeError(f"{name} of {node.kind} is {shown}, which is {why}")
             self.fixed.append((place, key, node))
-            said = str(found)
-        if (wanted := values.objection(port.type, said)) is not None:
-            raise RecipeError(f"{name} of {node.kind} must be {wanted}, is {quoted(said)}")
-        return READ.get(port.type, str)(said)
+
+    def _telling(self, name: str, node: forest.Node, robot: str) -> Node:
+        said = {fact: partial(self.context.fact, robot, fact) for fact in node.ports}
+
+        def unsaid() -> Failure | None:
+            missing = next((fact for fact, told in said.items() if told() is None), None)
+            if missing is None:
+                return None
+            return Failure(reason=Reason.PRECONDITION, sentence=UNSAID(robot=robot, fact=missing))
+
+        step = Require(leaves.TELLS, self.context, unsaid)
+        by_variable = {_variable(node, fact): told for fact, told in said.items()}
+        return Telling(name, step, self.context, self.causes, by_variable)
 
 
-class Asking(Forgiving):
-    """A question, whose answer becomes the value of a variable."""
-
-    def __init__(self, name: str, step: Ask, context: Context, causes: list[Failure], out: str) -> None:
-        super().__init__(name, step, context, causes)
-        self.ask = step
-        self.out = out
-
-    def work(self) -> Result:
-        result = super().work()
-        if result is SUCCESS and self.ask.answer is not None:
-            answer = self.ask.answer
-            self.scope.set(self.out, float(answer) if isinstance(answer, bool) else answer)
-        return result
-
-
-def _variable(node: forest.Node) -> str:
-    said = values.read(ANSWER, node.ports[ANSWER].value)
+def _variable(node: forest.Node, port: str) -> str:
+    said = values.read(port, node.ports[port].value)
     return said.name if isinstance(said, Variable) else said
+
+
+def _step(device: Any, verb: str, given: dict[str, Value], *, below: list[Node]) -> Step:
+    if verb in SPECIAL:
+        return SPECIAL[verb](device, given, below)
+    step: Step = getattr(device, verb)(**given)
+    return step
 
 
 def _visit(device: Any, given: dict[str, Value], below: list[Node]) -> Step:
@@ -126,8 +157,3 @@ def _ask(device: Any, given: dict[str, Value], below: list[Node]) -> Step:
 
 
 SPECIAL: Mapping[str, Callable[[Any, dict[str, Value], list[Node]], Step]] = {"visit": _visit, "ask": _ask}
-READ: Mapping[str, Callable[[str], Value]] = {
-    "int": lambda text: int(values.number(text.strip())),
-    "double": lambda text: values.number(text.strip()),
-    "bool": lambda text: text.strip().lower() in ("true", "1"),
-}

@@ -93,7 +93,7 @@ class Sleep(Leaf):
 class Step(Leaf):
     """A step of the plant: a command, a question, a check. `turn` counts how often it has begun."""
 
-    counts = ("turn",)
+    counts: ClassVar[tuple[str, ...]] = ("turn",)
     RESULTS: ClassVar = {Status.SUCCESS: SUCCESS, Status.FAILURE: FAILURE, Status.RUNNING: RUNNING}
 
     def __init__(self, name: str, step: Behaviour) -> None:
@@ -107,9 +107,13 @@ class Step(Leaf):
     def below(self) -> list[Node]:
         return []
 
+    def prepare(self) -> None:
+        """Before its step begins."""
+
     def work(self) -> Result:
         if self.begin():
             self.turn += 1
+            self.prepare()
         self.step.tick_once()
         return self.RESULTS[self.step.status]
 

@@ -111,13 +111,14 @@ def _joined(left: Value, sign: str, right: Value) -> Value:
 
 
 def _text(left: Value, right: Value) -> str:
-    text = "".join(each if isinstance(each, str) else _spelled(each) for each in (left, right))
+    text = "".join(each if isinstance(each, str) else spelled(each) for each in (left, right))
     if len(text) > LONGEST:
         raise ScriptError(f"a text of more than {LONGEST} characters")
     return text
 
 
-def _spelled(number: float) -> str:
+def spelled(number: float) -> str:
+    """A number as a text has it: a whole one without a point."""
     return shown(int(number)) if float(number).is_integer() else shown(number)
 
 

@@ -1,0 +1,143 @@
+"""What the parameters of a tree can be in a cell: what every node takes that is given them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from arboleda.model.facts import shown
+from arboleda.model.plant_model import Cell
+from arboleda.model.recipe import Limits, Parameter
+
+from . import leaves, nodes, values
+from .findings import Findings, Place
+from .forest import Forest, Node
+from .nodes import Kind, Port, Way
+from .values import NUMBERS, WHOLE, Variable
+
+MOST_LEVELS = 50
+LARGEST = 1_000_000_000  # of a number of which nobody says its limits
+BOOLS = ("true", "false")
+
+
+@dataclass(frozen=True)
+class _Allowed:
+    """`words` are all that there is, or examples within the limits of a number."""
+
+    words: Sequence[str]
+    limits: Limits | None = None
+
+
+@dataclass(frozen=True)
+class _Use:
+    """A port that is given a parameter."""
+
+    node: Node
+    port: Port
+    place: Place
+
+
+def of_tree(forest: Forest, main: str) -> list[Port]:
+    """The ports of a tree that are its parameters."""
+    model = forest.models.get(main)
+    ports = (model.ports or {}).values() if model is not None else ()
+    return [each for each in ports if each.way is Way.IN]
+
+
+def parameter(forest: Forest, main: str, port: Port) -> Parameter:
+    """The parameter of a recipe that a port of its main tree is."""
+
+    def allowed(cell: Cell) -> _Allowed:
+        return _allowed(port, [use.port for use in _uses(forest, leaves.of_cell(cell), main, port.name, 0)])
+
+    def value(cell: Cell, word: str) -> object:
+        limits = allowed(cell).limits
+        if limits is not None:
+            return int(word) if limits.whole else float(word)
+        if values.objection(port.type, word) is not None:
+            return word  # the tree is refused for that
+        return _as(port.type, word)
+
+    return Parameter(
+        name=port.name,
+        words=lambda cell: allowed(cell).words,
+        value=value,
+        limits=lambda cell: allowed(cell).limits,
+    )
+
+
+def check(forest: Forest, main: str, kinds: Mapping[str, Kind], findings: Findings) -> None:
+    """Keeps where a parameter of a type is given to what takes another one."""
+    for port in of_tree(forest, main):
+        for use in _uses(forest, kinds, main, port.name, 0):
+            if not values.fits(port.type, use.port.type):
+                wanted = f"{use.port.name} of {use.node.kind} must be {values.TYPES[use.port.type][0]}"
+                sentence = f"{wanted}; the port {port.name} of {main} is declared as {port.type}"
+                findings.mistake(use.place, sentence)
+
+
+def _as(type: str, word: str) -> object:
+    """The value that a word of a type is."""
+    if type == "bool":
+        return word == "true"
+    return values.number(word) if type == "double" else int(values.number(word)) if type in WHOLE else word
+
+
+def _allowed(port: Port, uses: Sequence[Port]) -> _Allowed:
+    """What a parameter can be that these ports are given."""
+    is_one_type = all(values.fits(port.type, each.type) for each in uses)
+    all_of_it = [port, *uses] if is_one_type else uses  # else the tree is refused where they are given
+    listed = [each.words or BOOLS for each in all_of_it if each.words or each.type == "bool"]
+    if listed:
+        return _Allowed([each for each in listed[0] if all(_takes(taking, each) for taking in all_of_it)])
+    if not any(each.type in NUMBERS for each in all_of_it):
+        return _Allowed([])
+    limits = _limits(all_of_it)
+    if limits.lower > limits.upper:
+        return _Allowed([])
+    known = any(each.limits is not None for each in uses)
+    examples = (limits.lower, limits.upper) if known else (1, 2)
+    read = int if limits.whole else float
+    return _Allowed([shown(read(each)) for each in examples], limits)
+
+
+def _takes(port: Port, word: str) -> bool:
+    if values.objection(port.type, word) is not None or (port.words and word not in port.words):
+        return False
+    if port.type == "bool" and word not in BOOLS:
+        return False
+    return port.limits is None or port.limits[0] <= values.number(word) <= port.limits[1]
+
+
+def _limits(ports: Sequence[Port]) -> Limits:
+    """Those within which each of the ports takes a number."""
+    lowest = [0.0 for each in ports if each.type in ("unsigned", "msec")]
+    ends = [each.limits for each in ports if each.limits is not None]
+    lower = max([-LARGEST, *lowest, *(each[0] for each in ends)])
+    upper = min([LARGEST, *(each[1] for each in ends)])
+    if any(each.type in WHOLE for each in ports):
+        return Limits(lower=math.ceil(lower), upper=math.floor(upper), whole=True)
+    return Limits(lower=float(lower), upper=float(upper))
+
+
+def _uses(forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level: int) -> Iterator[_Use]:
+    """Each port that is given a variable, in a tree and in those within."""
+    if level > MOST_LEVELS or tree not in forest.trees:
+        return
+    for node in forest.trees[tree].root.iterate():
+        for port_name in _given(node, name):
+            if node.is_subtree:
+                yield from _uses(forest, kinds, node.own["ID"].value, port_name, level + 1)
+                continue
+            kind = nodes.built_in(node.kind) or kinds.get(node.kind)
+            port = (kind.ports or {}).get(port_name) if kind is not None else None
+            if port is not None and port.way is not Way.OUT:
+                yield _Use(node, port, Place(node.place.file, node.ports[port_name].mark))
+
+
+def _given(node: Node, variable: str) -> Iterator[str]:
+    for name, attribute in node.ports.items():
+        said = values.read(name, attribute.value)
+        if isinstance(said, Variable) and said.name == variable:
+            yield name

@@ -1,0 +1,189 @@
+"""Steps of the plant whose values come from variables, and those that give variables a value."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from py_trees.behaviour import Behaviour
+
+from arboleda.bt_xml import values
+from arboleda.bt_xml.nodes import Port
+from arboleda.model.errors import ArboledaError
+from arboleda.model.facts import Value
+from arboleda.model.messages import Failure
+from arboleda.model.outside import among, quoted
+from arboleda.recipes.handles import Ask
+from arboleda.trees.context import Context
+from arboleda.trees.leaves import Act, Await, Require
+
+from . import memory
+from .memory import Scope
+from .node import SUCCESS, Result
+from .root import Forgiving
+from .scripts import ScriptError, spelled
+
+READ: Mapping[str, Callable[[str], Value]] = {
+    "int": lambda text: int(values.number(text.strip())),
+    "double": lambda text: values.number(text.strip()),
+    "bool": lambda text: text.strip().lower() in ("true", "1"),
+}
+EXAMPLES: Mapping[str, str] = {"int": "0", "double": "0", "bool": "true"}
+MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
+    Ask: ("answers", "asked", "make", "anew", "doing", "name", "title"),
+    Act: ("make", "anew", "doing", "name", "title"),
+    Require: ("obstacle",),
+    Await: ("arrived", "seconds", "otherwise"),
+}
+"""What of a step depends on the values that it was made with."""
+
+
+def value_of(kind: str, port: Port, text: str) -> Value:
+    """The value that a text is for a port of a device; ScriptError where it is none."""
+    wanted = values.objection(port.type, text)
+    if wanted is None and port.words and text not in port.words:
+        raise ScriptError(f"{port.name} of {kind} is {quoted(text)}; {among(text, port.words)}")
+    if wanted is None and port.limits and not port.limits[0] <= values.number(text) <= port.limits[1]:
+        wanted = f"from {port.limits[0]:g} to {port.limits[1]:g}"
+    if wanted is not None:
+        raise ScriptError(f"{port.name} of {kind} must be {wanted}, is {quoted(text)}")
+    return READ.get(port.type, str)(text)
+
+
+def example_of(port: Port) -> Value:
+    """Any value that a port takes."""
+    ends = () if port.limits is None else (f"{port.limits[0]:g}",)
+    text = next(iter((*port.words, *ends)), EXAMPLES.get(port.type, "?"))
+    return READ.get(port.type, str)(text)
+
+
+def can_be_renewed(step: Behaviour) -> bool:
+    """Whether a step can be given other values than those that it was made with."""
+    return isinstance(step, tuple(MADE_OF))
+
+
+def renew(step: Behaviour, fresh: Behaviour) -> None:
+    """Have a step do what another one would, which was made with other values."""
+    row = next(names for kind, names in MADE_OF.items() if isinstance(step, kind))
+    for name in row:
+        setattr(step, name, getattr(fresh, name))
+
+
+def as_variable(value: Value) -> memory.Value:
+    """A value as a variable has it: true and false are 1 and 0."""
+    return int(value) if isinstance(value, bool) else value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What a device is told by a node: its values, of which some are those of variables.
+
+    `make` makes the step with its values; ArboledaError where the device cannot be told so.
+    """
+
+    kind: str
+    make: Callable[[dict[str, Value]], Behaviour]
+    written: Mapping[str, Value]
+    variables: Mapping[str, str] = field(default_factory=dict)  # by port
+    ports: Mapping[str, Port] = field(default_factory=dict)
+
+    def values(self, scope: Scope) -> dict[str, Value]:
+        """All of them as they are now."""
+        return {**self.written, **{name: self._found(name, scope) for name in self.variables}}
+
+    def _found(self, name: str, scope: Scope) -> Value:
+        found = scope.get(self.variables[name])
+        if found is None:
+            what = f"{name} of {self.kind} is the variable {self.variables[name]}"
+            raise ScriptError(f"{what}, which has no value")
+        text = found if isinstance(found, str) else spelled(found)
+        return value_of(self.kind, self.ports[name], text)
+
+
+class Told(Forgiving):
+    """A step of a device, `built` with some values. What of it are variables is looked up when it begins.
+
+    `anew` are the values that it has been given since.
+    """
+
+    counts = (*Forgiving.counts, "anew")
+
+    def __init__(
+        self,
+        name: str,
+        step: Behaviour,
+        context: Context,
+        causes: list[Failure],
+        order: Order,
+        built: Mapping[str, Value],
+    ) -> None:
+        super().__init__(name, step, context, causes)
+        self.order = order
+        self.built = built
+        self.anew: dict[str, Value] = {}
+
+    def prepare(self) -> None:
+        if self.order.variables and (found := self.order.values(self.scope)) != (self.anew or self.built):
+            self._take(found)
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        super().restore(state)
+        if "anew" in state:
+            self._take(state["anew"])
+
+    def _take(self, found: dict[str, Value]) -> None:
+        try:
+            fresh = self.order.make(dict(found))
+        except ArboledaError as error:
+            raise ScriptError(str(error)) from error
+        if type(fresh) is not type(self.step):
+            raise ScriptError(f"{self.order.kind} would need a zone with these values; write them down")
+        renew(self.step, fresh)
+        self.anew = found
+
+
+class Asking(Told):
+    """A question, whose answer becomes the value of a variable."""
+
+    def __init__(
+        self,
+        name: str,
+        step: Ask,
+        context: Context,
+        causes: list[Failure],
+        order: Order,
+        built: Mapping[str, Value],
+        out: str,
+    ) -> None:
+        super().__init__(name, step, context, causes, order, built)
+        self.ask = step
+        self.out = out
+
+    def work(self) -> Result:
+        result = super().work()
+        if result is SUCCESS and self.ask.answer is not None:
+            self.scope.set(self.out, as_variable(self.ask.answer))
+        return result
+
+
+class Telling(Forgiving):
+    """What a device says of itself becomes the values of variables; it fails where that said nothing."""
+
+    def __init__(
+        self,
+        name: str,
+        step: Behaviour,
+        context: Context,
+        causes: list[Failure],
+        said: Mapping[str, Callable[[], Value | None]],
+    ) -> None:
+        super().__init__(name, step, context, causes)
+        self.said = said  # by variable
+
+    def work(self) -> Result:
+        result = super().work()
+        for variable, told in self.said.items() if result is SUCCESS else ():
+            if (found := told()) is not None:
+                self.scope.set(variable, as_variable(found))
+        return result
