@@ -12,7 +12,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home
-from arboleda.model.messages import Absence, Reason, Verb
+from arboleda.model.messages import Absence, OperatorRequest, Reason, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.simulator.world import BRIDGE, PLANT
 from arboleda.testing import shipped
@@ -121,6 +121,20 @@ def test_a_cell_with_nothing_to_do_takes_a_task_at_once(rig: Rig) -> None:
     away(rig, 20.0, PLANT)
     task = rig.submit("sis_b 0B 4").task
     assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_what_is_asked_of_a_plant_that_is_away_is_asked_of_robots_as_it_finds_them(rig: Rig) -> None:
+    rig.submit("sis_a 0B 4")
+    rig.wait_for("sis_a", "main/move to pick-up")
+    assert rig.operate(Verb.HOLD, "sis_a") is None
+    rig.wait(3.0)
+    rig.stall(PLANT, 6.0)
+    rig.tell(OperatorRequest(at=rig.now, verb=Verb.RESUME, scope="sis_a"))
+    rig.power_off("ra_1")
+    del rig.sent[:]
+    rig.wait(30.0)
+    assert motions(rig) == []
+    assert rig.plant.cells["sis_a"].state is CellState.HELD
 
 
 def test_a_short_pause_is_nothing(rig: Rig) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import filterfalse
 from typing import Any
@@ -57,6 +58,7 @@ OWN_CYCLE = Phrase("cell.own_cycle", "{arm} is in its own cycle; its plant file 
 # A plant steps at least as often as it beats. Boards stop by themselves after 1 s without a beat, so whoever
 # was away for longer finds robots that stand, however long the plant file lets them be silent.
 SHORTEST_ABSENCE_S, LONGEST_STALL_S = 1.0, 1.5
+Request = TaskRequest | OperatorRequest
 ROUND_BOUND = 100  # rounds over the cells in one step; more means cells that never leave each other in peace
 
 
@@ -121,6 +123,7 @@ class Plant:
         away_s = now - self.now
         if self._steps and away_s > self.away_after_s:
             self._come_back(away_s)
+            events = _requests_last(events, now)
         self.now, self._steps = now, True
         for event in events:
             if event.at > self.next_deadline:
@@ -466,6 +469,17 @@ class Plant:
         self.intake.closed = True
         for name, cell in self.cells.items():
             self._guard(name, partial(cell.close, drops_waiting=event.drops_waiting))
+
+
+def _requests_last(events: Iterable[Event], now: float) -> list[Event]:
+    """What a plant finds that was away, with what people asked for meanwhile as if they asked for it now.
+
+    They ask for it of robots as they are now, so the plant hears first what those have said since.
+    """
+    found = list(events)
+    requests = [each for each in found if isinstance(each, Request)]
+    heard = [each for each in found if not isinstance(each, Request)]
+    return [*heard, *(replace(request, at=now) for request in requests)]
 
 
 def _commands(message: Command | Notice) -> bool:
