@@ -37,6 +37,7 @@ from .parts.broker import OtherBroker, OwnBroker
 from .parts.cell_times import CellTimes
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
+from .parts.groot2 import Groot2Options, Groot2Part
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
@@ -78,6 +79,7 @@ class Options:
     keeps_waiting: bool = True  # for the next start; else what waits at the end is cancelled
     page: bool = True  # the API needs none, and a page takes a second to load
     recording: Recording | None = None  # None: no record is written
+    groot2: bool | None = None  # whether trees are shown to Groot2; None: where the plant file says so
     notes: tuple[str, ...] = ()  # what else a person should know of this start
 
 
@@ -98,6 +100,7 @@ class App:
         self._web = self._web_part(options) if "web" in parts else None
         options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
         self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
+        self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
         self._bridge: BridgePart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
@@ -128,6 +131,8 @@ class App:
             notes.append(f"MQTT broker: {self._broker.address}")
         if self._web is not None:
             notes += self._web.notes
+        if self._groot2 is not None:
+            notes += self._groot2.notes
         if self._alarms is not None and self.orchestrator is not None:
             notes += self._alarms.notes
         return notes
@@ -326,6 +331,9 @@ class App:
             self.watch(self._web.side.saw)
             self._count()
             self._parts.append(self._web)
+        if self._groot2 is not None:
+            self.watch(self._groot2.saw)
+            self._parts.append(self._groot2)
         self._join(bridge, drivers, self._link)
         if self.orchestrator is not None:
             systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
@@ -429,6 +437,15 @@ def _refuse_ros_robots(model: PlantModel) -> None:
 
 
 def _nothing() -> None: ...
+
+
+def _groot2(model: PlantModel, options: Options) -> Groot2Part | None:
+    """What shows trees to Groot2, where that is wanted; on the address of the HTTP API."""
+    wanted = model.groot2_port is not None if options.groot2 is None else options.groot2
+    if not wanted:
+        return None
+    where = Groot2Options(host=options.web.address, port=model.groot2_port)
+    return Groot2Part([cell.name for cell in model.cells], where)
 
 
 def _acts(store: Store) -> list[dict[str, Any]]:

@@ -211,6 +211,14 @@ PublicUrl = Annotated[
         help="How people reach a proxy before the HTTP API, e.g. https://plant.example; demands a token.",
     ),
 ]
+Groot2 = Annotated[
+    bool | None,
+    typer.Option(
+        "--groot2/--no-groot2",
+        help="Show each cell's tree to Groot2, where the HTTP API listens: the first cell on port 1667, or "
+        "on `groot2` of the plant file. [default: where the plant file has that]",
+    ),
+]
 Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
 
 
@@ -232,6 +240,7 @@ def up(
     public_url: PublicUrl = None,
     tls_cert: TlsCert = None,
     tls_key: TlsKey = None,
+    groot2: Groot2 = None,
     state: StateFolder = None,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
@@ -239,6 +248,7 @@ def up(
     shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    options = replace(options, groot2=groot2)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True)
 
 
@@ -260,6 +270,7 @@ def run(
     public_url: PublicUrl = None,
     tls_cert: TlsCert = None,
     tls_key: TlsKey = None,
+    groot2: Groot2 = None,
     state: StateFolder = None,
 ) -> None:
     """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input.
@@ -271,6 +282,7 @@ def run(
     shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    options = replace(options, groot2=groot2)
     _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False)
 
 

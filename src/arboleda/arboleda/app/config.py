@@ -212,6 +212,7 @@ def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None
     _check_sections(document)
     whole = [cell for cell in cells if cell is not None]
     regions = zones(document, whole)
+    _check_ports(document, shape)
     zoned: dict[str, Cell] = {
         cell.name: with_zones(document, cell, regions)
         if cell.is_storage
@@ -236,7 +237,17 @@ def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),
         history_days=shape.history_days,
+        groot2_port=shape.groot2,
     )
+
+
+def _check_ports(document: Document, shape: FileShape | None) -> None:
+    """Each cell needs two ports of its own for Groot2."""
+    if shape is not None and shape.groot2 is not None:
+        last = 65_536 - 2 * len(shape.cells)
+        if shape.groot2 > last:
+            rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"
+            document.problem(("groot2",), f"{rule}; is {shape.groot2}")
 
 
 def _timing(document: Document) -> TimingShape | None:

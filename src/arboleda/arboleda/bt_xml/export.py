@@ -7,7 +7,7 @@ has them in several subtrees of the same kind; those that only split it up are m
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from . import names, writing
@@ -25,16 +25,50 @@ CONDITIONS = ("condition",)
 TAKEN = frozenset([*BUILT_IN, *(each.value for each in Category)])
 
 
+@dataclass(frozen=True, kw_only=True)
+class LiveNode:
+    """A node with a number, as it stands in a tree that is watched. `paths`: the rows that say how it stands,
+    several for a node that only splits up a row of them; `tree`: the path of the tree that it is in.
+    """
+
+    kind: str
+    paths: tuple[str, ...]
+    tree: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveTree:
+    """A tree for who watches it: each node has its number in it, `_uid`, which counts `nodes` from 1."""
+
+    text: str
+    main: str
+    nodes: tuple[LiveNode, ...]
+
+
 def export(rows: Sequence[Mapping[str, Any]]) -> str:
     """The tree of these rows (path, name, kind, parameters), which are those of `views/tree_view.py`."""
+    writer = _Writer()
+    main = writer.tree(_tree_of(rows))
+    found = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
+    return writing.document([*writer.trees, writing.models(found)], main_tree_to_execute=main)
+
+
+def live(rows: Sequence[Mapping[str, Any]]) -> LiveTree:
+    """The same tree with the numbers and paths that BehaviorTree.CPP gives to who watches one."""
+    writer = _LiveWriter()
+    main = writer.tree(_tree_of(rows))
+    writer.trees[0] = replace(writer.trees[0], attributes={"ID": main, "_fullpath": ""})
+    used = {node.kind: BUILT_IN[node.kind] for node in writer.nodes if node.kind in BUILT_IN}
+    text = writing.document([*writer.trees, writing.models((used | writer.kinds).values())])
+    return LiveTree(text=text, main=main, nodes=tuple(writer.nodes))
+
+
+def _tree_of(rows: Sequence[Mapping[str, Any]]) -> _Node:
     nodes = {row["path"]: _Node(row) for row in rows}
     for path, node in nodes.items():
         if path != "root":
             nodes[path.rpartition(".")[0] or "root"].children.append(node)
-    writer = _Writer()
-    main = writer.tree(nodes["root"])
-    found = [kind for kind in writer.kinds.values() if kind.name not in BUILT_IN]
-    return writing.document([*writer.trees, writing.models(found)], main_tree_to_execute=main)
+    return nodes["root"]
 
 
 @dataclass
@@ -49,6 +83,13 @@ class _Node:
     @property
     def title(self) -> str:
         return str(self.row["name"])
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The rows that say how it stands."""
+        if not self.is_part:
+            return (str(self.row["path"]),)
+        return tuple(path for child in self.children for path in child.paths)
 
 
 @dataclass
@@ -81,10 +122,7 @@ class _Writer:
         return Tag(kind.name, {"name": node.title, **given}, below)
 
     def _below(self, node: _Node) -> Tag:
-        if not node.is_apart:
-            return self._tag(node)
-        part = {PART: "true"} if node.is_part else {}
-        return Tag("SubTree", {"ID": self.tree(node), "name": node.title, **part})
+        return self._subtree(node) if node.is_apart else self._tag(node)
 
     def _kind(self, row: Mapping[str, Any], *, around: int) -> Kind:
         """What a node is to a viewer; the ports of a kind are those of all its nodes."""
@@ -99,11 +137,46 @@ class _Writer:
         self.kinds[name] = Kind(name=name, category=category, ports=ports, fewest=fewest, most=most)
         return self.kinds[name]
 
+    def _subtree(self, node: _Node) -> Tag:
+        part = {PART: "true"} if node.is_part else {}
+        return Tag("SubTree", {"ID": self.tree(node), "name": node.title, **part})
+
     def _free_name(self, title: str) -> str:
-        name = _name(title)
-        free = next(each for each in _numbered(name) if each not in self._names)
+        free = self._next_name(title)
         self._names.add(free)
         return free
+
+    def _next_name(self, title: str) -> str:
+        return next(each for each in _numbered(_name(title)) if each not in self._names)
+
+
+@dataclass
+class _LiveWriter(_Writer):
+    """Numbers what it writes, each node before those below it."""
+
+    nodes: list[LiveNode] = field(default_factory=list)
+    _tree: str = ""  # the path of the one that is being written
+
+    def _tag(self, node: _Node) -> Tag:
+        number = self._number(node)
+        tag = super()._tag(node)
+        self.nodes[number - 1] = replace(self.nodes[number - 1], kind=tag.name)
+        return replace(tag, attributes={**tag.attributes, "_uid": str(number)})
+
+    def _subtree(self, node: _Node) -> Tag:
+        number, around, position = self._number(node), self._tree, len(self.trees)
+        name = self._next_name(node.title)
+        self._tree = f"{around}/{name}::{number}" if around else f"{name}::{number}"
+        path = self._tree
+        self.tree(node)
+        self._tree = around
+        written = self.trees[position]
+        self.trees[position] = replace(written, attributes={**written.attributes, "_fullpath": path})
+        return Tag("SubTree", {"ID": name, "_fullpath": path, "_uid": str(number)})
+
+    def _number(self, node: _Node) -> int:
+        self.nodes.append(LiveNode(kind="SubTree", paths=node.paths, tree=self._tree))
+        return len(self.nodes)
 
 
 def _divide(root: _Node) -> None:

@@ -495,6 +495,7 @@ class PlantModel:
     zones: tuple[str, ...] = ()
     foreign_commands: ForeignCommands = ForeignCommands.REFUSE
     history_days: float = 90.0  # how long ended tasks are kept
+    groot2_port: int | None = None  # where the first cell's tree is shown to Groot2
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)

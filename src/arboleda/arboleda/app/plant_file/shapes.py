@@ -73,6 +73,7 @@ class PlantShape(Shape):
     mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
     foreign_commands: Literal["refuse", "obey"] = "refuse"
     history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
+    groot2: Annotated[int | None, Field(ge=1, le=65_534)] = None
     paths: Any = None
     stations: Any = None
     palletizing: Any = None

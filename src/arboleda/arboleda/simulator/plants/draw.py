@@ -20,6 +20,7 @@ NOT_DRAWN = (
     ("", "kinds"),
     ("", "shared"),
     ("", "history_days"),
+    ("", "groot2"),
     ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
     ("zones", "free_while"),
     ("arm", "driver"),  # virtual boards play their devices

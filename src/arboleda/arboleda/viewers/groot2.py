@@ -1,0 +1,80 @@
+"""What Groot2 is told of one cell: requests of its protocol -> replies. It only reads."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from . import groot2_messages as messages
+from .groot2_messages import NoAnswer, Request, Transition, Type
+from .groot2_tree import NONE_YET, Row, ShownTree
+
+KEPT = 1000  # transitions between two requests for them, as BehaviorTree.CPP keeps
+READ_ONLY = "read only: breakpoints and hooks would change what robots do"
+Pack = Callable[[Any], bytes]  # plain data as MessagePack
+
+
+class Watched:
+    """The tree of a cell for those who watch it; times are Unix time in microseconds."""
+
+    def __init__(self, pack: Pack) -> None:
+        self._pack = pack
+        self._tree = ShownTree(NONE_YET)
+        self._rows: Sequence[Row] = ()
+        self._facts: Mapping[str, Any] = {}
+        self._recorded_from: int | None = None
+        self._transitions: deque[Transition] = deque(maxlen=KEPT)
+
+    def saw(self, rows: Sequence[Row], facts: Mapping[str, Any], at_us: int) -> None:
+        """The cell as a snapshot has it: the rows of its tree, none where none runs, and other facts."""
+        self._rows, self._facts = rows, facts
+        if rows and not self._tree.is_of(rows):
+            self._tree = ShownTree(rows)
+            self._transitions.clear()  # their numbers are those of the tree before
+        for node, status in self._tree.stand(rows):
+            if self._recorded_from is not None:
+                at = at_us - self._recorded_from
+                self._transitions.append(Transition(at_us=at, node=node, status=status))
+
+    def answer(self, parts: Sequence[bytes], now_us: int) -> list[bytes]:
+        """What a client is answered, whatever it sent."""
+        try:
+            request = messages.request_of(parts)
+            return messages.reply(request, self._tree.name, *self._told(request, now_us))
+        except NoAnswer as error:
+            return messages.refusal(error)
+
+    def _told(self, request: Request, now_us: int) -> list[bytes]:
+        if request.type is Type.TREE:
+            return [self._tree.xml]
+        if request.type is Type.STATUS:
+            return [messages.statuses(self._tree.codes)]
+        if request.type is Type.BLACKBOARD:
+            return [self._pack(self._blackboards(request.words.split(";")))]
+        if request.type is Type.HOOKS_DUMP:
+            return [b"[]"]
+        if request.type is Type.RECORDING:
+            return self._record(request.words, now_us)
+        if request.type is Type.TRANSITIONS:
+            found = messages.transitions(self._transitions)
+            self._transitions.clear()
+            return [found]
+        if request.type in (Type.REMOVE_ALL_HOOKS, Type.DISABLE_ALL_HOOKS):
+            return []  # there are none
+        raise NoAnswer(READ_ONLY)
+
+    def _blackboards(self, names: Sequence[str]) -> dict[str, Any] | None:
+        """Those of the trees that are named and there; None where none is."""
+        values = self._tree.values(self._rows)
+        values[self._tree.tree.main] = {**self._facts, **values[self._tree.tree.main]}
+        return {name: values[name] for name in names if name in values} or None
+
+    def _record(self, words: str, now_us: int) -> list[bytes]:
+        if words == "start":
+            self._recorded_from = now_us
+            self._transitions.clear()
+            return [str(now_us).encode()]
+        if words == "stop":
+            self._recorded_from = None
+        return []

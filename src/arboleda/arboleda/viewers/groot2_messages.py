@@ -1,0 +1,111 @@
+"""The messages by which a viewer such as Groot2 watches a tree of BehaviorTree.CPP, as bytes.
+
+What they look like is stated in `groot2_protocol.h` of BehaviorTree.CPP 4: a request is a header of 6 bytes,
+and for some types one part more; a reply is that header, 16 bytes that name the tree, then its parts.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum, IntEnum
+
+PROTOCOL = 2
+HEADER = struct.Struct("<BBI")  # protocol, type, the number of the request
+STATUS = struct.Struct("<HB")  # the number of a node, its status
+IDLE_FROM = 10  # is added to the status that a node had before it was idle
+LATEST_US = (1 << 48) - 1  # a time has 6 bytes
+MOST_NODES = (1 << 16) - 1  # a number of a node has 2
+WRONG_HEADER = "wrong request header"
+NOT_RECOGNIZED = "Request not recognized"
+TWO_PARTS = "must be 2 parts message"
+
+
+class Type(Enum):
+    """What is asked."""
+
+    TREE = b"T"
+    STATUS = b"S"
+    BLACKBOARD = b"B"
+    HOOK_INSERT = b"I"
+    HOOK_REMOVE = b"R"
+    BREAKPOINT_UNLOCK = b"U"
+    HOOKS_DUMP = b"D"
+    REMOVE_ALL_HOOKS = b"A"
+    DISABLE_ALL_HOOKS = b"X"
+    RECORDING = b"r"
+    TRANSITIONS = b"t"
+
+
+WITH_WORDS = {Type.BLACKBOARD, Type.HOOK_INSERT, Type.HOOK_REMOVE, Type.BREAKPOINT_UNLOCK, Type.RECORDING}
+
+
+class NodeStatus(IntEnum):
+    """How a node stands, as numbers of BehaviorTree.CPP."""
+
+    IDLE = 0
+    RUNNING = 1
+    SUCCESS = 2
+    FAILURE = 3
+    SKIPPED = 4
+
+
+class NoAnswer(Exception):
+    """What was asked is not understood, or refused; its text is what the client is told."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What a client asks; `words` is its second part."""
+
+    type: Type
+    number: int
+    words: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transition:
+    """A node has changed its status; the time is that since the recording began."""
+
+    at_us: int
+    node: int
+    status: NodeStatus
+
+
+def request_of(parts: Sequence[bytes]) -> Request:
+    """The request that these parts are; NoAnswer for what is none. The protocol's number is not looked at, as
+    BehaviorTree.CPP does not."""
+    if not parts or len(parts[0]) != HEADER.size:
+        raise NoAnswer(WRONG_HEADER)
+    _, letter, number = HEADER.unpack(parts[0])
+    try:
+        type = Type(bytes([letter]))
+    except ValueError:
+        raise NoAnswer(NOT_RECOGNIZED) from None
+    if type in WITH_WORDS and len(parts) != 2:
+        raise NoAnswer(TWO_PARTS)
+    words = parts[1].decode(errors="replace") if len(parts) == 2 else ""
+    return Request(type=type, number=number, words=words)
+
+
+def reply(request: Request, tree: bytes, *parts: bytes) -> list[bytes]:
+    """What is answered; `tree` are the 16 bytes that name it."""
+    return [HEADER.pack(PROTOCOL, request.type.value[0], request.number) + tree, *parts]
+
+
+def refusal(error: NoAnswer) -> list[bytes]:
+    return [b"error", str(error).encode()]
+
+
+def statuses(codes: Iterable[int]) -> bytes:
+    """How all nodes stand, by their numbers from 1."""
+    return b"".join(STATUS.pack(number, code) for number, code in enumerate(codes, start=1))
+
+
+def transitions(rows: Iterable[Transition]) -> bytes:
+    """9 bytes each: the time, the node, the status."""
+    return b"".join(
+        min(max(row.at_us, 0), LATEST_US).to_bytes(6, "little") + STATUS.pack(row.node, row.status)
+        for row in rows
+    )

@@ -1,0 +1,79 @@
+"""A cell's tree as Groot2 is shown it: rows of snapshots -> XML, and how each of its nodes stands."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from arboleda.bt_xml.export import LiveNode, LiveTree, live
+
+from .groot2_messages import IDLE_FROM, MOST_NODES, NodeStatus
+
+Row = Mapping[str, Any]
+STATUSES = {status.name: status for status in NodeStatus} | {"INVALID": NodeStatus.IDLE}
+NONE_YET: tuple[Row, ...] = ({"path": "root", "name": "no task yet", "kind": "idle", "status": "INVALID"},)
+
+
+class ShownTree:
+    """The tree that a cell runs, or ran last. Nodes that are idle again keep how they ended.
+
+    A tree whose nodes are the same is the same tree: it keeps its name of 16 bytes, and nobody loads it anew.
+    """
+
+    def __init__(self, rows: Sequence[Row]) -> None:
+        shown = rows[: MOST_NODES // 2]  # a node that is a tree of its own has two numbers
+        self.tree: LiveTree = live([{**row, "parameters": {}} for row in shown])
+        self.xml = self.tree.text.encode()
+        self.name = _uuid(self.xml)
+        self.codes = [0] * len(self.tree.nodes)
+        self._form = form_of(rows)
+
+    def is_of(self, rows: Sequence[Row]) -> bool:
+        return form_of(rows) == self._form
+
+    def stand(self, rows: Sequence[Row]) -> Iterator[tuple[int, NodeStatus]]:
+        """Take how nodes stand now, idle where there are no rows; each that has changed, by its number."""
+        known = {row["path"]: STATUSES.get(row["status"], NodeStatus.IDLE) for row in rows}
+        for number, node in enumerate(self.tree.nodes, start=1):
+            before, status = self.codes[number - 1], _status(node, known)
+            if status is NodeStatus.IDLE and before < IDLE_FROM:
+                self.codes[number - 1] = IDLE_FROM + before if before else 0
+            elif status is not NodeStatus.IDLE:
+                self.codes[number - 1] = status
+            if status != (before if before < IDLE_FROM else NodeStatus.IDLE):
+                yield number, status
+
+    def values(self, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+        """What nodes were given, by the path of their tree; that of the main tree is its name."""
+        found: dict[str, dict[str, Any]] = {node.tree or self.tree.main: {} for node in self.tree.nodes}
+        known = {row["path"]: row for row in rows}
+        for number, node in enumerate(self.tree.nodes, start=1):
+            row = known.get(node.paths[0], {}) if node.kind != "SubTree" else {}
+            if row.get("parameters"):
+                found[node.tree or self.tree.main][f"{number} {row['name']}"] = row["parameters"]
+        return found
+
+
+def form_of(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
+    """What of a tree stays while it runs."""
+    return [(row["path"], row["name"], row["kind"]) for row in rows]
+
+
+def _status(node: LiveNode, known: Mapping[str, NodeStatus]) -> NodeStatus:
+    """That of its row; of several, at work before ended, and ended only where nothing is left to do."""
+    there = [known.get(path, NodeStatus.IDLE) for path in node.paths]
+    if len(there) == 1:
+        return there[0]
+    for status in (NodeStatus.RUNNING, NodeStatus.FAILURE):
+        if status in there:
+            return status
+    return NodeStatus.SUCCESS if all(each is NodeStatus.SUCCESS for each in there) else NodeStatus.IDLE
+
+
+def _uuid(content: bytes) -> bytes:
+    """A UUID of version 4 in form, the same for the same content."""
+    name = bytearray(hashlib.sha256(content).digest()[:16])
+    name[6] = name[6] & 0x0F | 0x40
+    name[8] = name[8] & 0x3F | 0x80
+    return bytes(name)
