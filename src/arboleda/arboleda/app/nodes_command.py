@@ -9,6 +9,7 @@ import typer
 
 from arboleda.bt_xml import leaves, writing
 from arboleda.bt_xml.nodes import Kind, Way
+from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.model.plant_model import PlantModel
 
 from . import config
@@ -38,11 +39,13 @@ def nodes(
 
 
 def of_plant(model: PlantModel, cell: str | None) -> Mapping[str, Kind]:
-    """The kinds of nodes of a plant, or of one of its cells, by name."""
+    """The kinds of nodes of a plant, or of one of its cells, by name; those in Python with them."""
     names = [each.name for each in model.cells]
     if cell is not None and cell not in names:
         raise typer.BadParameter(f"'{cell}' is not a cell; there are {', '.join(names)}", param_hint="--cell")
-    return leaves.of_cells([each for each in model.cells if cell in (None, each.name)])
+    chosen = [each for each in model.cells if cell in (None, each.name)]
+    trees = [each for each in model.recipes if isinstance(each, TreeRecipe)]
+    return leaves.of_cells(chosen, {name: own for tree in trees for name, own in tree.own.items()}.values())
 
 
 def _line(kind: Kind) -> str:
@@ -51,7 +54,8 @@ def _line(kind: Kind) -> str:
         f"{'gives ' if each.way is Way.OUT else ''}{each.name} ({_what(each.words, each.about)})"
         for each in ports
     ]
-    return f"{kind.category.value} {kind.name}{': ' if said else ''}{'; '.join(said)}"
+    about = [f"  {kind.about}"] if kind.about else []
+    return "\n".join([f"{kind.category.value} {kind.name}{': ' if said else ''}{'; '.join(said)}", *about])
 
 
 def _what(words: tuple[str, ...], about: str) -> str:

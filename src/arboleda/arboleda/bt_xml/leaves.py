@@ -5,7 +5,7 @@ A node is called by the role of its device and what that does: `mill_run`, `load
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
@@ -13,16 +13,17 @@ from arboleda.kinds.person import PATIENCE_S, Person
 from arboleda.model.errors import ConfigError
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell, Robot
+from arboleda.recipes.nodes import Taken, WrittenNode
 
-from .nodes import Category, Kind, Port, Way, by_name, children
+from .nodes import MANY, Category, Kind, Port, Way, by_name, children
 
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
 ANSWER = "answer"
 TELLS = "tells"
 
 
-def of_cell(cell: Cell) -> dict[str, Kind]:
-    """The kinds of nodes of a cell by name; ConfigError where two devices would have the same."""
+def of_cell(cell: Cell, own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
+    """The kinds of nodes of a cell by name, with those in Python; ConfigError where two have the same."""
     found: dict[str, Kind] = {}
     for role, device in cell.roles.items():
         for kind in _of_device(cell, role, device):
@@ -31,14 +32,19 @@ def of_cell(cell: Cell) -> dict[str, Kind]:
                     (f"{cell.name}: two of its devices make a node {kind.name}; rename a role",)
                 )
             found[kind.name] = kind
+    for node in own:
+        if node.name in found:
+            raise ConfigError((f"{cell.name}: its devices make a node {node.name}; rename that in Python",))
+        found[node.name] = _of_python(cell, node)
     return found
 
 
-def of_cells(cells: Sequence[Cell]) -> dict[str, Kind]:
+def of_cells(cells: Sequence[Cell], own: Iterable[WrittenNode] = ()) -> dict[str, Kind]:
     """Those of several cells together; ConfigError where a name is another kind of node in another cell."""
     found: dict[str, Kind] = {}
+    written = tuple(own)
     for cell in cells:
-        for name, kind in of_cell(cell).items():
+        for name, kind in of_cell(cell, written).items():
             if found.setdefault(name, kind) != kind:
                 raise ConfigError((f"{name} is not the same in all cells; choose one: --cell {cell.name}",))
     return found
@@ -83,6 +89,44 @@ def _of_facts(role: str, facts: Mapping[str, FactType]) -> Iterator[Kind]:
     yield _kind(Category.CONDITION, f"{role}_says", *ports)
     yield _kind(Category.ACTION, f"{role}_{TELLS}", *told)
     yield _kind(Category.ACTION, f"{role}_becomes", *ports, within)
+
+
+def _of_python(cell: Cell, node: WrittenNode) -> Kind:
+    return Kind(
+        name=node.name,
+        category=_category(node),
+        ports=by_name([*(_taken(cell, each) for each in node.takes), *map(_given, node.gives.items())]),
+        fewest=node.fewest,
+        most=MANY if node.most is None else node.most,
+        about=node.about,
+    )
+
+
+def _category(node: WrittenNode) -> Category:
+    if not node.is_step:
+        return Category.ACTION if node.gives else Category.CONDITION
+    if node.most == 0:
+        return Category.ACTION
+    return Category.DECORATOR if node.most == 1 else Category.CONTROL
+
+
+def _taken(cell: Cell, taken: Taken) -> Port:
+    words = tuple(taken.words(cell))
+    limits = None if taken.limits is None else (taken.limits.lower, taken.limits.upper)
+    about = ", ".join(words) if limits is None else f"from {limits[0]:g} to {limits[1]:g}"
+    return Port(
+        name=taken.name,
+        type=TYPES[taken.type],
+        is_needed=taken.default is None,
+        default=None if taken.default is None else shown(taken.default),
+        words=words,
+        limits=limits,
+        about=about,
+    )
+
+
+def _given(row: tuple[str, type]) -> Port:
+    return Port(name=row[0], type=TYPES[row[1]], way=Way.OUT)
 
 
 def _ask(role: str) -> Kind:

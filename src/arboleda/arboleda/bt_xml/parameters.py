@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Limits, Parameter
 
-from . import leaves, nodes, values
+from . import nodes, values
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .nodes import Kind, Port, Way
@@ -19,6 +19,7 @@ from .values import NUMBERS, WHOLE, Variable
 MOST_LEVELS = 50
 LARGEST = 1_000_000_000  # of a number of which nobody says its limits
 BOOLS = ("true", "false")
+KindsOf = Callable[[Cell], Mapping[str, Kind]]
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,11 @@ def of_tree(forest: Forest, main: str) -> list[Port]:
     return [each for each in ports if each.way is Way.IN]
 
 
-def parameter(forest: Forest, main: str, port: Port) -> Parameter:
-    """The parameter of a recipe that a port of its main tree is."""
+def parameter(forest: Forest, main: str, port: Port, kinds: KindsOf) -> Parameter:
+    """The parameter of a recipe that a port of its main tree is; `kinds`: the leaves that a cell has."""
 
     def allowed(cell: Cell) -> _Allowed:
-        return _allowed(port, [use.port for use in _uses(forest, leaves.of_cell(cell), main, port.name, 0)])
+        return _allowed(port, [use.port for use in _uses(forest, kinds(cell), main, port.name, 0)])
 
     def value(cell: Cell, word: str) -> object:
         limits = allowed(cell).limits

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from py_trees.behaviour import Behaviour
 
-from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
+from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Recipe
 from arboleda.model.task import Order
+from arboleda.recipes.nodes import WrittenNode
 from arboleda.recipes.sharing import held
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 
 from . import leaves, parameters, runnable
 from .forest import Forest
+from .nodes import Kind
 from .running.build import Builder
 from .running.devices import Devices
 from .running.errors import TreeError
@@ -25,22 +28,33 @@ from .running.root import Main
 
 @dataclass(frozen=True, kw_only=True)
 class TreeRecipe(Recipe):
-    """A recipe of a file; `file` is what people know that by."""
+    """A recipe of a file; `file` is what people know that by. `own`: the nodes in Python that it may have."""
 
     file: str
+    own: Mapping[str, WrittenNode] = field(compare=False)
 
 
-def tree_recipe(name: str, file: str, forest: Forest) -> TreeRecipe:
-    """The recipe of the main tree of a forest that can be run; in a cell it is checked with each build."""
+def tree_recipe(name: str, file: str, forest: Forest, own: Mapping[str, WrittenNode]) -> TreeRecipe:
+    """The recipe of the main tree of a forest that can be run; in a cell it is checked with each build.
+
+    `own`: the nodes in Python, of which more may come until it is first built.
+    """
     main = forest.main
     assert main is not None
 
-    def build(order: Order, context: Context) -> Behaviour:
-        runnable.check_in_cell(forest, context.cell.name, leaves.of_cell(context.cell))
-        return _built(name, forest, main, order, context)
+    def kinds(cell: Cell) -> Mapping[str, Kind]:
+        return leaves.of_cell(cell, own.values())
 
-    known = tuple(parameters.parameter(forest, main, port) for port in parameters.of_tree(forest, main))
-    return TreeRecipe(name=name, build=build, parameters=known, about=_about(forest, main), file=file)
+    def build(order: Order, context: Context) -> Behaviour:
+        runnable.check_in_cell(forest, context.cell.name, kinds(context.cell))
+        return _built(name, forest, main, order, Devices(context, [], own))
+
+    known = tuple(
+        parameters.parameter(forest, main, port, kinds) for port in parameters.of_tree(forest, main)
+    )
+    return TreeRecipe(
+        name=name, build=build, parameters=known, about=_about(forest, main), file=file, own=own
+    )
 
 
 def _about(forest: Forest, main: str) -> str:
@@ -48,11 +62,10 @@ def _about(forest: Forest, main: str) -> str:
     return described.value.partition("\n")[0] if described is not None else ""
 
 
-def _built(name: str, forest: Forest, main: str, order: Order, context: Context) -> Behaviour:
+def _built(name: str, forest: Forest, main: str, order: Order, devices: Devices) -> Behaviour:
+    context, causes = devices.context, devices.causes
     context.back, context.origins = {}, set()
-    causes: list[Failure] = []
     scope = Scope(values={key: _variable(value) for key, value in order.values.items()})
-    devices = Devices(context, causes)
     builder = Builder(forest, devices.make, context, devices.kinds)
     tree = builder.tree(main, scope)
     changed = {(id(place), key) for place, key in builder.written}

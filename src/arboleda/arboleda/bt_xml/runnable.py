@@ -93,7 +93,8 @@ def check_in_cell(forest: Forest, cell: str, kinds: Mapping[str, Kind]) -> None:
 
 def _nobody(node: Node, cell: str, kinds: Mapping[str, Kind]) -> str:
     if node.children and not get_close_matches(node.kind, kinds, n=1):
-        return f"{node.kind} has children and is no node that Arboleda runs; take one of its own"
+        how = f'write it in Python: @node("{node.kind}")'
+        return f"{node.kind} has children and is no node that Arboleda runs; {how}"
     return f"no device of {cell} makes a node {node.kind}; {among(node.kind, sorted(kinds))}"
 
 

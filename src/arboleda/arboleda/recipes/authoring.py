@@ -53,7 +53,7 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     """
 
     def made(function: Callable[..., Step]) -> WrittenRecipe:
-        notes = _annotations(name, function)
+        notes = notes_of(name, function)
         declared = list(inspect.signature(function).parameters.values())[1:]
         read = {each.name: parameter(each.name, notes.get(each.name, each.default)) for each in declared}
         missing = next((each for each, found in read.items() if found is None), None)
@@ -72,7 +72,7 @@ def recipe(name: str) -> Callable[[Callable[..., Step]], WrittenRecipe]:
     return made
 
 
-def _annotations(name: str, function: Callable[..., Step]) -> dict[str, Any]:
+def notes_of(name: str, function: Callable[..., Step]) -> dict[str, Any]:
     """What the parameters are annotated with."""
     try:
         return inspect.get_annotations(function, eval_str=True)

@@ -6,6 +6,7 @@ import ast
 import importlib
 import inspect
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -16,12 +17,14 @@ from typing import Any
 
 from arboleda.bt_xml import checking, reading, runnable
 from arboleda.bt_xml.findings import Findings
+from arboleda.bt_xml.nodes import OTHER_SPELLINGS, Category, built_in
 from arboleda.bt_xml.recipe import tree_recipe
 from arboleda.drivers.port import spec_of
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link
 from arboleda.model.recipe import Recipe
+from arboleda.recipes import WrittenNode
 from arboleda.recipes.storage import RECIPES
 
 from .. import user_file
@@ -31,6 +34,8 @@ from .shapes import NAME_RULE, WORDS, is_name
 from .used import LONGEST, Spot, Used, Watch, Written, said
 
 SECTION: Place = ("uses",)
+NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
+CATEGORIES = tuple(each.value for each in Category)
 ENDING, TREES = ".py", ".xml"
 LARGEST = 256 * 1024  # bytes of a file
 TAKEN = tuple(each.name for each in RECIPES)
@@ -127,7 +132,7 @@ def _trees(document: Document, place: Place, word: str, used: Used) -> None:
         runnable.check(forest, findings)
         problems += findings.mistakes
     if not problems:
-        recipe = tree_recipe(name, known_as, forest)
+        recipe = tree_recipe(name, known_as, forest, used.nodes)
         problem = _objection("recipe", recipe, used.recipes, TAKEN, used)
         problems += [] if problem is None else [used.spot(recipe).problem(problem)]
         used.recipes.setdefault(name, recipe)
@@ -194,7 +199,8 @@ def _collect(document: Document, place: Place, module: ModuleType, used: Used) -
     recipes = {id(each): each for each in vars(module).values() if isinstance(each, Recipe)}
     kinds = {id(each): each for each in vars(module).values() if isinstance(each, IN_PYTHON)}
     drivers = {id(spec): spec for each in vars(module).values() if (spec := spec_of(each)) is not None}
-    if not recipes and not kinds and not drivers:
+    nodes = {id(each): each for each in vars(module).values() if isinstance(each, WrittenNode)}
+    if not recipes and not kinds and not drivers and not nodes:
         how = 'one is a function with @recipe("its name") or @kind("its name") before it'
         document.problem(place, f"has neither a recipe nor a kind; {how}, a driver a class with @driver")
         used.is_whole = False
@@ -210,6 +216,11 @@ def _collect(document: Document, place: Place, module: ModuleType, used: Used) -
             used.keep(document, used.spot(kind).problem(problem))
         else:
             used.kinds[kind.name] = kind
+    for node in nodes.values():
+        if problem := _objection_to_node(node, used):
+            used.keep(document, used.spot(node).problem(problem))
+        else:
+            used.nodes[node.name] = node
     for spec in drivers.values():
         if problem := _objection("driver", spec, used.drivers, LINKS, used):
             used.keep(document, used.spot(spec).problem(problem))
@@ -226,15 +237,28 @@ def _objection(
         return f"{shown(name)} cannot be the name of a {what}; it must be {NAME_RULE}"
     if name in taken:
         return f"the {what} {shown(name)} comes with Arboleda; give this one another name"
-    other = there.get(name)
+    return _twice(what, found, there, used)
+
+
+def _objection_to_node(found: WrittenNode, used: Used) -> str | None:
+    """Why trees of XML cannot have a node."""
+    if not isinstance(found.name, str) or not NODE.fullmatch(found.name):
+        return f"{shown(found.name)} cannot be the name of a node; it must be letters, digits and _"
+    if built_in(found.name) is not None or found.name in (*OTHER_SPELLINGS, *CATEGORIES):
+        return f"the node {shown(found.name)} comes with BehaviorTree.CPP; give this one another name"
+    return _twice("node", found, used.nodes, used)
+
+
+def _twice(what: str, found: Written, there: Mapping[str, Any], used: Used) -> str | None:
+    other = there.get(found.name)
     if other is None or other is found:
         return None
     first = used.spot(other)
-    return f"the {what} {shown(name)} is there twice; the other is on line {first.line} of {first.file}"
+    return f"the {what} {shown(found.name)} is there twice; the other is on line {first.line} of {first.file}"
 
 
 def _check_twice(document: Document, known_as: str, source: bytes) -> None:
-    """Keeps a problem for each recipe and kind whose function's name a later one has: Python forgets it."""
+    """Keeps a problem for each of these functions whose name a later one has: Python forgets it."""
     lines: dict[str, int] = {}
     for node in ast.parse(source).body:
         if not isinstance(node, ast.FunctionDef | ast.ClassDef):
@@ -249,4 +273,4 @@ def _check_twice(document: Document, known_as: str, source: bytes) -> None:
 
 def _marks(decorator: ast.expr) -> bool:
     name = decorator.attr if isinstance(decorator, ast.Attribute) else getattr(decorator, "id", "")
-    return name in ("recipe", "kind")
+    return name in ("recipe", "kind", "node", "function")

@@ -11,6 +11,7 @@ from itertools import combinations as pairs
 from py_trees import behaviours, decorators, timers
 from py_trees.behaviour import Behaviour
 
+from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.bt_xml.running.errors import TreeMistakes
 from arboleda.core.plant import Plant
 from arboleda.model.commands import Work
@@ -30,6 +31,7 @@ from .used import LONGEST, Used, Watch, said
 
 SPELLABLE = re.compile(r"(?!#)[!-~]+", re.ASCII)
 MOST = 200  # combinations of parameters that are tried
+HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
 AT_MOST = "becomes(..., at_most_s=...) of a device"
 NOT_WOKEN: Mapping[type[Behaviour], str] = {
@@ -216,7 +218,8 @@ def _without_value(cell: Cell, recipe: Recipe) -> str | None:
     """That a parameter can be nothing in a cell: it has no such targets."""
     for each in recipe.parameters:
         if not each.words(cell):
-            return f"{each.name} of {recipe.name} has no value to choose"
+            how = HOW_TO_CHOOSE if isinstance(recipe, TreeRecipe) else ""
+            return f"{each.name} of {recipe.name} has no value to choose{how}"
     return None
 
 

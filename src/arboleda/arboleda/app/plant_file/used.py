@@ -14,13 +14,14 @@ from arboleda.kinds import WrittenKind
 from arboleda.model.errors import ArboledaError, ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.recipe import Recipe
+from arboleda.recipes import WrittenNode
 
 from .document import Document
 from .robot_kind import RobotKind
 
 LONGEST = 500  # characters of a path, or of what an error says
 KindInPython = WrittenKind | RobotKind
-Written = Recipe | KindInPython | DriverSpec
+Written = Recipe | KindInPython | DriverSpec | WrittenNode
 Watch = Callable[["Spot", str], None]
 """Told what begins now, and where it stands: whoever watches knows what takes too long."""
 
@@ -48,6 +49,7 @@ class Used:
     recipes: dict[str, Recipe] = field(default_factory=dict)
     kinds: dict[str, KindInPython] = field(default_factory=dict)
     drivers: dict[str, DriverSpec] = field(default_factory=dict)
+    nodes: dict[str, WrittenNode] = field(default_factory=dict)  # for trees that are written as XML
     files: dict[str, str] = field(default_factory=dict)  # as Python knows them: as people do
     watch: Watch = unwatched
     is_whole: bool = True  # False: something could not be imported, so a name may be missing
@@ -56,7 +58,7 @@ class Used:
     broken: set[str] = field(default_factory=set)  # those of these that were told to be wrong
 
     def spot(self, written: Written) -> Spot:
-        """Where the function of a recipe or a kind begins, or the first method of a driver."""
+        """Where the function of a recipe, a kind or a node begins, or the first method of a driver."""
         if isinstance(written, TreeRecipe):
             return Spot(file=written.file)
         code = inspect.unwrap(_function(written)).__code__

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -16,6 +17,7 @@ from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
 from arboleda.recipes.errors import RecipeError
 from arboleda.recipes.handles import Ask, Step, handle
+from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Require
 from arboleda.trees.steps import framed
@@ -23,6 +25,8 @@ from arboleda.trees.steps import framed
 from .errors import TreeError
 from .memory import Scope
 from .node import Node
+from .own import Calculated, Within
+from .root import Forgiving
 from .scripts import ScriptError, spelled
 from .told import Asking, Order, Telling, Told, can_be_renewed, example_of, value_of
 
@@ -40,6 +44,7 @@ class Devices:
 
     context: Context
     causes: list[Failure]
+    own: Mapping[str, WrittenNode] = field(default_factory=dict)
     kinds: Mapping[str, Kind] = field(init=False)
     roles: Mapping[str, str] = field(init=False)  # of each kind
     fixed: list[tuple[Scope, str, forest.Node]] = field(
@@ -48,12 +53,13 @@ class Devices:
 
     def __post_init__(self) -> None:
         cell = self.context.cell
-        self.kinds = leaves.of_cell(cell)
+        self.kinds = leaves.of_cell(cell, self.own.values())
         self.roles = {
             name: next(
                 role for role in sorted(cell.roles, key=len, reverse=True) if name.startswith(f"{role}_")
             )
             for name in self.kinds
+            if name not in self.own
         }
 
     def make(self, node: forest.Node, below: list[Node], scope: Scope) -> Node | None:
@@ -61,10 +67,10 @@ class Devices:
         kind = self.kinds.get(node.kind)
         if kind is None:
             return None
-        try:
+        if node.kind in self.own:
+            return self._written(node, kind, self.own[node.kind], below, scope)
+        with _placed(node):
             return self._made(node, kind, below, scope)
-        except (RecipeError, ScriptError) as error:
-            raise TreeError(str(error), node.place) from error
 
     def _made(self, node: forest.Node, kind: Kind, below: list[Node], scope: Scope) -> Node:
         role = self.roles[node.kind]
@@ -84,6 +90,21 @@ class Devices:
             return Asking(name, step, self.context, self.causes, order, built, _variable(node, ANSWER))
         return Told(name, step, self.context, self.causes, order, built)
 
+    def _written(
+        self, node: forest.Node, kind: Kind, written: WrittenNode, below: list[Node], scope: Scope
+    ) -> Node:
+        """A node in Python; what its function raises has its place there."""
+        name = node.name or node.kind
+        inner = [Within(each, self.context, self.causes) for each in below]
+        with _placed(node):
+            order = self._order(node, kind, scope, partial(written.build, self.context, inner))
+            if not written.is_step:
+                outs = {port: _variable(node, port) for port in written.gives if port in node.ports}
+                return Calculated(name, written, order, outs)
+            self._fix(order, node, scope)
+            now = self._now(order, scope)
+        return Forgiving(name, framed(order.make(now)), self.context, self.causes)
+
     def _order(
         self, node: forest.Node, kind: Kind, scope: Scope, make: Callable[[dict[str, Value]], Step]
     ) -> Order:
@@ -99,14 +120,15 @@ class Devices:
 
     def _now(self, order: Order, scope: Scope) -> dict[str, Value]:
         """Its values with those of variables that are known already, and examples of the others."""
-        found = dict(order.written)
-        for name, variable in order.variables.items():
-            known, port = scope.get(variable), order.ports[name]
-            found[name] = (
-                example_of(port)
-                if known is None
-                else value_of(order.kind, port, known if isinstance(known, str) else spelled(known))
-            )
+        found: dict[str, Value] = {}
+        for name, port in order.ports.items():
+            known = scope.get(order.variables[name]) if name in order.variables else None
+            if name in order.written:
+                found[name] = order.written[name]
+            elif known is not None:
+                found[name] = value_of(order.kind, port, known if isinstance(known, str) else spelled(known))
+            elif name in order.variables:
+                found[name] = example_of(port)
         return found
 
     def _fix(self, order: Order, node: forest.Node, scope: Scope) -> None:
@@ -131,6 +153,15 @@ class Devices:
         step = Require(leaves.TELLS, self.context, unsaid)
         by_variable = {_variable(node, fact): told for fact, told in said.items()}
         return Telling(name, step, self.context, self.causes, by_variable)
+
+
+@contextmanager
+def _placed(node: forest.Node) -> Iterator[None]:
+    """What is wrong with a node as it is written has its place."""
+    try:
+        yield
+    except (RecipeError, ScriptError) as error:
+        raise TreeError(str(error), node.place) from error
 
 
 def _variable(node: forest.Node, port: str) -> str:

@@ -90,7 +90,11 @@ class Order:
 
     def values(self, scope: Scope) -> dict[str, Value]:
         """All of them as they are now."""
-        return {**self.written, **{name: self._found(name, scope) for name in self.variables}}
+        return {
+            name: self.written[name] if name in self.written else self._found(name, scope)
+            for name in self.ports
+            if name in self.written or name in self.variables
+        }
 
     def _found(self, name: str, scope: Scope) -> Value:
         found = scope.get(self.variables[name])

@@ -1,0 +1,59 @@
+"""Nodes that are written in Python: steps around what stands below them, and functions of values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.model.messages import Failure, Reason
+from arboleda.recipes.nodes import WrittenNode
+from arboleda.trees.context import Context
+
+from .leaves import Leaf
+from .node import FAILURE, SUCCESS, Node, Result
+from .root import FAILED
+from .told import Order, as_variable
+
+
+class Within(Node):
+    """A node of the tree below a step in Python, which finds the cause of its failure in the context."""
+
+    frame = True
+
+    def __init__(self, child: Node, context: Context, causes: list[Failure]) -> None:
+        super().__init__(child.name, [child])
+        self.context: Context = context
+        self.causes = causes
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status is not Status.RUNNING:
+            self.reset_children()
+        yield from super().tick()
+
+    def work(self) -> Result:
+        self.begin()
+        result = self.below[0].execute()
+        if result is FAILURE and self.context.failure is None:
+            generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
+            self.context.fail(self.causes[0] if self.causes else generic, self)
+        return result
+
+
+class Calculated(Leaf):
+    """A function of values, called at each tick; whatever it raises is the tree's."""
+
+    def __init__(self, name: str, written: WrittenNode, order: Order, outs: Mapping[str, str]) -> None:
+        super().__init__(name)
+        self.written = written
+        self.order = order
+        self.outs = outs  # by what it gives, the variables
+
+    def work(self) -> Result:
+        found = self.written.calculate(self.order.values(self.scope))
+        if found is None:
+            return FAILURE
+        for name, variable in self.outs.items():
+            self.scope.set(variable, as_variable(found[name]))
+        return SUCCESS
