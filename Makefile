@@ -1,11 +1,14 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
 BIN := .venv/bin
-PYTEST_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+PYTEST_ARGS ?= -n auto --dist worksteal
+INTEGRATION_ARGS ?= -n 5 --dist worksteal # more than cores: most of the time, tests of the real chain wait
+TESTS ?= tests/unit tests/scenario tests/meta
+INTEGRATION_TESTS ?= tests/contract tests/system tests/tutorial
 SEEDS ?= 1000
 CYCLES ?= 36
 DRAWN_SEEDS ?= 500
@@ -20,9 +23,13 @@ MUTANTS ?= --sample 400
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
 	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
 
-test:  ## run the test suite; PYTEST_ARGS="-m 'not system'" for the quick part
+test:  ## run the tests that move time by hand, and those of the repository itself; TESTS=tests/unit/core for others
 	@scripts/install test
-	$(BIN)/python -m pytest --ignore=tests/mutants $(PYTEST_ARGS)
+	$(BIN)/python -m pytest $(TESTS) $(PYTEST_ARGS)
+
+integration-test:  ## run the tests of real parts: adapters, processes, the page, the tutorial; INTEGRATION_TESTS=... for others
+	@scripts/install test
+	$(BIN)/python -m pytest $(INTEGRATION_TESTS) $(INTEGRATION_ARGS)
 
 test-tools:  ## install the programs of others, too large for everybody, that some tests try what we write with: rerun
 	@scripts/install tools
