@@ -193,3 +193,11 @@ def test_no_frames_raise_or_change_the_tree() -> None:
             parts.insert(0, bytes([2, letter]) + chance.randbytes(4))
         assert client.cell.answer(parts, chance.randrange(1 << 60))
     assert (client.ask("T"), client.statuses) == before
+
+
+def test_of_a_task_that_is_done_the_last_step_is_too() -> None:
+    client = Client(*tree(RUNNING, SUCCESS, RUNNING))
+    client.ask("r", "start")
+    client.cell.saw([], {}, 5, has_succeeded=True)
+    assert client.statuses == [10 + SUCCESS, 10 + SUCCESS, 10 + SUCCESS]
+    assert client.transitions[:2] == [(5, 1, SUCCESS), (5, 3, SUCCESS)]

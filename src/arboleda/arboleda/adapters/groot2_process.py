@@ -109,7 +109,8 @@ class Desk:
                 server.send_multipart([client, b"", *reply], zmq.NOBLOCK)
 
     def _saw(self, cell: Mapping[str, Any]) -> None:
-        self._watched[cell["name"]].saw(cell["tree"], cell["facts"], cell["at_us"])
+        watched = self._watched[cell["name"]]
+        watched.saw(cell["tree"], cell["facts"], cell["at_us"], has_succeeded=cell["has_succeeded"])
 
 
 def _from(port: int) -> Iterator[int]:

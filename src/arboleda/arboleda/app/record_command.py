@@ -158,20 +158,34 @@ def recover(
 
 
 EXPORT = "Write a record to one file: MCAP, to be kept or replayed elsewhere, or lines of JSON (.jsonl)."
+OF_TASK = (
+    "Or the tree of a task, with each change of its nodes, as viewers of BehaviorTree.CPP play it: "
+    "`arboleda record export lot42.btlog --task lot42`."
+)
 
 
-@cli.command(help=f"{EXPORT}\n\n{EXIT}", short_help=EXPORT)
+@cli.command(help=f"{EXPORT}\n\n{OF_TASK}\n\n{EXIT}", short_help=EXPORT)
 def export(
-    output: Annotated[Path, typer.Argument(metavar="OUTPUT", help="The file to make: .mcap or .jsonl.")],
+    output: Annotated[
+        Path, typer.Argument(metavar="OUTPUT", help="The file to make: .mcap, .jsonl or .btlog.")
+    ],
     file: File = None,
+    task: Annotated[str | None, typer.Option(metavar="ID", help="The task, for .btlog.")] = None,
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda.recorder import copying, reader
 
-    if output.suffix not in (".mcap", ".jsonl"):
-        raise ConfigError((f"{output}: must end in .mcap or .jsonl",))
+    if output.suffix not in (".mcap", ".jsonl", ".btlog"):
+        raise ConfigError((f"{output}: must end in .mcap, .jsonl or .btlog",))
+    if (output.suffix == ".btlog") != (task is not None):
+        raise ConfigError((f"{output}: --task ID is for files that end in .btlog, and these need it",))
     record = reader.opened(last_of(file, plant, state))
+    if task is not None:
+        from . import btlog_export
+
+        print(plain(f"{output} has {btlog_export.write(record, task, output) / 1e3:.1f} kB", LONGEST))
+        return
     if output.suffix == ".jsonl":
         count = copying.as_lines(record, output)
     else:

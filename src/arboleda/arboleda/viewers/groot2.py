@@ -26,13 +26,18 @@ class Watched:
         self._recorded_from: int | None = None
         self._transitions: deque[Transition] = deque(maxlen=KEPT)
 
-    def saw(self, rows: Sequence[Row], facts: Mapping[str, Any], at_us: int) -> None:
-        """The cell as a snapshot has it: the rows of its tree, none where none runs, and other facts."""
+    def saw(
+        self, rows: Sequence[Row], facts: Mapping[str, Any], at_us: int, *, has_succeeded: bool = False
+    ) -> None:
+        """The cell as a snapshot has it: the rows of its tree, none where none runs, and other facts.
+
+        `has_succeeded`: whether the task whose tree was seen last is done.
+        """
         self._rows, self._facts = rows, facts
         if rows and not self._tree.is_of(rows):
             self._tree = ShownTree(rows)
             self._transitions.clear()  # their numbers are those of the tree before
-        for node, status in self._tree.stand(rows):
+        for node, status in self._tree.stand(rows, has_succeeded=has_succeeded):
             if self._recorded_from is not None:
                 at = at_us - self._recorded_from
                 self._transitions.append(Transition(at_us=at, node=node, status=status))

@@ -32,8 +32,18 @@ class ShownTree:
     def is_of(self, rows: Sequence[Row]) -> bool:
         return form_of(rows) == self._form
 
-    def stand(self, rows: Sequence[Row]) -> Iterator[tuple[int, NodeStatus]]:
-        """Take how nodes stand now, idle where there are no rows; each that has changed, by its number."""
+    def stand(self, rows: Sequence[Row], *, has_succeeded: bool = False) -> Iterator[tuple[int, NodeStatus]]:
+        """Take how nodes stand now, idle where there are no rows; each that has changed, by its number.
+
+        A tree is gone as soon as it has ended, so nobody sees how. Of one that `has_succeeded` what was at
+        work last has, too.
+        """
+        for number in [
+            number for number, code in enumerate(self.codes, start=1) if code == NodeStatus.RUNNING
+        ]:
+            if has_succeeded and not rows:
+                self.codes[number - 1] = NodeStatus.SUCCESS
+                yield number, NodeStatus.SUCCESS
         known = {row["path"]: STATUSES.get(row["status"], NodeStatus.IDLE) for row in rows}
         for number, node in enumerate(self.tree.nodes, start=1):
             before, status = self.codes[number - 1], _status(node, known)

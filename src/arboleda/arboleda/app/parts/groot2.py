@@ -16,6 +16,7 @@ from typing import Any
 
 from arboleda.adapters.web.names import LOCAL, is_loopback
 from arboleda.model.errors import StartError
+from arboleda.model.messages import TaskState
 
 LOG = logging.getLogger(__name__)
 START_S = 20.0
@@ -41,14 +42,15 @@ class Groot2Part:
         self._process: subprocess.Popen[bytes] | None = None
         self._thread: threading.Thread | None = None
         self._news = threading.Event()
-        self._latest: deque[tuple[int, list[dict[str, Any]]]] = deque(maxlen=1)
+        self._latest: deque[tuple[int, Mapping[str, Any]]] = deque(maxlen=1)
+        self._tasks: dict[str, str] = {}  # the one whose tree each cell showed last
         self._stopping = False
         self._told: dict[str, bytes] = {}
         self.notes: list[str] = []
 
     def saw(self, snapshot: Mapping[str, Any]) -> None:
         """Have its trees shown; one that is older and was not shown yet is not shown any more."""
-        self._latest.append((time.time_ns() // 1000, snapshot["cells"]))
+        self._latest.append((time.time_ns() // 1000, snapshot))
         self._news.set()
 
     def start(self) -> None:
@@ -113,10 +115,15 @@ class Groot2Part:
             if not self._stopping:
                 LOG.error("what shows trees to Groot2 has ended; the plant goes on without it")
 
-    def _lines(self, at_us: int, cells: Sequence[Mapping[str, Any]]) -> Iterator[bytes]:
+    def _lines(self, at_us: int, snapshot: Mapping[str, Any]) -> Iterator[bytes]:
         """A line for each cell of which there is news."""
-        for cell in cells:
-            line = json.dumps(cell_for_viewers(cell), default=str).encode()
+        done = {task["id"] for task in snapshot["tasks"] if task["state"] == TaskState.DONE.value}
+        for cell in snapshot["cells"]:
+            if cell["task"] is not None:
+                self._tasks[cell["name"]] = cell["task"]["id"]
+            has_succeeded = self._tasks.get(cell["name"]) in done
+            shown = {**cell_for_viewers(cell), "has_succeeded": has_succeeded}
+            line = json.dumps(shown, default=str).encode()
             if self._told.get(cell["name"]) != line:
                 self._told[cell["name"]] = line
                 yield b'{"at_us": %d, %s\n' % (at_us, line[1:])

@@ -1,0 +1,61 @@
+"""A task of a record as `.btlog`, for viewers of BehaviorTree.CPP."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from arboleda.model.errors import ConfigError
+from arboleda.model.messages import ENDED, TaskState
+from arboleda.model.outside import plain
+from arboleda.recorder.followed import followed
+from arboleda.recorder.reader import Record
+from arboleda.recorder.views import Views
+from arboleda.viewers.btlog import Look, btlog
+
+LATER_NS = 2 * 10**9  # screens see a change a little later
+Change = tuple[int, dict[str, Any]]
+OVER = {state.value for state in ENDED}
+
+
+def write(record: Record, task: str, output: Path) -> int:
+    """The file's size; ConfigError for a task that the record does not have, or that had no tree in it."""
+    changes = list(_changes(record, task))
+    if not changes:
+        raise ConfigError((f"{plain(task, 80)}: {record.paths[0]} has no such task",))
+    looks = list(_looks(record, changes))
+    if not any(rows for _, rows in looks):
+        raise ConfigError((f"{plain(task, 80)}: it did not run in {record.paths[0]}",))
+    content = btlog(looks, has_succeeded=changes[-1][1]["state"] == TaskState.DONE.value)
+    try:
+        with open(output, "xb") as file:
+            file.write(content)
+    except FileExistsError:
+        raise ConfigError((f"{output} is there already: name another file",)) from None
+    except OSError as error:
+        raise ConfigError((f"{output}: cannot be written: {error.strerror}",)) from error
+    return len(content)
+
+
+def _looks(record: Record, changes: Sequence[Change]) -> Iterator[Look]:
+    """The task's tree whenever it has changed, and once more without rows where it is over."""
+    views, was_mine = Views(record), False
+    (began_ns, first), (ended_ns, last) = changes[0], changes[-1]
+    until_ns = ended_ns + LATER_NS if last["state"] in OVER else views.ended_ns
+    for look in followed(views, first["cell"], began_ns - LATER_NS, until_ns):
+        is_mine = look.cell["task"] is not None and look.cell["task"]["id"] == first["task"]
+        if is_mine or was_mine:
+            yield look.unix_ns // 1000, look.cell["tree"] if is_mine else []
+        was_mine = is_mine
+
+
+def _changes(record: Record, task: str) -> Iterator[Change]:
+    """What became of it, each with its time."""
+    word = f'"task":{json.dumps(task)}'.encode()
+    for unix_ns, data in record.raw():
+        if b'"TaskChanged"' in data and word in data:
+            for row in json.loads(data)["messages"]:
+                if row["type"] == "TaskChanged" and row["task"] == task:
+                    yield unix_ns, row
