@@ -14,17 +14,24 @@ from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Node as Written
 from arboleda.bt_xml.running.build import MAKERS, Builder
 from arboleda.bt_xml.running.memory import Scope
-from arboleda.bt_xml.running.node import ENDED, NoClock, Node, Result
+from arboleda.bt_xml.running.node import ENDED, Node, Result
 
 from .told import HEAD
 
-LINES = [line for line in (Path(__file__).parent / "rules.txt").read_text().splitlines() if line[:1] != "#"]
-CASES = list(zip(LINES[::2], LINES[1::2], strict=True))
+
+def cases(name: str) -> list[tuple[str, str]]:
+    lines = (Path(__file__).parent / name).read_text("utf-8").splitlines()
+    lines = [line for line in lines if line[:1] != "#"]
+    return list(zip(lines[::2], lines[1::2], strict=True))
+
+
+CASES = [*cases("rules.txt"), *cases("rules_more.txt")]
+TIMED = cases("rules_time.txt")
+BETWEEN_S = 0.2  # two ticks of these
 LETTERS = {Status.INVALID: "I", Status.RUNNING: "R", Status.SUCCESS: "S", Status.FAILURE: "F"}
 RESULTS = {"S": Result.SUCCESS, "F": Result.FAILURE, "R": Result.RUNNING, "K": Result.SKIPPED}
 SAID = {result: letter for letter, result in RESULTS.items()}
-NEED_TIME = {"Timeout", "Delay", "Sleep", "RateController"}
-OF_NAV2 = {"RecoveryNode", "PipelineSequence", "RoundRobin"}
+OF_VERSION_3 = {f"BlackboardCheck{each}" for each in ("Int", "Double", "String", "Bool")}
 SAME_AS_ANOTHER = {"Switch3", "Switch4", "Switch5", "Switch6", "LoopBool", "LoopDouble", "LoopString"}
 
 
@@ -50,6 +57,15 @@ def letters(node: Behaviour) -> str:
     return LETTERS[node.status] + "".join(map(letters, node.children))
 
 
+class Clock:
+    """A clock that is moved by hand."""
+
+    now = 0.0
+
+    def wake_at(self, at: float) -> None:
+        """Every tick comes anyway."""
+
+
 def ticks(trees: str, many: int) -> list[str]:
     findings = Findings()
     head = HEAD.replace(">", ' main_tree_to_execute="Main">')
@@ -57,9 +73,11 @@ def ticks(trees: str, many: int) -> list[str]:
     checking.check(forest, findings)
     assert findings.mistakes == ()
     scope = Scope(values={"n": 0.0, "m": "2"})
-    tree = Builder(forest, leaf, NoClock()).tree("Main", scope)
+    clock = Clock()
+    tree = Builder(forest, leaf, clock).tree("Main", scope)
     said = []
-    for _ in range(many):
+    for number in range(many):
+        clock.now = number * BETWEEN_S
         result = tree.execute()
         if result in ENDED:
             tree.status = Status.INVALID
@@ -69,11 +87,52 @@ def ticks(trees: str, many: int) -> list[str]:
 
 @pytest.mark.parametrize("part", range(10))
 def test_a_tree_comes_to_the_same_at_every_tick(part: int) -> None:
-    for trees, expected in CASES[part::10]:
+    for trees, expected in [*CASES, *TIMED][part::10]:
         assert ticks(trees, 12) == expected.split(), trees
 
 
 def test_there_are_many_trees_and_every_kind_of_node_is_in_some() -> None:
     assert len(CASES) >= 500
-    there = set(re.findall(r"<(\w+)", "".join(trees for trees, _ in CASES)))
-    assert set(MAKERS) - there - NEED_TIME - OF_NAV2 - SAME_AS_ANOTHER == {"SetBlackboard", "UnsetBlackboard"}
+    there = set(re.findall(r"<(\w+)", "".join(trees for trees, _ in [*CASES, *TIMED])))
+    assert set(MAKERS) - there - OF_VERSION_3 - SAME_AS_ANOTHER == {"SetBlackboard", "UnsetBlackboard"}
+
+
+CHECKS = [
+    ("Int", "2", "2.0", "S"),
+    ("Int", "2", "3", "F"),
+    ("Double", "0.5", "{m}", "F"),
+    ("String", "2", "{m}", "S"),
+    ("Bool", "true", "1", "S"),
+    ("Bool", "true", "false", "F"),
+    ("String", "{none}", "{none}", "F"),
+]
+
+
+@pytest.mark.parametrize(("kind", "one", "other", "ends"), CHECKS)
+def test_the_checks_of_version_3_compare_by_type(kind: str, one: str, other: str, ends: str) -> None:
+    check = f"BlackboardCheck{kind}"
+    tree = f'<{check} value_A="{one}" value_B="{other}"><AlwaysSuccess/></{check}>'
+    assert ticks(f'<BehaviorTree ID="Main">{tree}</BehaviorTree>', 1)[0][0] == ends
+
+
+def test_a_check_of_version_3_leaves_its_child_when_the_values_differ() -> None:
+    runs = '<T plan="R" _onHalted="n += 5"/>'
+    check = f'<BlackboardCheckInt value_A="{{n}}" value_B="0">{runs}</BlackboardCheckInt>'
+    later = '<Delay delay_msec="300"><Script code="n := 1"/></Delay>'
+    tree = f'<Parallel success_count="2" failure_count="2">{check}{later}</Parallel>'
+    said = ticks(f'<BehaviorTree ID="Main">{tree}</BehaviorTree>', 4)
+    assert said[1:] == ["R:RRRRI:0", "R:RRRSI:1", "F:IIIII:6"]
+
+
+def test_what_was_seen_of_a_variable_is_kept() -> None:
+    scope = Scope()
+    scope.set("x", 1)
+    assert scope.kept() == {"values": {"x": 1}}
+    seen = scope.watch("x")
+    again = Scope()
+    again.restore(scope.kept() or {})
+    assert again.watch("x") == seen == 1
+    again.set("x", 1)
+    assert again.watch("x") == 2
+    again.unset("x")
+    assert again.watch("x") == 0

@@ -174,7 +174,7 @@ OF_NAV2: Mapping[str, Kind] = {
         _decorator("GoalUpdatedController", "goal?:", "goals?:"),
         _decorator("PathLongerOnApproach", "path?:", "prox_len:double=3.0", "length_factor:double=2.0"),
         _control("NonblockingSequence"),
-        _control("PersistentSequence", "<>current_child_idx?:int"),
+        _control("PersistentSequence", "<>current_child_idx:int"),
         _control("PauseResumeController", "pause_service_name?:", "resume_service_name?:"),
     )
 }

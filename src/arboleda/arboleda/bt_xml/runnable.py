@@ -18,19 +18,12 @@ from .values import Variable
 
 MOST_NODES = 2000  # of a recipe, each subtree counted wherever it stands
 MOST_LEVELS = 100  # of nodes below each other, through all subtrees
-COMPARE = "compare with a script: <Precondition if=...> or _skipIf"
-REMEMBER = "keep what you compare with in a variable: <Script code=...>"
 NO_ROBOT_OF_NAV2 = "a device of the plant says where it is: its node ..._says or ..._becomes"
+NO = ("false", "False", "FALSE", "0")
 INSTEAD: Mapping[str, str] = {
-    "TryCatch": "take Fallback, with what answers a failure as its last child",
     "ManualSelector": "ask a person of the plant, and take Switch2",
-    **dict.fromkeys([f"BlackboardCheck{each}" for each in ("Int", "Double", "String", "Bool")], COMPARE),
-    **dict.fromkeys(("SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated"), REMEMBER),
     **dict.fromkeys(("DistanceController", "SpeedController", "PathLongerOnApproach"), NO_ROBOT_OF_NAV2),
-    **dict.fromkeys(("GoalUpdater", "GoalUpdatedController"), NO_ROBOT_OF_NAV2),
-    "SingleTrigger": "take RunOnce",
-    "NonblockingSequence": "take Parallel",
-    "PersistentSequence": "take SequenceWithMemory",
+    "GoalUpdater": NO_ROBOT_OF_NAV2,
     "PauseResumeController": "an operator holds and resumes a cell",
 }
 """The known nodes that are not run, and what to take."""
@@ -116,6 +109,11 @@ def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
         said = values.read(name, attribute.value)
         if port is not None and port.type == "script" and isinstance(said, Variable):
             sentence = f"{name} of {node.kind} is a variable; write the script itself"
+            findings.mistake(place, sentence)
+        if name == "catch_on_halt" and said not in NO:
+            sentence = (
+                f"{name} of {node.kind} must be false: while a tree is left, no device is told anything"
+            )
             findings.mistake(place, sentence)
         if port is not None and port.type == "status" and said in ("RUNNING", "IDLE"):
             sentence = f"{name} of {node.kind} must be SUCCESS, FAILURE or SKIPPED: {said} would never end"

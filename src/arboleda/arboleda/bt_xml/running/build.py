@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from arboleda.bt_xml import names, nodes, script, values
 from arboleda.bt_xml.forest import Forest
@@ -11,11 +12,11 @@ from arboleda.bt_xml.forest import Node as Written
 from arboleda.bt_xml.nodes import FOR_EACH, Kind, Way
 from arboleda.bt_xml.values import Variable
 
-from . import controls, decorators, leaves, nav2
+from . import controls, decorators, leaves, nav2, watching
 from .decorators import ALL_DONE, ALL_FAILED, INVERTED, Turned
 from .errors import TreeError
 from .memory import Scope, Value
-from .node import FAILURE, SUCCESS, Clock, Node
+from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Clock, Node
 from .ports import Given
 from .scripts import Script
 
@@ -123,6 +124,10 @@ def _loop(name: str, below: list[Node], given: Given) -> Node:
     return decorators.ForEach(name, below[0], given, source="queue", out="value")
 
 
+def _check(name: str, below: list[Node], given: Given, *, same: Callable[[Value, Value], bool]) -> Node:
+    return watching.BlackboardCheck(name, below[0], given, same)
+
+
 def _alone(kind: Callable[[str, Given], Node]) -> Make:
     return lambda name, below, given: kind(name, given)
 
@@ -135,6 +140,7 @@ MAKERS: Mapping[str, Make] = {
     "Fallback": _control(controls.InFallback),
     "AsyncFallback": _control(controls.AsyncFallback),
     "ReactiveFallback": _control(controls.ReactiveFallback),
+    "TryCatch": _control(controls.TryCatch),
     "Parallel": _given(controls.Parallel),
     "ParallelAll": _given(controls.ParallelAll),
     "IfThenElse": _control(controls.IfThenElse),
@@ -143,6 +149,10 @@ MAKERS: Mapping[str, Make] = {
     "RecoveryNode": _given(nav2.RecoveryNode),
     "PipelineSequence": _control(nav2.PipelineSequence),
     "RoundRobin": _given(nav2.RoundRobin),
+    "NonblockingSequence": _control(nav2.NonblockingSequence),
+    "PersistentSequence": _given(nav2.PersistentSequence),
+    "SingleTrigger": _around(watching.SingleTrigger),
+    "GoalUpdatedController": _around(watching.GoalUpdatedController),
     "RateController": _around(decorators.RateController),
     "Inverter": lambda name, below, given: Turned(name, below[0], INVERTED),
     "ForceSuccess": lambda name, below, given: Turned(name, below[0], ALL_DONE),
@@ -159,6 +169,10 @@ MAKERS: Mapping[str, Make] = {
     "RunOnce": _around(decorators.RunOnce),
     "Precondition": _around(decorators.Precondition),
     **dict.fromkeys(("LoopInt", "LoopBool", "LoopDouble", "LoopString"), _loop),
+    "SkipUnlessUpdated": lambda name, below, given: watching.WhenUpdated(name, below[0], given, SKIPPED),
+    "WaitValueUpdate": lambda name, below, given: watching.WhenUpdated(name, below[0], given, RUNNING),
+    **{kind: partial(_check, same=same) for kind, same in watching.SAME.items()},
+    "WasEntryUpdated": _alone(watching.WasEntryUpdated),
     "AlwaysSuccess": lambda name, below, given: leaves.Always(name, SUCCESS),
     "AlwaysFailure": lambda name, below, given: leaves.Always(name, FAILURE),
     "Script": lambda name, below, given: leaves.RunScript(name, given.said["code"]),

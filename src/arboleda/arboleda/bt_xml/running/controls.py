@@ -94,6 +94,42 @@ class SequenceWithMemory(InSequence):
         return FAILURE
 
 
+class TryCatch(Node):
+    """All children but the last in order; where one fails, the last one is ticked, and this has failed."""
+
+    sign = "sequence"
+    counts = ("at", "skipped", "catches")
+
+    def __init__(self, name: str, children: Sequence[Node]) -> None:
+        super().__init__(name, children)
+        self.reset_counts()
+
+    def reset_counts(self) -> None:
+        self.at = self.skipped = 0
+        self.catches = False
+
+    def work(self) -> Result:
+        if self.begin():
+            self.skipped, self.catches = 0, False
+        *tried, caught = self.below
+        while not self.catches and self.at < len(tried):
+            result = tried[self.at].execute()
+            if result is RUNNING:
+                return RUNNING
+            if result is FAILURE:
+                self.reset_children()
+                self.at, self.catches = 0, True
+            else:
+                self.at += 1
+                self.skipped += result is SKIPPED
+        if self.catches and caught.execute() is RUNNING:
+            return RUNNING
+        all_skipped, failed = self.skipped == len(tried), self.catches
+        self.reset_children()
+        self.reset_counts()
+        return FAILURE if failed else SKIPPED if all_skipped else SUCCESS
+
+
 class Reactive(Node):
     """All children from the first one on at every tick, until one ends as `stops` says or runs."""
 
@@ -316,12 +352,13 @@ class Switch(Node):
         variable = self.given.found("variable", self.scope)
         for number in range(len(self.below) - 1):
             case = self.given.text(f"case_{number + 1}", self.scope)
-            if str(case) == str(variable) or _same_number(case, variable):
+            if str(case) == str(variable) or same_number(case, variable):
                 return number
         return len(self.below) - 1
 
 
-def _same_number(one: object, other: object) -> bool:
+def same_number(one: object, other: object) -> bool:
+    """Whether both are numbers, and the same one."""
     try:
         return float(str(one)) == float(str(other))
     except ValueError:

@@ -296,7 +296,7 @@ class SubTree(Decorator):
         return result
 
     def kept(self) -> Mapping[str, Any] | None:
-        return {"values": self.child.scope.values} if self.child.scope.values else None
+        return self.child.scope.kept()
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.child.scope.values.update(state["values"])
+        self.child.scope.restore(state)

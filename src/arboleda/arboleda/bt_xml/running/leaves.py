@@ -111,7 +111,9 @@ class Step(Leaf):
         """Before its step begins."""
 
     def work(self) -> Result:
-        if self.begin():
+        was_running = self.status is Status.RUNNING
+        self.begin()
+        if not was_running:  # what has ended may be ticked again without having been reset
             self.turn += 1
             self.prepare()
         self.step.tick_once()

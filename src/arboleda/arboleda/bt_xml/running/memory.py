@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from arboleda.bt_xml.values import OUTER
 
@@ -14,13 +15,15 @@ PRIVATE = "_"
 @dataclass(eq=False)
 class Scope:
     """The variables of one tree. `names`: those that are another variable of the tree around it. `shares`: so
-    are all others, but for private ones.
+    are all others, but for private ones. `changes`: how often each was set, where a node asks for that.
     """
 
     around: Scope | None = None
     names: Mapping[str, str] = field(default_factory=dict)
     shares: bool = False
     values: dict[str, Value] = field(default_factory=dict)
+    changes: dict[str, int] = field(default_factory=dict)
+    is_watched: bool = False
 
     def place(self, name: str) -> tuple[Scope, str]:
         """Where a variable is kept, and as what."""
@@ -45,8 +48,31 @@ class Scope:
 
     def set(self, name: str, value: Value) -> None:
         scope, key = self.place(name)
+        scope.changes[key] = scope.changed(key) + 1
         scope.values[key] = value
+
+    def changed(self, key: str) -> int:
+        """How often a variable of this tree was set; 0 where it has no value."""
+        return self.changes.get(key, 1) if key in self.values else 0
+
+    def watch(self, name: str) -> int:
+        """The same of any variable; from now on it is kept."""
+        scope, key = self.place(name)
+        scope.is_watched = True
+        return scope.changed(key)
+
+    def kept(self) -> dict[str, Any] | None:
+        """What has to be known of it at the next start."""
+        if not self.values:
+            return None
+        return {"values": self.values, **({"changes": self.changes} if self.is_watched else {})}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.values.update(state["values"])
+        self.changes.update(state.get("changes", {}))
+        self.is_watched = "changes" in state
 
     def unset(self, name: str) -> None:
         scope, key = self.place(name)
         scope.values.pop(key, None)
+        scope.changes.pop(key, None)

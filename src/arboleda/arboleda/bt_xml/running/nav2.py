@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from .node import FAILURE, RUNNING, SKIPPED, SUCCESS, Node, Result
 from .ports import Given
 
+AT = "current_child_idx"
+
 
 class RecoveryNode(Node):
     """The first child; where it fails, the second and then the first again, so many times at most."""
@@ -46,7 +48,7 @@ class RecoveryNode(Node):
         return self._over(FAILURE)
 
     def _over(self, result: Result) -> Result:
-        self.halt()
+        self.forget()
         return result
 
 
@@ -81,6 +83,53 @@ class PipelineSequence(Node):
         return result
 
 
+class NonblockingSequence(Node):
+    """All children at every tick, those that were done too, until all are done at one tick or one fails."""
+
+    sign = "parallel"
+
+    def work(self) -> Result:
+        self.begin()
+        is_done = True
+        for child in self.below:
+            result = child.execute()
+            if result is FAILURE:
+                self.reset_children()
+                return FAILURE
+            is_done = is_done and result is not RUNNING
+        if not is_done:
+            return RUNNING
+        self.reset_children()
+        return SUCCESS
+
+
+class PersistentSequence(Node):
+    """A sequence that keeps in a variable where it is, also when it is halted."""
+
+    sign = "sequence"
+
+    def __init__(self, name: str, children: Sequence[Node], given: Given) -> None:
+        super().__init__(name, children)
+        self.given = given
+
+    def work(self) -> Result:
+        at = max(int(self.given.number(AT, self.scope)), 0)
+        variable = self.given.variable(AT)
+        self.begin()
+        for child in self.below[at:]:
+            result = child.execute()
+            if result is RUNNING:
+                return RUNNING
+            at = 0 if result is FAILURE else at + 1
+            self.scope.set(variable, at)
+            if result is FAILURE:
+                self.reset_children()
+                return FAILURE
+        self.reset_children()
+        self.scope.set(variable, 0)
+        return SUCCESS
+
+
 class RoundRobin(Node):
     """The next child at each tick until one is done; failed once all have."""
 
@@ -111,5 +160,5 @@ class RoundRobin(Node):
                 return SUCCESS
             self.failed += result is FAILURE
             skipped += result is SKIPPED
-        self.halt()
+        self.forget()
         return SKIPPED if skipped == many else FAILURE

@@ -96,10 +96,14 @@ class Node(Keeps, Behaviour):
 
     def halt(self) -> None:
         """Leave it while it runs, with all that runs below it."""
+        self.forget()
+        self._run("_onHalted")
+
+    def forget(self) -> None:
+        """Be as it was before it began."""
         self.reset_counts()
         self.reset_children()
         self.status = Status.INVALID
-        self._run("_onHalted")
 
     def reset(self) -> None:
         """Have it begin anew when it is ticked next."""

@@ -72,7 +72,7 @@ class Main(Node):
         self.status = Status.INVALID
 
     def kept(self) -> Mapping[str, Any] | None:
-        return {"values": self.scope.values} if self.scope.values else None
+        return self.scope.kept()
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.scope.values.update(state["values"])
+        self.scope.restore(state)

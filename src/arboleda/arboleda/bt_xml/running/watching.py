@@ -1,0 +1,123 @@
+"""Nodes that look at whether a variable was set since, or whether two values are the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from py_trees.common import Status
+
+from .controls import same_number
+from .decorators import status
+from .leaves import Leaf
+from .memory import Value
+from .node import FAILURE, RUNNING, SUCCESS, Decorator, Node, Result
+from .ports import Given
+from .scripts import is_true
+
+
+class WasEntryUpdated(Leaf):
+    """Done where the variable was set since the last tick of this node."""
+
+    counts = ("seen",)
+
+    def __init__(self, name: str, given: Given) -> None:
+        super().__init__(name)
+        self.variable = given.variable("entry")
+        self.seen = 0
+
+    def work(self) -> Result:
+        seen, self.seen = self.seen, self.scope.watch(self.variable)
+        return FAILURE if self.seen in (seen, 0) else SUCCESS
+
+
+class WhenUpdated(Decorator):
+    """Its child where the variable was set since that was looked at last; `otherwise` where it was not."""
+
+    counts = ("seen", "is_under_way")
+
+    def __init__(self, name: str, child: Node, given: Given, otherwise: Result) -> None:
+        super().__init__(name, [child])
+        self.variable = given.variable("entry")
+        self.otherwise = otherwise
+        self.seen = 0
+        self.is_under_way = False
+
+    def reset_counts(self) -> None:
+        self.is_under_way = False
+
+    def work(self) -> Result:
+        if not self.is_under_way:
+            seen, self.seen = self.seen, self.scope.watch(self.variable)
+            if self.seen in (seen, 0):
+                return self.otherwise
+        result = self.child.execute()
+        self.is_under_way = result is RUNNING
+        return result
+
+
+class BlackboardCheck(Decorator):
+    """Its child while two values are the same, as version 3 has it."""
+
+    def __init__(self, name: str, child: Node, given: Given, same: Callable[[Value, Value], bool]) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.same = same
+
+    def work(self) -> Result:
+        self.begin()
+        one, other = (self.given.found(port, self.scope) for port in ("value_A", "value_B"))
+        if one is not None and other is not None and self.same(one, other):
+            return self.child.execute()
+        self.child.reset()
+        return status(self.given.text("return_on_mismatch", self.scope, "FAILURE"))
+
+
+SAME: Mapping[str, Callable[[Value, Value], bool]] = {
+    "BlackboardCheckInt": same_number,
+    "BlackboardCheckDouble": same_number,
+    "BlackboardCheckBool": lambda one, other: is_true(one) is is_true(other),
+    "BlackboardCheckString": lambda one, other: str(one) == str(other),
+}
+
+
+class SingleTrigger(Decorator):
+    """Its child until it has ended once; failed from then on, until it is reset."""
+
+    counts = ("has_ended",)
+
+    def __init__(self, name: str, child: Node, given: Given) -> None:
+        super().__init__(name, [child])
+        self.has_ended = False
+
+    def reset_counts(self) -> None:
+        self.has_ended = False
+
+    def work(self) -> Result:
+        if self.begin():
+            self.has_ended = False
+        if self.has_ended:
+            return FAILURE
+        result = self.child.execute()
+        self.has_ended = result in (SUCCESS, FAILURE)
+        return result
+
+
+class GoalUpdatedController(Decorator):
+    """Its child when it begins, and again whenever the value of `goal` or `goals` has become another one."""
+
+    counts = ("goals", "is_new")
+
+    def __init__(self, name: str, child: Node, given: Given) -> None:
+        super().__init__(name, [child])
+        self.given = given
+        self.goals: list[Value | None] = []
+        self.is_new = False
+
+    def work(self) -> Result:
+        goals = [self.given.found(port, self.scope) for port in ("goal", "goals")]
+        if self.begin() or goals != self.goals:
+            self.goals, self.is_new = goals, True
+        if self.child.status is Status.RUNNING or self.is_new:
+            self.is_new = False
+            return self.child.execute()
+        return RUNNING
