@@ -28,6 +28,7 @@ setup(
     extras_require={"test": ["pytest"]},
     entry_points={
         "console_scripts": ["arboleda = arboleda.app.command:main"],
+        "arboleda.drivers": ["modbus = arboleda.adapters.modbus:Modbus"],
         "pytest11": ["arboleda = arboleda.testing.plugin"],
     },
 )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from . import line_tcp, mqtt, ros
+from . import line_tcp, modbus, mqtt, ros
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
     "mqtt": mqtt.BENCH,
     "ros": ros.BENCH,
     "line_tcp": line_tcp.BENCH,
+    "modbus": modbus.BENCH,
 }

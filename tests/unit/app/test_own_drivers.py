@@ -133,7 +133,7 @@ def test_robots_have_drivers_too(load: Callable[..., PlantModel]) -> None:
         (
             "driver: my_plk",
             "cells.bench.devices.oven.driver",
-            'must be mqtt, ros, none, my_plc or plain, is "my_plk"; did you mean "my_plc"?; one of your own',
+            'is "my_plk"; did you mean "my_plc"?; one of your own',
         ),
         (
             "driver: 7",

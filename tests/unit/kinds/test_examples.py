@@ -39,7 +39,7 @@ from .lab import Bench
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PAGES = EXAMPLES.parent / "docs/examples"
 FOLDERS = sorted(file.parent.name for file in EXAMPLES.glob("*/plant.yaml"))
-OF_HOW_TOS = ("own_board", "own_driver", "own_tree")  # their pages are in docs/how-to
+OF_HOW_TOS = ("own_board", "own_driver", "own_tree", "plc_conveyor")  # their pages are in docs/how-to
 SHOWN = [folder for folder in FOLDERS if folder not in OF_HOW_TOS]
 WITH_ARMS = ("assembly", "kitting", "machine_tending", "own_tree")
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)
@@ -98,6 +98,8 @@ CASES = (
         answers={"press": "bad"},
         why="the part is out of measure",
     ),
+    Case(folder="plc_conveyor", task="line pass 200", ends_with=("belt gate", "belt scan")),
+    Case(folder="plc_conveyor", task="line pass 400", answers={"belt": "bad"}, why="the part is bad"),
     tree(task="cell tend slot_1 1002", ends_with=TAKEN, tries_again=frozenset({("mill", "run")})),
     tree(task="cell tend slot_1 1001", answers={"camera": "bad"}, ends_with=SCRAPPED),
     tree(task="cell tend slot_2 1001", answers={"camera": "unsure"}, ends_with=TAKEN),

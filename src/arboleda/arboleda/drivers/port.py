@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, is_dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from arboleda.model.commands import Command
 from arboleda.model.errors import ArboledaError
@@ -49,6 +49,14 @@ class Driver(Protocol):
 
     def stop(self) -> None:
         """End: what it opened is closed, its threads have ended. Called once, also after a failed start."""
+
+
+@runtime_checkable
+class FitsDevice(Protocol):
+    """Settings of a driver that know what of them does not fit a device."""
+
+    def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
+        """Each by the keys that lead to it, and a sentence."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,17 +8,15 @@ from functools import partial
 from importlib.metadata import entry_points
 from typing import Any
 
-from pydantic import create_model
 from pydantic.errors import PydanticSchemaGenerationError
 
-from arboleda.drivers.port import DriverSpec, spec_of
+from arboleda.drivers.port import DriverSpec, FitsDevice, spec_of
 from arboleda.model.outside import plain
-from arboleda.model.plant_model import DriverUse, Link, PlantModel
+from arboleda.model.plant_model import DriverUse, Link, PlantModel, Robot
 from arboleda.recipes.storage_cell import StorageCell
 
+from . import settings
 from .document import Document, Place, choice, nearest, shown
-from .robot_models import Shape
-from .settings import TYPES, keys
 from .shared import SECTION as SHARED
 from .used import LONGEST, Spot, Used, said
 
@@ -59,6 +57,9 @@ def with_drivers(document: Document, plant: PlantModel | None, used: Used) -> Pl
     uses = found(document, used)
     if not uses:
         return plant
+    for name, place in named(document):
+        if name in uses:
+            _check(document, place, uses[name], plant.robots[name])
     cells = tuple(
         cell.with_robots(lambda robot: replace(robot, driver=uses.get(robot.name))) for cell in plant.cells
     )
@@ -84,9 +85,9 @@ def _use(document: Document, place: Place, used: Used) -> DriverUse | None:
     value = document.value(place)
     if isinstance(value, dict) and len(value) == 1:
         name = str(next(iter(value)))
-        settings: Place = (*place, name)
+        here: Place = (*place, name)
     elif isinstance(value, str):
-        name, settings = value, place
+        name, here = value, place
     else:
         form = "or one name with its settings, {my_plc: {host: 10.0.0.7}}"
         document.problem(place, f"must be the name of a driver, {form}; is {shown(value)}")
@@ -94,10 +95,22 @@ def _use(document: Document, place: Place, used: Used) -> DriverUse | None:
     spec = used.drivers.get(name) or _installed(document, place, name, used)
     if spec is None:
         return None
-    read = _settings(document, settings, spec, used)
+    read = _settings(document, here, spec, used)
     if read is FAULTY:
         return None
     return DriverUse(name=name, settings=read, make=partial(spec.make, read))
+
+
+def _check(document: Document, place: Place, use: DriverUse, device: Robot) -> None:
+    """Keeps what the settings of a driver say is wrong between them and their device."""
+    if not isinstance(use.settings, FitsDevice):
+        return
+    try:
+        problems = list(use.settings.problems(device))
+    except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
+        problems = [((), said(error))]
+    for inside, sentence in problems:
+        document.problem((*place, use.name, *inside), plain(sentence, LONGEST))
 
 
 def _installed(document: Document, place: Place, name: str, used: Used) -> DriverSpec | None:
@@ -131,28 +144,29 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: Used) ->
             return FAULTY
         return None
     try:
-        shape = create_model(f"Driver_{spec.name}", __base__=Shape, **keys(spec.settings))
+        fits = settings.shape(f"Driver_{spec.name}", spec.settings)
     except PydanticSchemaGenerationError:
         what = f"the settings of {spec.name} have a type that no plant file can give"
-        used.keep(document, used.spot(spec).problem(f"{what}; it can {TYPES}"))
+        used.keep(document, used.spot(spec).problem(f"{what}; it can {settings.TYPES}"))
         return FAULTY
     except Exception as error:  # noqa: BLE001 - annotations are user code, and may be of anything
         used.keep(document, used.spot(spec).problem(f"the settings of {spec.name}: {said(error)}"))
         return FAULTY
     if not has:
-        missing = [name for name, field in shape.model_fields.items() if field.is_required()]
+        missing = [name for name, field in fits.model_fields.items() if field.is_required()]
         if missing:
             form = f"{KEY}: {{{spec.name}: {{{missing[0]}: ...}}}}"
             document.problem(place, f"the driver {spec.name} needs {', '.join(missing)}; write {form}")
             return FAULTY
-    read = document.read(shape, place) if has else shape()
-    if read is None:
-        return FAULTY
     try:
-        return spec.settings(**dict(read))
+        read = settings.read(document, place, fits, spec.settings) if has else spec.settings(**dict(fits()))
+    except settings.Unfit as unfit:
+        document.problem(unfit.place, plain(said(unfit.error), LONGEST))
+        return FAULTY
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         document.problem(place, plain(said(error), LONGEST))
         return FAULTY
+    return FAULTY if read is None else read
 
 
 FAULTY = object()

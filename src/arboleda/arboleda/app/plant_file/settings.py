@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, Field, fields
+from collections.abc import Iterator
+from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
 from functools import reduce
 from operator import or_
@@ -10,8 +11,85 @@ from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 from pydantic import Field as Given
+from pydantic import create_model
+
+from .document import Document, Place
+from .robot_models import Shape
 
 TYPES = "give bool, int, float, str, Literal, an Enum, and tuples of them"
+
+
+class Unfit(Exception):
+    """A dataclass of settings refused its values: where, and what it raised."""
+
+    def __init__(self, place: Place, error: Exception) -> None:
+        super().__init__(str(error))
+        self.place = place
+        self.error = error
+
+
+def shape(name: str, settings: type) -> type[Shape]:
+    """What a mapping of the plant file must be to become these settings."""
+    hints = get_type_hints(settings)
+    outer = {name: (_outer(hints[name], key[0]), key[1]) for name, key in keys(settings).items()}
+    return create_model(name, __base__=Shape, **outer)  # type: ignore[call-overload, no-any-return]
+
+
+def read(document: Document, place: Place, fits: type[Shape], settings: type) -> Any:
+    """These settings, with those inside them; None, with its problems kept, where they do not fit.
+
+    Unfit where a dataclass refuses what was read.
+    """
+    read = document.read(fits, place)
+    return None if read is None else _made(document, place, settings, dict(read))
+
+
+def _made(document: Document, place: Place, settings: type, values: dict[str, Any]) -> Any:
+    hints = get_type_hints(settings)
+    made = {
+        name: _inside(document, (*place, name), hints[name], value) if document.has((*place, name)) else value
+        for name, value in values.items()
+    }
+    if None in [made[name] for name in values if document.value((*place, name)) is not None]:
+        return None
+    try:
+        return settings(**made)
+    except Exception as error:  # it is user code: whatever it raises is told
+        raise Unfit(place, error) from error
+
+
+def _inside(document: Document, place: Place, hint: Any, value: Any) -> Any:
+    """A value with its mappings made to the dataclasses of its type; None for what does not fit."""
+    inner = next(_dataclasses(hint), None)
+    if inner is None or value is None:
+        return value
+    if get_origin(hint) in (Union, UnionType):
+        return _inside(document, place, inner, value)
+    if hint is inner:
+        return read(document, place, shape(inner.__name__, inner), inner)
+    within = get_args(hint)[-1 if get_origin(hint) is dict else 0]
+    rows = value.items() if isinstance(value, dict) else enumerate(value)
+    found = {key: _inside(document, (*place, key), within, row) for key, row in rows}
+    if None in found.values():
+        return None
+    return found if isinstance(value, dict) else tuple(found.values())
+
+
+def _outer(hint: Any, written: Any) -> Any:
+    """The type of a key, without what is inside mappings: those are read with keys of their own."""
+    if next(_dataclasses(hint), None) is None:
+        return written
+    if get_origin(hint) in (Union, UnionType):
+        return dict[str, Any] | None
+    return list[Any] if get_origin(hint) is tuple else dict[str, Any]
+
+
+def _dataclasses(hint: Any) -> Iterator[type]:
+    """The dataclasses in a type."""
+    if isinstance(hint, type) and is_dataclass(hint):
+        yield hint
+    for each in get_args(hint):
+        yield from _dataclasses(each)
 
 
 def keys(settings: type | None) -> dict[str, Any]:

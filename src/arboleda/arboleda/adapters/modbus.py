@@ -1,0 +1,282 @@
+"""The driver `modbus`: PLCs over Modbus TCP and RTU, by pymodbus."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, lost
+from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
+from arboleda.drivers.modbus.registers import Unreadable
+from arboleda.drivers.modbus.settings import Settings
+from arboleda.drivers.port import DriverError
+
+if TYPE_CHECKING:
+    from pymodbus.client.base import ModbusBaseSyncClient
+
+MISSING = "pymodbus and pyserial are not installed, which it needs: pip install 'arboleda[modbus]'"
+BEAT_S = 0.2  # how often it is said that nothing has changed
+AGAIN_S = 0.5
+JOIN_S = 2.0
+BEATS = 2**16
+PARITIES = {"even": "E", "odd": "O", "none": "N"}
+WORDS = {
+    1: "illegal_function",
+    2: "illegal_address",
+    3: "illegal_value",
+    4: "device_failure",
+    5: "acknowledged_only",
+    6: "device_busy",
+    8: "parity_error",
+    10: "no_gateway_path",
+    11: "no_gateway_answer",
+}
+"""The exception codes of the standard."""
+
+
+class Refused(DriverError):
+    """A PLC has answered a request with an exception code."""
+
+    def __init__(self, what: str, code: int) -> None:
+        self.word = WORDS.get(code, f"code_{code}")
+        super().__init__(f"the PLC refuses {what}: {self.word} (exception code {code})")
+
+
+class Line:
+    """One connection, which the devices on it use by turns."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._lock = threading.RLock()
+        self._client: ModbusBaseSyncClient | None = None
+
+    @contextmanager
+    def turn(self) -> Iterator[None]:
+        """Nobody else speaks on the line; what breaks ends the connection, so that no late answer is taken
+        for another."""
+        try:
+            with self._lock:
+                yield
+        except (Refused, Unreadable):
+            raise
+        except Exception:
+            self.close()
+            raise
+
+    def open(self) -> None:
+        """Connect, unless it is; ConnectionError where nobody is there."""
+        if self._client is None:
+            self._client = _client(self._settings)
+        if not self._client.connect():
+            raise ConnectionError(f"{self._settings.peer} is not there")
+
+    def close(self) -> None:
+        with self._lock:
+            if self._client is not None:
+                self._client.close()
+
+    def read(self, unit: int, block: Block) -> list[int]:
+        """The values of a block."""
+        self.open()
+        read: Any = getattr(self._client, READS[block.table])
+        answer = read(block.address, count=block.length, device_id=unit)
+        _check(answer, f"to show {block.table} {block.address}")
+        values = answer.bits if block.table in ("coil", "discrete") else answer.registers
+        if len(values) < block.length:
+            how_many = f"{len(values)} values, not {block.length}"
+            raise ConnectionError(f"{self._settings.peer} has answered with {how_many}")
+        return [int(value) for value in values[: block.length]]
+
+    def write(self, unit: int, put: Put) -> None:
+        """Write the values of a put."""
+        self.open()
+        client: Any = self._client
+        values: list[Any] = list(put.values)
+        if put.table == "coil":
+            values = [bool(value) for value in values]
+        one, many = (
+            (client.write_coil, client.write_coils)
+            if put.table == "coil"
+            else (client.write_register, client.write_registers)
+        )
+        answer = (
+            one(put.address, values[0], device_id=unit)
+            if len(values) == 1
+            else many(put.address, values, device_id=unit)
+        )
+        _check(answer, f"to take {put.table} {put.address}")
+
+
+READS = {
+    "coil": "read_coils",
+    "discrete": "read_discrete_inputs",
+    "holding": "read_holding_registers",
+    "input": "read_input_registers",
+}
+
+
+class Lines:
+    """The lines that are in use: two devices of one PLC, or of one serial line, share theirs."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._lines: dict[tuple[object, ...], tuple[Line, int]] = {}
+
+    def take(self, settings: Settings) -> Line:
+        with self._lock:
+            line, users = self._lines.get(_address(settings), (None, 0))
+            line = line or Line(settings)
+            self._lines[_address(settings)] = (line, users + 1)
+            return line
+
+    def give_back(self, settings: Settings) -> None:
+        """The last one who used it closes it."""
+        with self._lock:
+            line, users = self._lines.pop(_address(settings))
+            if users > 1:
+                self._lines[_address(settings)] = (line, users - 1)
+                return
+        line.close()
+
+
+LINES = Lines()
+
+
+@driver("modbus", settings=Settings)
+class Modbus:
+    """One device: a thread polls it, commands leave in `send`."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._ending, self._wake = threading.Event(), threading.Event()
+        self._line: Line | None = None
+        self._poller: threading.Thread | None = None
+        self._up = False
+        self._beats = 0
+        self._said: tuple[float, Report] | None = None
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        if len(devices) != 1:
+            raise DriverError("a mapping is for one device")
+        _need_library()
+        self._name, self._hear, self._clock = devices[0].name, hear, clock
+        self._device = ModbusDevice(devices[0], self._settings)
+        self._line = LINES.take(self._settings)
+        self._poller = threading.Thread(target=self._poll, name=f"modbus {self._name}", daemon=True)
+        self._poller.start()
+
+    def send(self, command: Command) -> None:
+        line = self._line
+        if line is None or not self._up:
+            raise NotSent(f"{self._settings.peer} is not connected")
+        at = self._clock()
+        with line.turn():
+            try:
+                for put in self._device.order(command):
+                    line.write(self._settings.unit, put)
+            except Refused as error:
+                self._refuse(at, command, error)
+        self._wake.set()
+
+    def stop(self) -> None:
+        self._ending.set()
+        self._wake.set()
+        if self._poller is not None:
+            self._poller.join(JOIN_S + self._settings.timeout_s)
+        if self._line is not None:
+            LINES.give_back(self._settings)
+            self._line = None
+
+    def _refuse(self, at: float, command: Command, error: Refused) -> None:
+        if command.id:
+            self._hear(Report(at=at, robot=self._name, rejected=command.id, refusal=error.word))
+
+    def _poll(self) -> None:
+        assert self._line is not None
+        while not self._ending.is_set():
+            try:
+                self._serve(self._line)
+            except Exception as error:  # noqa: BLE001 - pymodbus raises its own and others; all mean: no link
+                self._up, self._said = False, None
+                self._hear(lost(self._name, at=self._clock(), why=_why(self._settings, error)))
+            self._ending.wait(AGAIN_S)
+
+    def _serve(self, line: Line) -> None:
+        """Say what the PLC shows, until it is over or something breaks."""
+        with line.turn():
+            self._device.begin(self._read(line, self._device.first_blocks))
+            self._up = True
+        while not self._ending.is_set():
+            self._wake.clear()
+            with line.turn():
+                at = self._clock()
+                said = self._device.report(at, self._read(line, self._device.blocks))
+                self._beat(line)
+            self._say(said)
+            self._wake.wait(self._settings.poll_s)
+
+    def _read(self, line: Line, blocks: Sequence[Block]) -> Raw:
+        raw: dict[tuple[str, int], int] = {}
+        for block in blocks:
+            values = line.read(self._settings.unit, block)
+            raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
+        return raw
+
+    def _beat(self, line: Line) -> None:
+        """Tell the PLC that somebody is there; it has to stop by itself when this ends."""
+        place = self._settings.heartbeat
+        if place is not None:
+            self._beats = (self._beats + 1) % BEATS
+            value = self._beats % 2 if place.table == "coil" else self._beats
+            line.write(self._settings.unit, Put(table=place.table, address=place.address, values=(value,)))
+
+    def _say(self, report: Report) -> None:
+        """Hand over what is new, and from time to time that nothing is."""
+        if self._said is not None:
+            at, before = self._said
+            if report.again(before.at) == before and report.at - at < BEAT_S:
+                return
+        self._said = (report.at, report)
+        self._hear(report)
+
+
+def _address(settings: Settings) -> tuple[object, ...]:
+    if settings.serial:
+        return (settings.serial,)
+    return (settings.host, settings.port, settings.timeout_s)
+
+
+def _client(settings: Settings) -> ModbusBaseSyncClient:
+    from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+
+    once = {"timeout": settings.timeout_s, "retries": 0}  # a write that is repeated is a command given twice
+    if not settings.serial:
+        return ModbusTcpClient(settings.host, port=settings.port, **once)
+    parity = PARITIES[settings.parity]
+    return ModbusSerialClient(
+        settings.serial, baudrate=settings.baud, parity=parity, stopbits=2 if parity == "N" else 1, **once
+    )
+
+
+def _check(answer: Any, what: str) -> None:
+    if answer.isError():
+        raise Refused(what, answer.exception_code)
+
+
+def _need_library() -> None:
+    try:
+        import pymodbus
+        import serial
+    except ImportError as error:
+        raise DriverError(MISSING) from error
+    assert pymodbus.__name__ and serial.__name__
+    logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)  # what it says is said by the plant
+
+
+def _why(settings: Settings, error: Exception) -> str:
+    if isinstance(error, DriverError | ConnectionError):
+        return str(error)
+    return f"{settings.peer}: {error or type(error).__name__}"

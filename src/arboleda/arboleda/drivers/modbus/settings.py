@@ -1,0 +1,83 @@
+"""What a plant file says of a device behind Modbus."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from arboleda.drivers.port import DriverError
+from arboleda.model.plant_model import Robot
+
+from .registers import Register, Write
+
+SHORTEST_POLL_S = 0.005
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verb:
+    """What is written for a verb, in this order, before its number; where its answer is found."""
+
+    write: tuple[Write, ...] = ()
+    answer: Register | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sequence:
+    """Where the number of a command is written, last of all, and where the PLC echoes it."""
+
+    write: Register
+    accepted: Register
+    done: Register
+    rejected: Register | None = None
+    reason: Register | None = None
+    failed: Register | None = None
+    failure: Register | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """The connection, and the mapping of one device."""
+
+    host: str = ""
+    port: int = 502
+    serial: str = ""
+    baud: int = 19200
+    parity: Literal["even", "odd", "none"] = "even"
+    unit: int = 1
+    poll_s: float = 0.05
+    timeout_s: float = 0.5
+    state: Register | None = None
+    boot: Register | None = None
+    alive: Register | None = None
+    alive_s: float = 1.0
+    heartbeat: Register | None = None
+    facts: dict[str, Register] = field(default_factory=dict)
+    verbs: dict[str, Verb] = field(default_factory=dict)
+    sequence: Sequence | None = None
+    halt: tuple[Write, ...] = ()
+    latch: tuple[Write, ...] = ()
+    clear: tuple[Write, ...] = ()
+
+    def __post_init__(self) -> None:
+        if bool(self.host) == bool(self.serial):
+            raise DriverError("needs either host (Modbus TCP) or serial (Modbus RTU, as /dev/ttyUSB0)")
+        if not 0 < self.port < 65536:
+            raise DriverError(f"port is {self.port}; allowed: 1 to 65535")
+        if not 0 <= self.unit <= 255:
+            raise DriverError(f"unit is {self.unit}; allowed: 0 to 255")
+        if not SHORTEST_POLL_S <= self.poll_s <= 0.5:
+            raise DriverError(f"poll_s is {self.poll_s:g}; allowed: {SHORTEST_POLL_S:g} to 0.5")
+        if not 0.01 <= self.timeout_s <= 5:
+            raise DriverError(f"timeout_s is {self.timeout_s:g}; allowed: 0.01 to 5")
+
+    @property
+    def peer(self) -> str:
+        """Whom it speaks to, as sentences name it."""
+        return f"{self.serial} unit {self.unit}" if self.serial else f"{self.host}:{self.port}"
+
+    def problems(self, device: Robot) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """What of it does not fit a device, with the keys that lead there."""
+        from .checks import problems
+
+        return problems(self, device)

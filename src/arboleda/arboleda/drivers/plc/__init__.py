@@ -1,0 +1,1 @@
+"""What drivers of PLCs share: numbers that a PLC echoes, and reports made of what it shows."""

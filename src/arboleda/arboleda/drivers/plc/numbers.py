@@ -1,0 +1,44 @@
+"""Commands as numbers that a PLC can echo."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable
+
+LAST = 65535  # what one register holds; 0 says "none yet"
+REMEMBERED = 256  # commands; an open one is never that old
+
+
+class Numbers:
+    """Gives each command the next number from 1 to 65535, and knows whose a number was."""
+
+    def __init__(self) -> None:
+        self._last = 0
+        self._shown: frozenset[int] = frozenset()
+        self._ids: OrderedDict[int, str] = OrderedDict()
+
+    def begin(self) -> None:
+        """Forget what was given: what is shown now, at a new connection, is nobody's."""
+        self._ids.clear()
+
+    def see(self, shown: Iterable[int]) -> None:
+        """What the PLC shows: a number that is there already is given to no command."""
+        self._shown = frozenset(shown)
+
+    def give(self, id: str) -> int:
+        """The number of a command."""
+        self._last = self._after()
+        while self._last in self._shown:
+            self._last = self._after()
+        self._ids.pop(self._last, None)
+        self._ids[self._last] = id
+        if len(self._ids) > REMEMBERED:
+            self._ids.popitem(last=False)
+        return self._last
+
+    def id_of(self, number: int | None) -> str | None:
+        """The command of a number; None for one that was not given."""
+        return None if number is None else self._ids.get(number)
+
+    def _after(self) -> int:
+        return self._last % LAST + 1

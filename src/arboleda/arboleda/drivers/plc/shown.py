@@ -1,0 +1,66 @@
+"""What a PLC shows at one moment, and the report that this is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.model.facts import Facts, Value
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import MotionState
+
+from .numbers import Numbers
+
+STATES = {
+    "stopped": MotionState.STOPPED,
+    "moving": MotionState.MOVING,
+    "fault": MotionState.FAULT,
+    "latched": MotionState.STOP_LATCHED,
+}
+UNNAMED = "no reason given"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shown:
+    """Numbers of commands, words and facts, as they were read together; 0 and None are no command."""
+
+    state: str = "stopped"
+    facts: Facts = ()
+    boot: int | None = None
+    accepted: int | None = None
+    done: int | None = None
+    rejected: int | None = None
+    reason: str | None = None
+    failed: int | None = None
+    failure: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """The query that was asked last, by its number, and what the PLC shows as its answer."""
+
+    number: int
+    answer: Value
+
+
+def report(robot: str, at: float, shown: Shown, numbers: Numbers, question: Question | None = None) -> Report:
+    """The report of a device: numbers that were not given name no command.
+
+    A query is done when it is answered, so the answer is that which was shown together with its number.
+    """
+    answered = question is not None and shown.done == question.number
+    id, rejected, failed = numbers.id_of, numbers.id_of(shown.rejected), numbers.id_of(shown.failed)
+    return Report(
+        at=at,
+        robot=robot,
+        boot_id=shown.boot,
+        state=STATES[shown.state],
+        accepted=id(shown.accepted),
+        done=None if answered else id(shown.done),
+        rejected=rejected,
+        refusal=None if rejected is None else shown.reason or UNNAMED,
+        failed=failed,
+        failure=None if failed is None else shown.failure or UNNAMED,
+        answered=id(question.number) if answered and question is not None else None,
+        answer=question.answer if answered and question is not None else None,
+        facts=shown.facts,
+    )
