@@ -6,6 +6,7 @@ import functools
 import json
 import logging
 import math
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -707,3 +708,12 @@ def test_the_way_to_the_bridge_and_back_takes_milliseconds(pair, record_property
         "round trip: median %.2f ms, max %.2f ms", median * 1e3, max(took) * 1e3
     )
     assert median < 0.05
+
+
+def test_types_of_others_that_are_not_installed_are_one_line(links, caplog, monkeypatch):
+    monkeypatch.setitem(sys.modules, "py_trees_ros_interfaces", None)
+    monkeypatch.delitem(sys.modules, "arboleda_ros.snapshot_streams", raising=False)
+    with caplog.at_level(logging.INFO, "arboleda.ros"):
+        links().orchestrator(PLANT, [].append, time.monotonic)
+    said = [record.message for record in caplog.records if "py_trees" in record.message]
+    assert said == ["py_trees_ros_interfaces is not installed here: no trees for py-trees-tree-watcher"]

@@ -47,13 +47,15 @@ from .port import NAMED, Port
 from .senders import Senders
 from .verbs import VerbServices
 
-if TYPE_CHECKING:  # it is there only where arboleda_interfaces is built
+if TYPE_CHECKING:  # they are there only where the types of their messages are built
+    from .snapshot_streams import SnapshotStreams
     from .typed.offer import Offer
 
 LOG = logging.getLogger("arboleda.ros")
 UNHEARD = qos.TASK_STATUS.depth // 2
 CATCH_UP = Duration(seconds=0.02)  # who hears later than that loses the oldest
 TYPES = "arboleda_interfaces"
+STREAM_TYPES = "py_trees_ros_interfaces"
 
 
 class NoBridge(ArboledaError):
@@ -97,6 +99,7 @@ class OrchestratorPort(Port):
         self._asker = Asker(on_event, clock)
         self._verbs = VerbServices(node, self._asker)
         self._offer = self._offered([cell.name for cell in model.cells])
+        self._streams = self._streamed([cell.name for cell in model.cells])
         for robot in robots:
             self._hear(robot)
 
@@ -116,7 +119,8 @@ class OrchestratorPort(Port):
     @property
     def watched(self) -> bool:
         """Whether another node listens to what is published without a change too."""
-        return self.diagnosed or self._view.get_subscription_count() > 0
+        is_streamed = self._streams is not None and self._streams.watched
+        return self.diagnosed or is_streamed or self._view.get_subscription_count() > 0
 
     @property
     def diagnosed(self) -> bool:
@@ -130,6 +134,9 @@ class OrchestratorPort(Port):
         if self._offer is not None:
             yield
             self._offer.show(snapshot)
+        if self._streams is not None:
+            yield
+            self._streams.show(snapshot)
 
     def publish_diagnostics(self, plain: Iterable[Diagnostic]) -> Iterator[None]:
         """Publish one status per robot and cell, in parts; the port's own status goes out by itself."""
@@ -157,6 +164,17 @@ class OrchestratorPort(Port):
             )
             return None
         return Offer(self._node, self._speak, cells, self._asker)
+
+    def _streamed(self, cells: Iterable[str]) -> SnapshotStreams | None:
+        """The streams of py_trees_ros; None, with a line in the log, where its types are not installed."""
+        try:
+            from .snapshot_streams import SnapshotStreams
+        except ModuleNotFoundError as error:
+            if (error.name or "").partition(".")[0] != STREAM_TYPES:
+                raise
+            LOG.info("%s is not installed here: no trees for py-trees-tree-watcher", STREAM_TYPES)
+            return None
+        return SnapshotStreams(self._node, cells, self._clock)
 
     def _task_changed(self, change: TaskChanged) -> None:
         self._keep_room()
