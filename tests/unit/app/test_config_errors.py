@@ -135,6 +135,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "pick is place": ("place: station 1", "place: pickup", "9:36: ", "must be another pose than pick"),
     "no stations": ("    stations: {", "    statoins: {", "37:5: ", 'did you mean "stations"?'),
     "stop word": ("link: ros", "stop: no, link: ros", "34:36: ", 'must be supported or none, is "no"'),
+    "empty port": ("name: small", "name: small\ngroot2:", "2:8: groot2", "a whole number"),
     "no port": ("name: small", "name: small\ngroot2: 0", "2:9: groot2", "at least 1"),
     "no room for ports": ("name: small", "name: small\ngroot2: 65533", "2:9: groot2", "at most 65532"),
     "cells as list": ("cells:\n", "cells: [1]\ncellz:\n", "10:8: cells", "must be a mapping"),

@@ -66,7 +66,7 @@ class Desk:
                 if may_pass_by and error.errno == zmq.EADDRINUSE:
                     continue
                 where = f"{self._host}, ports {port} and {port + 1}"
-                raise NoPort(f"cannot listen on {where}, for {cell}: {error.strerror}") from error
+                raise NoPort(f"cannot listen on {where}, for {cell}: {zmq.strerror(error.errno)}") from error
             self.ports[cell] = port
             self._desks[server] = self._watched[cell]
             self._publishers.append(publisher)

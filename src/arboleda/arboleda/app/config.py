@@ -237,13 +237,13 @@ def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None
         zones=tuple(region.name for region in regions),
         foreign_commands=ForeignCommands(shape.foreign_commands),
         history_days=shape.history_days,
-        groot2_port=shape.groot2,
+        groot2_port=shape.groot2 or None,
     )
 
 
 def _check_ports(document: Document, shape: FileShape | None) -> None:
     """Each cell needs two ports of its own for Groot2."""
-    if shape is not None and shape.groot2 is not None:
+    if shape is not None:
         last = 65_536 - 2 * len(shape.cells)
         if shape.groot2 > last:
             rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"

@@ -56,6 +56,7 @@ Wait = Annotated[float, Field(ge=0, le=DAY_S, allow_inf_nan=False)]
 Speed = Annotated[float, Field(ge=0.1, allow_inf_nan=False)]
 Reach = Literal["mqtt", "ros", "none"]
 QUEUE_LIMIT = 100
+NO_PORT = 0  # of a file that names none
 QueueLimit = Annotated[int, Field(ge=1, le=10_000)]
 OnRestart = Literal["hold", "go_on"]
 Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
@@ -73,7 +74,7 @@ class PlantShape(Shape):
     mqtt_version: Annotated[Literal["3.1.1", "5"], BeforeValidator(_protocol)] = "3.1.1"
     foreign_commands: Literal["refuse", "obey"] = "refuse"
     history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
-    groot2: Annotated[int | None, Field(ge=1, le=65_534)] = None
+    groot2: Annotated[int, Field(ge=1, le=65_534)] = NO_PORT
     paths: Any = None
     stations: Any = None
     palletizing: Any = None
