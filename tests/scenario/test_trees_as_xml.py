@@ -12,6 +12,7 @@ from arboleda.bt_xml.parameters import LARGEST
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.recipe import Limits
 from arboleda.testing import Rig
+from arboleda.views import view
 
 from .restarts import ENDED, restart
 
@@ -79,6 +80,19 @@ def test_a_tree_that_was_changed_is_not_walked_into(folder: Path) -> None:
     restart(rig, load(folder / "plant.yaml"), after_s=1.0)
     rig.wait(1.0)
     assert "its recipe or the plant file has changed" in str(rig.plant.cells["cell"].held_by)
+
+
+def test_screens_see_its_variables(folder: Path) -> None:
+    body = "<Sequence><Script code=\"count := 2; said := 'yes'\"/><mill_open/></Sequence>"
+    (folder / "tend.xml").write_text(
+        f'<root BTCPP_format="4"><BehaviorTree ID="T">{body}</BehaviorTree></root>'
+    )
+    rig = Rig(load(folder / "plant.yaml"))
+    rig.wait(5.0)
+    rig.submit("cell tend #one")
+    rig.wait(1.0)
+    (cell,) = view.snapshot(rig.plant)["cells"]
+    assert {"count": "2", "said": "yes"} in [row["parameters"] for row in cell["tree"]]
 
 
 LOOP = '<Repeat num_cycles="300"><Script code="n := 1"/></Repeat>'

@@ -51,6 +51,11 @@ class Main(Node):
         self.causes = causes
         self.scope = tree.scope
 
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        """What screens show of it: its variables."""
+        return dict(self.scope.values)
+
     def work(self) -> Result:
         self.begin()
         try:
