@@ -28,7 +28,10 @@ setup(
     extras_require={"test": ["pytest"]},
     entry_points={
         "console_scripts": ["arboleda = arboleda.app.command:main"],
-        "arboleda.drivers": ["modbus = arboleda.adapters.modbus:Modbus"],
+        "arboleda.drivers": [
+            "dobot = arboleda.drivers.dobot.adapter:Dobot",
+            "modbus = arboleda.adapters.modbus:Modbus",
+        ],
         "pytest11": ["arboleda = arboleda.testing.plugin"],
     },
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import line_tcp, modbus, mqtt, ros
+from . import dobot, line_tcp, modbus, mqtt, ros
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -10,4 +10,5 @@ BENCHES: dict[str, Bench] = {
     "ros": ros.BENCH,
     "line_tcp": line_tcp.BENCH,
     "modbus": modbus.BENCH,
+    "dobot": dobot.BENCH,
 }

@@ -48,6 +48,7 @@ from . import (
     tree_command,
     tree_file,
     verbs,
+    virtual_command,
 )
 from .alarm_options import alarm_options
 from .client import Gone, PlantClient, Refused
@@ -83,6 +84,7 @@ class Boards(str, Enum):
 
     VIRTUAL = "virtual"
     LINUX = "linux"
+    DRIVERS = "drivers"
     REAL = "real"
 
 
@@ -178,8 +180,8 @@ BoardsOption = Annotated[
     Boards | None,
     typer.Option(
         "--boards",
-        help="Start virtual boards, the firmware's as programs (SCARA), or expect real ones. "
-        "[default: virtual; real with --broker-host]",
+        help="Start virtual boards, the firmware's as programs (SCARA), virtual ones beside real drivers, "
+        "or expect real ones. [default: virtual; real with --broker-host]",
     ),
 ]
 Rate = Annotated[
@@ -402,6 +404,7 @@ cli.command()(certs_command.certs)
 backup_command.add_to(cli)
 cli.add_typer(service_command.cli, name="service")
 cli.add_typer(record_command.cli, name="record")
+cli.add_typer(virtual_command.cli, name="virtual")
 replay_command.add_to(cli)
 report_command.add_to(cli)
 logs_command.add_to(cli)
@@ -553,7 +556,7 @@ def _run(
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
         raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
-    if boards is not Boards.REAL:
+    if boards in (Boards.VIRTUAL, Boards.LINUX):
         recording = options.recording and replace(options.recording, virtual=True)
         options = replace(options, notes=(*options.notes, *_virtual(model)), recording=recording)
         model = model.on_boards(Link.DRIVER)

@@ -1,0 +1,87 @@
+"""The dashboard of a controller: a command is a line of text, its reply `ErrorID,{values},Command(...);`."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+LONGEST = 8192  # characters without an end
+REPLY = re.compile(r"\s*(-?\d{1,9}),\{(.*?)\},(\w{1,40})\((.*)\)\s*", re.DOTALL)
+OTHER_MODE = "Control Mode Is Not Tcp"
+ALARMS = re.compile(r"-?\d{1,9}")
+
+REFUSALS = {
+    -1: "not_executed",
+    -2: "alarm",
+    -3: "robot_stop_button",
+    -4: "power_off",
+    -5: "script_running",
+    -6: "wrong_motion_type",
+    -7: "script_paused",
+    -10000: "unknown_command",
+    -20000: "wrong_number_of_values",
+}
+"""What the controller means by an ErrorID, in a word for the plant."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reply:
+    """What the controller answers to one command; `error` 0 means that it has taken it."""
+
+    error: int
+    values: str
+    command: str
+
+    @property
+    def word(self) -> str:
+        """Why it was refused."""
+        if self is NOT_TCP:
+            return "not_in_tcp_mode"
+        return REFUSALS.get(self.error, f"error {self.error}")
+
+    @property
+    def number(self) -> int | None:
+        """The id that it gave a queued command, or the one number that it answers."""
+        return int(self.values) if re.fullmatch(r"\d{1,18}", self.values) else None
+
+    @property
+    def alarms(self) -> tuple[int, ...]:
+        """The ids of the alarms that GetErrorID names, without the zeros that stand for none."""
+        return tuple(number for each in ALARMS.findall(self.values) if (number := int(each)) != 0)
+
+
+NOT_TCP = Reply(error=-1, values="", command="")
+"""The controller is not in its TCP mode; it says so without the form of a reply."""
+
+
+class Nonsense(ValueError):
+    """What came is no reply, and nobody knows to which command the next one belongs."""
+
+
+class ReplyReader:
+    """Cuts what arrives into replies."""
+
+    def __init__(self) -> None:
+        self._rest = ""
+
+    def feed(self, data: bytes) -> list[Reply]:
+        """The replies that are whole by now; Nonsense where one cannot be read."""
+        text = self._rest + data.decode("ascii", "replace")
+        while OTHER_MODE in text:
+            before, _, text = text.partition(OTHER_MODE)
+            if before.strip(" \r\n\t;\0"):
+                raise Nonsense("it says that it is not in TCP mode in the middle of a reply")
+            text = text.lstrip(" \r\n\t;.")
+            self._rest = text
+            return [NOT_TCP, *self.feed(b"")]
+        *whole, self._rest = text.split(";")
+        if len(self._rest) > LONGEST:
+            raise Nonsense("a reply does not end")
+        return [_reply(each) for each in whole]
+
+
+def _reply(text: str) -> Reply:
+    found = REPLY.fullmatch(text)
+    if found is None:
+        raise Nonsense(f"{text[:60]!r} is no reply")
+    return Reply(error=int(found[1]), values=found[2].strip(), command=found[3])

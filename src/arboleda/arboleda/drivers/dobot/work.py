@@ -1,0 +1,98 @@
+"""What the arm is at: a move, or the steps that make it ready; each looks at every frame for its end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .frames import Feedback, Mode
+
+SETTLE_S = 0.3  # an arm that idles for so long, beside its goal, is not on its way any more
+BEGIN_S = 2.0  # a controller that idles begins with a queued command sooner
+STEP_S = 15.0  # what one step of getting ready may take; power needs some 10 s, the maker says
+
+ALARM = "alarm"
+BROKEN = {
+    Mode.ERROR: ALARM,
+    Mode.COLLISION: "collision",
+    Mode.POWER_OFF: "power_off",
+    Mode.DISABLED: "disabled",
+    Mode.BRAKE_OPEN: "brake_open",
+    Mode.DRAG: "dragged_by_hand",
+    Mode.INIT: "starting",
+}
+"""The modes in which no work goes on, in a word for the plant."""
+
+STEPS = {
+    Mode.ERROR: "ClearError()",
+    Mode.COLLISION: "ClearError()",
+    Mode.POWER_OFF: "PowerOn()",
+    Mode.DISABLED: "EnableRobot()",
+}
+"""What is said in a mode to leave it, on the way to one in which the arm can move."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """What a frame shows of a work: that it is over, or what to tell the controller next."""
+
+    done: bool = False
+    failed: str | None = None
+    say: str | None = None
+
+
+NOTHING = Look()
+
+
+class Move:
+    """A queued command: over when the controller names its number as the last one, and idles."""
+
+    def __init__(self, id: str, is_there: Callable[[Feedback], bool]) -> None:
+        self.id = id
+        self.number: int | None = None  # what the controller calls it, once it has taken it
+        self._is_there = is_there
+        self._taken_at = math.inf
+        self._idle_since: float | None = None
+
+    def taken(self, now: float, number: int) -> None:
+        self.number, self._taken_at = number, now
+
+    def look(self, now: float, feedback: Feedback) -> Look:
+        if feedback.mode in BROKEN:
+            return Look(failed=BROKEN[feedback.mode])
+        if self.number is None:
+            return NOTHING
+        if feedback.command > self.number:
+            return Look(failed="another_client_moves_it")
+        if feedback.mode is not Mode.IDLE:
+            self._idle_since = None
+            return NOTHING
+        self._idle_since = now if self._idle_since is None else self._idle_since
+        idle_s = now - max(self._idle_since, self._taken_at)
+        if feedback.command != self.number:
+            return Look(failed="not_begun") if idle_s > BEGIN_S else NOTHING
+        # Idle beside the goal may be the moment before it begins: only an arm that stays so has ended there.
+        return Look(done=self._is_there(feedback) or idle_s > SETTLE_S)
+
+
+class Readying:
+    """Alarms are cleared, the arm is powered and enabled, as far as its mode says that this is missing."""
+
+    def __init__(self, id: str, now: float) -> None:
+        self.id = id
+        self._mode: Mode | None = None
+        self._since = now
+
+    def look(self, now: float, feedback: Feedback) -> Look:
+        if feedback.mode is Mode.IDLE:
+            return Look(done=True)
+        if feedback.mode is not self._mode:
+            self._mode, self._since = feedback.mode, now
+            return Look(say=STEPS.get(feedback.mode))
+        if now - self._since > STEP_S:
+            return Look(failed=BROKEN.get(feedback.mode, "not_ready"))
+        return NOTHING
+
+
+Work = Move | Readying

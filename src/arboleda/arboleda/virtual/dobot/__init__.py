@@ -1,0 +1,1 @@
+"""A virtual controller of a Dobot CR arm, version 4."""

@@ -1,0 +1,34 @@
+"""The command `arboleda virtual dobot`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..serving import FaultNames, FaultPort, serve, with_faults
+from .faults import FAULTS
+from .sockets import Server
+
+HELP = with_faults(
+    "Play a Dobot CR10A with a controller of version 4: dashboard and feedback over TCP, joint moves that "
+    "take their time, tool outputs. It begins disabled, as a real one does. Any client of that protocol can "
+    "use it.",
+    FAULTS,
+)
+
+
+def run(
+    port: Annotated[int, typer.Option(help="Of the dashboard; 0: any free.")] = 29999,
+    feedback_port: Annotated[int, typer.Option(help="Of the feedback; 0: any free.")] = 30004,
+    host: Annotated[str, typer.Option(help="The address that it listens on.")] = "127.0.0.1",
+    enabled: Annotated[bool, typer.Option("--enabled", help="Begin enabled, ready to move.")] = False,
+    fault: FaultNames = None,
+    fault_port: FaultPort = 4713,
+) -> None:
+    serve(
+        lambda faults: Server(faults, host=host, port=port, feedback_port=feedback_port, enabled=enabled),
+        FAULTS,
+        fault,
+        fault_port,
+    )

@@ -1,0 +1,16 @@
+"""The ports that virtual controllers listen on."""
+
+from __future__ import annotations
+
+import socket
+
+from arboleda.model.errors import StartError
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Listen there; StartError, which names the port, where that cannot be."""
+    try:
+        return socket.create_server((host, port))
+    except OSError as error:
+        why = f"{host}:{port} cannot be listened on: {error}"
+        raise StartError(f"{why}; name another port, or 0 for any that is free") from error

@@ -1,0 +1,62 @@
+"""What the commands of all virtual controllers share: their options, and how one runs until Ctrl-C."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Protocol
+
+import typer
+
+from .faults import Faults
+from .switchboard import Switchboard
+
+FaultNames = Annotated[
+    list[str] | None,
+    typer.Option("--fault", metavar="NAME", help="A fault that is on from the beginning; may be repeated."),
+]
+FaultPort = Annotated[
+    int,
+    typer.Option(
+        metavar="PORT", help="Where faults are switched over HTTP, PUT and DELETE /faults/NAME; 0: any free."
+    ),
+]
+
+
+class Controller(Protocol):
+    """A virtual controller that listens from `start` to `stop`."""
+
+    @property
+    def says(self) -> str:
+        """One line: what it is, and where it listens."""
+
+    def start(self) -> None: ...
+    def stop(self) -> None: ...
+
+
+def with_faults(text: str, known: Mapping[str, str]) -> str:
+    """The help of a command, with its faults listed."""
+    rows = "\n".join(f"  {name}: {what}" for name, what in known.items())
+    return f"{text}\n\n\b\nFaults:\n{rows}"
+
+
+def serve(
+    make: Callable[[Faults], Controller], known: Mapping[str, str], on: Sequence[str] | None, port: int
+) -> None:
+    """Run the controller that `make` makes until Ctrl-C or SIGTERM."""
+    try:
+        faults = Faults(known, on or ())
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--fault") from error
+    over = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: over.set())
+    signal.signal(signal.SIGINT, lambda *_: over.set())
+    controller, switchboard = make(faults), Switchboard(faults, port)
+    controller.start()
+    switchboard.start()
+    print(controller.says, flush=True)
+    print(f"faults are switched on http://127.0.0.1:{switchboard.port}/faults", flush=True)
+    over.wait()
+    switchboard.stop()
+    controller.stop()

@@ -1,0 +1,39 @@
+"""The HTTP port on which faults of virtual controllers are switched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from arboleda.virtual.faults import Faults
+from arboleda.virtual.switchboard import Switchboard
+
+pytestmark = pytest.mark.system
+
+
+@pytest.fixture
+def board() -> Iterator[tuple[Faults, httpx.Client]]:
+    faults = Faults({"mute": "it says nothing", "slow": "it is slow"}, ["slow"])
+    switchboard = Switchboard(faults, 0)
+    switchboard.start()
+    with httpx.Client(base_url=f"http://127.0.0.1:{switchboard.port}") as client:
+        yield faults, client
+    switchboard.stop()
+
+
+def test_faults_are_listed_and_switched(board: tuple[Faults, httpx.Client]) -> None:
+    faults, client = board
+    assert client.get("/faults").json()["slow"] == {"on": True, "what": "it is slow"}
+    assert client.put("/faults/mute").json()["mute"]["on"] is True
+    client.delete("/faults/slow")
+    assert list(faults) == ["mute"]
+
+
+@pytest.mark.parametrize("path", ["/faults/mut", "/mute", "/faults/", "/"])
+def test_what_is_not_there_is_told(board: tuple[Faults, httpx.Client], path: str) -> None:
+    faults, client = board
+    answer = client.put(path)
+    assert answer.status_code == 404 and "error" in answer.json()
+    assert list(faults) == ["slow"]
