@@ -36,9 +36,15 @@ def test_frames_are_read_however_they_are_cut() -> None:
 
 def test_what_is_no_frame_is_passed_over_up_to_the_next() -> None:
     reader = FrameReader()
-    found = reader.feed(b"hello" + FRAME.packed()[: SIZE - 100] + FRAME.packed() + FRAME.packed()[1:])
+    found = reader.feed(b"hello" + FRAME.packed()[: SIZE - 100] + FRAME.packed() * 2)
     found += reader.feed(FRAME.packed())
-    assert found == [FRAME, FRAME] and reader.refused > 0
+    assert found == [FRAME] * 3 and reader.refused > 0
+
+
+def test_a_frame_that_the_next_one_would_complete_is_refused() -> None:
+    reader, lacking = FrameReader(), FRAME.packed()[:400] + FRAME.packed()[404:]
+    assert reader.feed(lacking) == []
+    assert reader.feed(FRAME.packed()) == [FRAME] and reader.refused == SIZE - 4
 
 
 @pytest.mark.parametrize(

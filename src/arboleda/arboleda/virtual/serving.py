@@ -10,7 +10,6 @@ from typing import Annotated, Protocol
 import typer
 
 from .faults import Faults
-from .switchboard import Switchboard
 
 FaultNames = Annotated[
     list[str] | None,
@@ -45,6 +44,8 @@ def serve(
     make: Callable[[Faults], Controller], known: Mapping[str, str], on: Sequence[str] | None, port: int
 ) -> None:
     """Run the controller that `make` makes until Ctrl-C or SIGTERM."""
+    from .switchboard import Switchboard  # HTTP takes a while to load, and no other command needs it
+
     try:
         faults = Faults(known, on or ())
     except ValueError as error:

@@ -85,7 +85,9 @@ class FrameReader:
         """The frames that are whole by now, in their order."""
         rest, found = self._rest + data, []
         while len(rest) >= SIZE:
-            frame = unpacked(rest[:SIZE])
+            # Where bytes are missing, the next frame's first ones complete this one, and no frame follows.
+            follows = rest[SIZE : SIZE + 2]
+            frame = unpacked(rest[:SIZE]) if LENGTH.startswith(follows) else None
             if frame is not None:
                 found.append(frame)
             cut = SIZE if frame is not None else _next_beginning(rest)
