@@ -25,6 +25,7 @@ NAMES = (
     "step",
     "kept",
     "simulate",
+    "dobot",
 )
 
 

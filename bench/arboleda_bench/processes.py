@@ -72,6 +72,15 @@ class Process:
         if self._popen.poll() is not None:
             raise ArboledaError(f"{self.name} ended early: {self._last_words()}")
 
+    def wait(self, patience_s: float) -> None:
+        """Wait until it has ended by itself; ArboledaError where it does not, or says that it failed."""
+        try:
+            failed = self._popen.wait(patience_s) != 0
+        except subprocess.TimeoutExpired:
+            failed = True
+        if failed:
+            raise ArboledaError(f"{self.name} did not end well: {self._last_words()}")
+
     def end(self) -> None:
         """Interrupt it and wait for its end."""
         self._popen.send_signal(signal.SIGINT)

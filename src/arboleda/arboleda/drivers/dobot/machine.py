@@ -24,6 +24,7 @@ REPLY_S = 2.0  # a controller answers in milliseconds
 SILENT_S = 1.0  # it sends a frame every 8 ms
 REPORT_S = 0.1  # a report at least so often
 ASK_S = 1.0  # how often the output is asked for
+CLOCK_S = 2  # more than the controller's clock may be put right between two connections
 REST_DEG = 0.01  # less than this is no motion
 UNABLE = (0, -2, -3, -4)  # what a stop is answered that was taken, or has nothing left to stop
 STATES = {
@@ -127,7 +128,6 @@ class Machine:
         self._news = False
         self._reported_at = -math.inf
         self._ids: dict[str, str] = {}
-        self._effector: bool | None = None
         self._forget_link(0.0)
 
     @property
@@ -206,6 +206,7 @@ class Machine:
         self._feedback: Feedback | None = None
         self._rest_since: float | None = None
         self._stopping_since: float | None = None  # inf: the stop is not answered yet
+        self._effector: bool | None = None
         self._heard_at = self._asked_at = now
 
     def _say(self, now: float, text: str, take: Take) -> None:
@@ -320,24 +321,27 @@ class Machine:
         before = self._feedback
         if before is not None and feedback.run_ms == before.run_ms:
             return  # the same frame again is no news from the arm
-        self._see_boot(feedback)
+        self._see_boot(now, feedback)
         self._heard_at, self._feedback = now, feedback
         self._see_rest(now, before, feedback)
         if self._work is not None and self._failing is None:
             self._go_on(now, self._work, self._work.look(now, feedback))
         self._news = self._news or before is None or before.mode is not feedback.mode
 
-    def _see_boot(self, feedback: Feedback) -> None:
+    def _see_boot(self, now: float, feedback: Feedback) -> None:
         switched_on = max(0, (feedback.time_ms - feedback.run_ms) // 1000)
         known = self._boot
-        same = known is not None and feedback.run_ms >= known[1]
-        if (
-            self._feedback is None and known is not None
-        ):  # it was not heard for a while: its clock tells as well
-            same = same and abs(switched_on - known[0]) <= 2
-        if known is None or not same:
+        self._boot = (switched_on, feedback.run_ms)
+        if known is None:
+            return
+        booted = feedback.run_ms < known[1]
+        if self._feedback is None:  # it was not heard for a while, and may run for longer by now than before
+            booted = booted or abs(switched_on - known[0]) > CLOCK_S
+        if booted:
             self._forget_work()
-        self._boot = (known[0] if same and known is not None else switched_on, feedback.run_ms)
+            self._ask_output(now)
+        else:
+            self._boot = (known[0], feedback.run_ms)
 
     def _forget_work(self) -> None:
         self._ids, self._work, self._failing, self._effector = {}, None, None, None

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 LONGEST = 8192  # characters without an end
-REPLY = re.compile(r"\s*(-?\d{1,9}),\{(.*?)\},(\w{1,40})\((.*)\)\s*", re.DOTALL)
+REPLY = re.compile(r"\s*(0|-?[1-9]\d{0,8}),\{(.*?)\},(\w{1,40})\((.*)\)\s*", re.DOTALL)
 OTHER_MODE = "Control Mode Is Not Tcp"
 ALARMS = re.compile(r"-?\d{1,9}")
 

@@ -21,6 +21,7 @@ FAULTS = {
     "frozen": "the feedback port sends the same frame again and again",
     "garbled": "the feedback has a wrong test value",
     "torn": "every second frame lacks its last hundred bytes",
+    "late_start": "a move is named as the current one at once, and begins 0.2 s later",
     "lie": "a move is said to be over at once, and the arm stays where it is",
     "short": "moves end two degrees before their goal",
     "stall": "a move stands still half way, and the controller says that it runs",

@@ -14,7 +14,7 @@ from .motion import Joints, Path, path
 
 FRAME_S = 0.008
 ENABLE_S, POWER_S = 0.5, 1.0  # a real one takes some 10 s to be powered
-LATE_S = 1.0
+LATE_S, LATE_START_S = 1.0, 0.2
 SHORT_DEG = 2.0
 BUTTON, NO_SOLUTION = 116, 17  # alarms
 LINE = re.compile(r"\s*(\w+)\s*\((.*)\)\s*", re.DOTALL)
@@ -97,6 +97,7 @@ class VirtualDobot:
         self._powered_at = math.inf
         self._booted_at: float | None = None
         self._off = False
+        self._now = -math.inf
         self._frame_at = -math.inf
         self._frames = 0
         self._late: deque[tuple[float, Answer]] = deque()
@@ -116,6 +117,7 @@ class VirtualDobot:
     def step(self, now: float, events: Sequence[Said]) -> list[Message]:
         """Let time pass, do what it is told, and say what there is to say."""
         out: list[Message] = []
+        self._now = now
         self._booted_at = now if self._booted_at is None else self._booted_at
         if self.is_off or self._off:
             if self.is_off:
@@ -146,8 +148,8 @@ class VirtualDobot:
             return Mode.DISABLED
         if self._paused:
             return Mode.PAUSED
-        busy = self._path is not None or self._queue or "script" in self.faults
-        return Mode.RUNNING if busy else Mode.IDLE
+        moves = self._path.began_at <= self._now if self._path is not None else bool(self._queue)
+        return Mode.RUNNING if moves or "script" in self.faults else Mode.IDLE
 
     # How time passes.
 
@@ -218,7 +220,8 @@ class VirtualDobot:
         if "short" in self.faults:
             goal = (goal[0] - math.copysign(SHORT_DEG, goal[0] - self.joints_deg[0]), *goal[1:])
         speed = queued.speed_percent * self.speed_percent / 100 * (0.1 if "slow" in self.faults else 1.0)
-        self._path = path(self.joints_deg, goal, now, speed, queued.acceleration_percent)
+        begins_at = now + LATE_START_S if "late_start" in self.faults else now
+        self._path = path(self.joints_deg, goal, begins_at, speed, queued.acceleration_percent)
 
     def _halt(self, now: float, *, disable: bool = False) -> None:
         self._queue.clear()

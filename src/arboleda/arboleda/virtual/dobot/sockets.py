@@ -7,7 +7,7 @@ import selectors
 import socket
 import threading
 import time
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from contextlib import suppress
 
 from ..ports import listen
@@ -29,9 +29,10 @@ class Server:
         port: int = 0,
         feedback_port: int = 0,
         enabled: bool = False,
+        make: Callable[..., VirtualDobot] = VirtualDobot,
     ) -> None:
         self._began = time.monotonic()
-        self.machine = VirtualDobot(faults, enabled=enabled, unix_s=time.time())
+        self.machine = make(faults, enabled=enabled, unix_s=time.time())
         self._listeners = {DASHBOARD: listen(host, port), FEEDBACK: listen(host, feedback_port)}
         self.port, self.feedback_port = (each.getsockname()[1] for each in self._listeners.values())
         self._host = host

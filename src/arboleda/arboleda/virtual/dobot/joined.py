@@ -1,0 +1,103 @@
+"""The driver's machine and a virtual Dobot, joined without sockets, under a clock that is moved by hand."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+from arboleda.drivers.dobot.machine import (
+    Answered,
+    Asked,
+    Close,
+    Closed,
+    Event,
+    Fed,
+    Machine,
+    Message,
+    Open,
+    Opened,
+    Say,
+    Unsent,
+)
+from arboleda.drivers.dobot.settings import Settings
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
+
+from .machine import Answer, Frame, HangUp, Said, VirtualDobot
+
+
+class Joined:
+    """What one says the other hears at once; `hear` gets what the plant would hear of the arm."""
+
+    def __init__(self, arm: Robot, dobot: VirtualDobot, hear: Callable[[Report], None], now: float) -> None:
+        self.dobot = dobot
+        self.driver = Machine(arm, Settings(host="dobot"))
+        self.now = now
+        self.told: list[str] = []  # lines of the dashboard
+        self._hear = hear
+        self._to_dobot: deque[Said] = deque()
+        self._to_driver: deque[Event] = deque()
+        self._client = 0  # grows with each connection; 0: there is none
+        self._connected = False
+
+    @property
+    def next_deadline(self) -> float:
+        return max(self.now, min(self.dobot.next_deadline, self.driver.next_deadline))
+
+    def ask(self, command: Command) -> str | None:
+        """Command the arm; why it could not leave, or None."""
+        out = self._step_driver(Asked(command=command))
+        self._settle()
+        return next((each.why for each in out if isinstance(each, Unsent)), None)
+
+    def tell(self, line: str) -> None:
+        """Say what another client of the dashboard says."""
+        self.dobot.step(self.now, [Said(client=-1, text=line)])
+
+    def pass_time(self) -> None:
+        """Have both do what is due by now."""
+        self._step_dobot()
+        self._step_driver()
+        self._settle()
+
+    def _settle(self) -> None:
+        """Until neither has anything for the other; each is given what came in its order."""
+        while self._to_dobot or self._to_driver:
+            while self._to_dobot:
+                self._step_dobot(self._to_dobot.popleft())
+            while self._to_driver:
+                self._step_driver(self._to_driver.popleft())
+
+    def _step_driver(self, *events: Event) -> list[Message]:
+        out = self.driver.step(self.now, events)
+        for message in out:
+            self._do(message)
+        return out
+
+    def _do(self, message: Message) -> None:
+        if isinstance(message, Report):
+            self._hear(message)
+        elif isinstance(message, Open):
+            off = self.dobot.is_off
+            self._connected = not off
+            self._client += 1
+            self._to_driver.append(Closed(why="refused") if off else Opened())
+        elif isinstance(message, Close):
+            self._connected = False
+            self._to_driver.clear()
+        elif isinstance(message, Say) and self._connected:
+            self.told.append(message.text)
+            self._to_dobot.append(Said(client=self._client, text=message.text))
+
+    def _step_dobot(self, *said: Said) -> None:
+        for message in self.dobot.step(self.now, said):
+            if not self._connected:
+                continue
+            if isinstance(message, HangUp):
+                self._connected = False
+                self._to_driver.append(Closed(why="hung up"))
+            elif isinstance(message, Frame):
+                self._to_driver.append(Fed(data=message.data))
+            elif isinstance(message, Answer) and message.client == self._client:
+                self._to_driver.append(Answered(data=message.text.encode()))

@@ -1,0 +1,46 @@
+"""A plant with a Dobot under the faults of its virtual controller; `scripts/dobot-faults` runs more seeds."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.drivers.dobot import work
+from arboleda.drivers.dobot.frames import Feedback, Mode
+from arboleda.kinds.arm import Arm
+from arboleda.testing.plants import shipped
+from arboleda.virtual.dobot import campaign
+from arboleda.virtual.dobot.faults import FAULTS
+
+MODEL = campaign.plant_of(shipped())
+SEEDS = 12
+
+
+def breaches(seed: int, *names: str) -> list[str]:
+    return campaign.run(MODEL, seed, names or tuple(FAULTS)).breaches
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
+    assert breaches(seed) == []
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_every_fault_by_itself(fault: str) -> None:
+    assert breaches(1, fault) == []
+
+
+def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Arm, "stands_at", lambda self, position, goal: True)
+    assert any("false success" in each for seed in range(5) for each in breaches(seed, "lie", "short"))
+
+
+def test_an_end_without_its_number_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def idle(self: work.Move, now: float, feedback: Feedback) -> work.Look:
+        return work.Look(done=self.number is not None and feedback.mode is Mode.IDLE)
+
+    monkeypatch.setattr(work.Move, "look", idle)
+    assert any("wrong cause" in each for each in breaches(0, "late_start"))
+
+
+def test_every_fault_has_the_reasons_that_it_may_give() -> None:
+    assert set(campaign.CAUSES) == set(FAULTS)
