@@ -7,12 +7,17 @@ from typing import Any
 
 from py_trees.common import Status
 
+from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
+
 from .memory import Value
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, TICK_S, Decorator, Node, Result
 from .ports import Given
 from .scripts import Script, ScriptError
 
 STATUSES = {each.value: each for each in Result}
+NO_STATUS = Phrase("xml.no_status", "{word} is no status; there are {known}")
+NO_RATE = Phrase("xml.no_rate", "hz of {node} must be more than 0")
 
 
 class Turned(Decorator):
@@ -195,7 +200,7 @@ class Precondition(Decorator):
 def status(word: Value) -> Result:
     """The result that a word of a port means."""
     if str(word) not in STATUSES:
-        raise ScriptError(f"{word!r} is no status; there are {', '.join(STATUSES)}")
+        raise ScriptError(NO_STATUS(word=quoted(word), known=tuple(STATUSES)))
     return STATUSES[str(word)]
 
 
@@ -280,7 +285,7 @@ class RateController(Decorator):
     def _wait(self) -> None:
         hz = self.given.number("hz", self.scope, "10.0")
         if hz <= 0:
-            raise ScriptError(f"hz of {self.name} must be more than 0")
+            raise ScriptError(NO_RATE(node=self.name))
         self.until = self.context.now + 1 / hz
         self.context.wake_at(self.until)
 

@@ -8,9 +8,25 @@ from dataclasses import dataclass
 from arboleda.bt_xml import values
 from arboleda.bt_xml.values import Variable
 from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
 
 from .memory import Scope, Value
 from .scripts import ScriptError, is_true
+
+NEEDED = Phrase("xml.needed", "{node} needs {port}")
+UNSET_AT = Phrase("xml.unset", "{port} of {node} is the variable {variable}, which has no value")
+WANTED = Phrase("xml.wanted", "{port} of {node} must be {wanted}, is {value}")
+LISTED = Phrase("xml.listed", "{port} of {node} is {value}; there are {known}")
+BETWEEN = Phrase("xml.between", "from {lower:g} to {upper:g}")
+TYPES = {
+    "int": Phrase("xml.int", values.TYPES["int"][0]),
+    "unsigned": Phrase("xml.unsigned", values.TYPES["unsigned"][0]),
+    "msec": Phrase("xml.msec", values.TYPES["msec"][0]),
+    "double": Phrase("xml.double", values.TYPES["double"][0]),
+    "bool": Phrase("xml.bool", values.TYPES["bool"][0]),
+    "status": Phrase("xml.status", values.TYPES["status"][0]),
+}
+"""What a port takes, by its type."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +40,13 @@ class Given:
         """The value of a port; ScriptError where there is none."""
         written = self.said.get(name, default)
         if written is None:
-            raise ScriptError(f"{self.node} needs {name}")
+            raise ScriptError(NEEDED(node=self.node, port=name))
         said = values.read(name, written)
         if not isinstance(said, Variable):
             return said
         found = scope.get(said.name)
         if found is None:
-            raise ScriptError(f"{name} of {self.node} is the variable {said.name}, which has no value")
+            raise ScriptError(UNSET_AT(port=name, node=self.node, variable=said.name))
         return found
 
     def found(self, name: str, scope: Scope) -> Value | None:
@@ -44,7 +60,9 @@ class Given:
         if not isinstance(found, str):
             return float(found)
         if values.objection("double", found) and values.objection("int", found):
-            raise ScriptError(f"{name} of {self.node} must be a number, is {quoted(found)}")
+            raise ScriptError(
+                WANTED(port=name, node=self.node, wanted=TYPES["double"](), value=quoted(found))
+            )
         return values.number(found.strip())
 
     def is_set(self, name: str, scope: Scope, default: str) -> bool:

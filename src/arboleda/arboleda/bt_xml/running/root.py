@@ -9,7 +9,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.model.messages import Failure, Reason
-from arboleda.model.sentence import Phrase, as_sentence
+from arboleda.model.sentence import Phrase
 from arboleda.recipes.authoring import FINAL
 from arboleda.trees.context import Context
 
@@ -62,7 +62,7 @@ class Main(Node):
             result = self.below[0].execute()
         except ScriptError as error:
             self.below[0].reset()
-            self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=as_sentence(str(error)))]
+            self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=error.sentence)]
             result = FAILURE
         if self.context.failure is not None:
             self.below[0].reset()

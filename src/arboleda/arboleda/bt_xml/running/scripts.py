@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,11 +12,21 @@ from arboleda.bt_xml import script
 from arboleda.bt_xml.script import Assignment, Choice, Comparison, Expression, Infix, Name, Prefix
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import shown
+from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
 
 from .memory import Scope, Value
 
 LONGEST = 10_000  # characters of a text that a script makes
 BITS = 63
+NOT_BOOL = Phrase("script.not_bool", "{value} is neither true nor false")
+UNSET = Phrase("script.unset", "the variable {variable} has no value")
+BY_ZERO = Phrase("script.by_zero", "a division by zero")
+TOO_LARGE = Phrase("script.too_large", "a number that is too large")
+TOO_LONG = Phrase("script.too_long", "a text of more than {most} characters")
+OTHER_TYPE = Phrase("script.other_type", "{variable} is {there} and cannot become {value}")
+NO_NUMBER = Phrase("script.no_number", "{value} is no number")
+NOT_WHOLE = Phrase("script.not_whole", "{number} is no whole number")
 
 
 class ScriptError(ArboledaError):
@@ -52,7 +63,7 @@ def is_true(value: Value) -> bool:
         return True
     if value.lower() in ("false", "0", ""):
         return False
-    raise ScriptError(f"{value!r} is neither true nor false")
+    raise ScriptError(NOT_BOOL(value=quoted(value)))
 
 
 def evaluate(expression: Expression, scope: Scope) -> Value:
@@ -76,7 +87,7 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
 def _known(name: str, scope: Scope) -> Value:
     found = scope.get(name)
     if found is None:
-        raise ScriptError(f"the variable {name} has no value")
+        raise ScriptError(UNSET(variable=name))
     return found
 
 
@@ -103,17 +114,17 @@ def _joined(left: Value, sign: str, right: Value) -> Value:
     if sign in BITWISE:
         return BITWISE[sign](_whole(one), _whole(other))
     if sign == "/" and other == 0:
-        raise ScriptError("a division by zero")
+        raise ScriptError(BY_ZERO())
     try:
         return CALCULATED[sign](one, other)
     except OverflowError:
-        raise ScriptError("a number that is too large") from None
+        raise ScriptError(TOO_LARGE()) from None
 
 
 def _text(left: Value, right: Value) -> str:
     text = "".join(each if isinstance(each, str) else spelled(each) for each in (left, right))
     if len(text) > LONGEST:
-        raise ScriptError(f"a text of more than {LONGEST} characters")
+        raise ScriptError(TOO_LONG(most=LONGEST))
     return text
 
 
@@ -143,7 +154,7 @@ def _assigned(expression: Assignment, scope: Scope) -> Value:
         if expression.sign != "=":
             value = _joined(there, expression.sign[0], value)
         elif isinstance(there, str) is not isinstance(value, str):
-            raise ScriptError(f"{expression.name} is {there!r} and cannot become {value!r}")
+            raise ScriptError(OTHER_TYPE(variable=expression.name, there=quoted(there), value=quoted(value)))
     scope.set(expression.name, value)
     return value
 
@@ -154,12 +165,12 @@ def _number(value: Value) -> float | int:
     try:
         return int(value) if value.lstrip("+-").isdigit() and len(value) < 18 else float(value)
     except ValueError:
-        raise ScriptError(f"{value!r} is no number") from None
+        raise ScriptError(NO_NUMBER(value=quoted(value))) from None
 
 
 def _whole(number: float) -> int:
     if not float(number).is_integer() or abs(number) >= 2**BITS:
-        raise ScriptError(f"{number} is no whole number")
+        raise ScriptError(NOT_WHOLE(number=spelled(number) if math.isfinite(number) else str(number)))
     return int(number)
 
 

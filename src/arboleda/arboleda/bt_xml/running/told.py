@@ -13,7 +13,8 @@ from arboleda.bt_xml.nodes import Port
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value
 from arboleda.model.messages import Failure
-from arboleda.model.outside import among, quoted
+from arboleda.model.outside import quoted
+from arboleda.model.sentence import Phrase
 from arboleda.recipes.handles import Ask
 from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Await, Require
@@ -21,6 +22,7 @@ from arboleda.trees.leaves import Act, Await, Require
 from . import memory
 from .memory import Scope
 from .node import SUCCESS, Result
+from .ports import BETWEEN, LISTED, TYPES, UNSET_AT, WANTED
 from .root import Forgiving
 from .scripts import ScriptError, spelled
 
@@ -29,6 +31,7 @@ READ: Mapping[str, Callable[[str], Value]] = {
     "double": lambda text: values.number(text.strip()),
     "bool": lambda text: text.strip().lower() in ("true", "1"),
 }
+NEEDS_ZONE = Phrase("xml.needs_zone", "{node} would need a zone with these values; write them down")
 EXAMPLES: Mapping[str, str] = {"int": "0", "double": "0", "bool": "true"}
 MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
     Ask: ("answers", "asked", "make", "anew", "doing", "name", "title"),
@@ -41,13 +44,14 @@ MADE_OF: Mapping[type[Behaviour], tuple[str, ...]] = {
 
 def value_of(kind: str, port: Port, text: str) -> Value:
     """The value that a text is for a port of a device; ScriptError where it is none."""
-    wanted = values.objection(port.type, text)
-    if wanted is None and port.words and text not in port.words:
-        raise ScriptError(f"{port.name} of {kind} is {quoted(text)}; {among(text, port.words)}")
-    if wanted is None and port.limits and not port.limits[0] <= values.number(text) <= port.limits[1]:
-        wanted = f"from {port.limits[0]:g} to {port.limits[1]:g}"
-    if wanted is not None:
-        raise ScriptError(f"{port.name} of {kind} must be {wanted}, is {quoted(text)}")
+    said = quoted(text)
+    if values.objection(port.type, text) is not None:
+        raise ScriptError(WANTED(port=port.name, node=kind, wanted=TYPES[port.type](), value=said))
+    if port.words and text not in port.words:
+        raise ScriptError(LISTED(port=port.name, node=kind, value=said, known=port.words))
+    if port.limits and not port.limits[0] <= values.number(text) <= port.limits[1]:
+        wanted = BETWEEN(lower=port.limits[0], upper=port.limits[1])
+        raise ScriptError(WANTED(port=port.name, node=kind, wanted=wanted, value=said))
     return READ.get(port.type, str)(text)
 
 
@@ -99,8 +103,7 @@ class Order:
     def _found(self, name: str, scope: Scope) -> Value:
         found = scope.get(self.variables[name])
         if found is None:
-            what = f"{name} of {self.kind} is the variable {self.variables[name]}"
-            raise ScriptError(f"{what}, which has no value")
+            raise ScriptError(UNSET_AT(port=name, node=self.kind, variable=self.variables[name]))
         text = found if isinstance(found, str) else spelled(found)
         return value_of(self.kind, self.ports[name], text)
 
@@ -140,9 +143,9 @@ class Told(Forgiving):
         try:
             fresh = self.order.make(dict(found))
         except ArboledaError as error:
-            raise ScriptError(str(error)) from error
+            raise ScriptError(error.sentence) from error
         if type(fresh) is not type(self.step):
-            raise ScriptError(f"{self.order.kind} would need a zone with these values; write them down")
+            raise ScriptError(NEEDS_ZONE(node=self.order.kind))
         renew(self.step, fresh)
         self.anew = found
 
