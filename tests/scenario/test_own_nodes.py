@@ -140,7 +140,7 @@ def text(one: float):
 @pytest.mark.parametrize(
     ("body", "why"),
     [
-        ('<Adds one="0" sum="{s}"/>', "ZeroDivisionError in the tree"),
+        ('<Adds one="0" sum="{s}"/>', "Adds raised ZeroDivisionError: "),
         ('<Says one="1"/>', "Says returned 1.0; it is to return True or False"),
         ('<Text one="1" sum="{s}"/>', "sum of Text became 'much'; it is to be a float"),
     ],

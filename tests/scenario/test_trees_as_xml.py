@@ -9,9 +9,12 @@ import pytest
 
 from arboleda.app.config import load
 from arboleda.bt_xml.parameters import LARGEST
+from arboleda.core.plant import Plant
+from arboleda.core.text import parse
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.recipe import Limits
 from arboleda.testing import Rig
+from arboleda.trees.leaves import title_of
 from arboleda.views import view
 
 from .restarts import ENDED, restart
@@ -159,6 +162,17 @@ def test_what_a_device_is_told_may_be_known_only_then(folder: Path, body: str, c
     rig = ran(folder, body)
     assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
     assert said(rig, "clamped") is clamped
+
+
+def test_a_picture_names_the_variables_that_have_no_value_yet(folder: Path) -> None:
+    body = f'<Script code="on := 1"/>{CLAMPS}<jaw_close width_mm="{{width}}" force_n="4"/>'
+    rig = ran(folder, body, "cell tend 33 #one", '<input_port name="width" type="double"/>')
+    model = rig.plant.model
+    recipe = model.cells[0].recipe("tend")
+    order = parse("cell tend 33", model)
+    tree = recipe.build(order, Plant(model, epoch=0, now=0.0).cells["cell"].context)
+    titles = [str(title_of(node)) for node in tree.iterate()]
+    assert "mill clamp {on}" in titles and "jaw close 33.0 4.0" in titles
 
 
 @pytest.mark.parametrize(

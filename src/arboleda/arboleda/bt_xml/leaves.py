@@ -15,6 +15,7 @@ from arboleda.model.facts import shown
 from arboleda.model.plant_model import Cell, Robot
 from arboleda.recipes.nodes import Taken, WrittenNode
 
+from . import values
 from .nodes import MANY, Category, Kind, Port, Way, by_name, children
 
 TYPES: Mapping[type, str] = {bool: "bool", int: "int", float: "double", str: "string"}
@@ -113,7 +114,8 @@ def _category(node: WrittenNode) -> Category:
 def _taken(cell: Cell, taken: Taken) -> Port:
     words = tuple(taken.words(cell))
     limits = None if taken.limits is None else (taken.limits.lower, taken.limits.upper)
-    about = ", ".join(words) if limits is None else f"from {limits[0]:g} to {limits[1]:g}"
+    kind = _said(taken.type)
+    about = ", ".join(words) or kind if limits is None else f"{kind} from {limits[0]:g} to {limits[1]:g}"
     return Port(
         name=taken.name,
         type=TYPES[taken.type],
@@ -126,7 +128,13 @@ def _taken(cell: Cell, taken: Taken) -> Port:
 
 
 def _given(row: tuple[str, type]) -> Port:
-    return Port(name=row[0], type=TYPES[row[1]], way=Way.OUT)
+    return Port(name=row[0], type=TYPES[row[1]], way=Way.OUT, about=_said(row[1]))
+
+
+def _said(type: type) -> str:
+    """In words, what a value of Python is."""
+    known = values.TYPES.get(TYPES[type])
+    return "text" if known is None else known[0]
 
 
 def _ask(role: str) -> Kind:

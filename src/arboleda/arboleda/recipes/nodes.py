@@ -75,8 +75,13 @@ class WrittenNode:
         return step
 
     def calculate(self, values: Mapping[str, Value]) -> Mapping[str, Value] | None:
-        """What it gives, called with these values; None where it fails. RecipeError for anything else."""
-        found = self.function(**values)
+        """What it gives, called with these values; None where it fails. RecipeError for anything else, and
+        for whatever the function raises.
+        """
+        try:
+            found = self.function(**values)
+        except Exception as error:
+            raise RecipeError(f"{self.name} raised {type(error).__name__}: {error}") from error
         if not self.gives:
             if not isinstance(found, bool):
                 raise RecipeError(f"{self.name} returned {quoted(found)}; it is to return True or False")

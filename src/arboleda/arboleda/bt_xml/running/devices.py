@@ -19,7 +19,7 @@ from arboleda.recipes.errors import RecipeError
 from arboleda.recipes.handles import Ask, Step, handle
 from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.context import Context
-from arboleda.trees.leaves import Require
+from arboleda.trees.leaves import Act, Require, titled
 from arboleda.trees.steps import framed
 
 from .errors import TreeError
@@ -83,6 +83,9 @@ class Devices:
         order = self._order(node, kind, scope, partial(_step, device, verb, below=below))
         built = self._now(order, scope)
         step = order.make(dict(built))
+        unknown = [each for each in order.variables.values() if scope.get(each) is None]
+        if unknown and type(step) is Act:
+            titled(step, " ".join([robot, verb, *order.words(built, unknown)]))
         if not can_be_renewed(step):
             self._fix(order, node, scope)
             order = replace(order, variables={})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,7 @@ from py_trees.behaviour import Behaviour
 from arboleda.bt_xml import values
 from arboleda.bt_xml.nodes import Port
 from arboleda.model.errors import ArboledaError
-from arboleda.model.facts import Value
+from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import Phrase
@@ -99,6 +99,13 @@ class Order:
             for name in self.ports
             if name in self.written or name in self.variables
         }
+
+    def words(self, known: Mapping[str, Value], unknown: Collection[str]) -> list[str]:
+        """Its values as a title has them, with the names of variables that have none yet."""
+        return [
+            f"{{{self.variables[name]}}}" if self.variables.get(name) in unknown else shown(value)
+            for name, value in known.items()
+        ]
 
     def _found(self, name: str, scope: Scope) -> Value:
         found = scope.get(self.variables[name])
