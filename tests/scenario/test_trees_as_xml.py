@@ -126,15 +126,17 @@ def test_what_takes_no_time_ends(folder: Path, body: str, ends: TaskState, why: 
     assert str(rig.outcomes()["one"].sentence or "") == why
 
 
-def ran(folder: Path, body: str, task: str = "cell tend #one", ports: str = "") -> Rig:
-    """A tree of this body, run to its end."""
+def ran(
+    folder: Path, body: str, task: str = "cell tend #one", ports: str = "", at_most_s: float = 60.0
+) -> Rig:
+    """A tree of this body, run to its end, or so long."""
     tree = f'<BehaviorTree ID="T"><Sequence>{body}</Sequence></BehaviorTree>'
     models = f'<TreeNodesModel><SubTree ID="T">{ports}</SubTree></TreeNodesModel>'
     (folder / "tend.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="T">{tree}{models}</root>')
     rig = Rig(load(folder / "plant.yaml"))
     rig.wait(5.0)
     rig.submit(task)
-    rig.wait(60.0, until=lambda: state(rig) in ENDED)
+    rig.wait(at_most_s, until=lambda: state(rig) in ENDED)
     return rig
 
 
@@ -162,6 +164,18 @@ def test_what_a_device_is_told_may_be_known_only_then(folder: Path, body: str, c
     rig = ran(folder, body)
     assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
     assert said(rig, "clamped") is clamped
+
+
+@pytest.mark.parametrize("at_s", [1.0, 4.0, 12.0, 24.0])
+def test_values_of_variables_are_kept_with_the_step_that_was_given_them(folder: Path, at_s: float) -> None:
+    run = '<Script code="p := 1002"/><mill_run program="{p}"/>'
+    body = f"{SET}<mill_close/>{CLAMPS}{run}{UNCLAMPED}{CLAMPS}<mill_open/>"
+    rig = ran(folder, body, at_most_s=at_s)
+    assert state(rig) is TaskState.RUNNING
+    restart(rig, after_s=1.5)
+    attended(rig)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+    assert said(rig, "clamped") is False
 
 
 def test_a_picture_names_the_variables_that_have_no_value_yet(folder: Path) -> None:
