@@ -85,6 +85,8 @@ class Sleep(Leaf):
         self.context.wake_at(self.until)
 
     def work(self) -> Result:
+        if self.status is Status.FAILURE:
+            return FAILURE  # by a condition that stands at it; it stays so until it is reset
         if self.begin():
             self.begin_anew()
         return SUCCESS if self.context.now >= self.until else RUNNING
