@@ -63,7 +63,7 @@ def test_a_file_that_is_there_stays_as_it_is(file: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (["x.btlog"], "--task ID is for files that end in .btlog"),
+        (["x.btlog"], "a .btlog is of one task; say which with --task ID"),
         (["x.mcap", "--task", "lot"], "--task ID is for files that end in .btlog"),
         (["x.btlog", "--task", "lott"], "has no such task"),
         (["x.btlog", "--task", "later"], "it did not run in"),

@@ -286,6 +286,14 @@ def test_a_bad_file_of_faults_is_refused_with_a_sentence(
     assert ended.complained.startswith(f"arboleda: {file}: ") and sentence in ended.complained
 
 
+def test_what_is_wrong_in_a_file_is_said_with_its_line(arboleda: Arboleda, tmp_path: Path) -> None:
+    file = tmp_path / "case.yaml"
+    file.write_text("people:\n  - {at: 1, task: sis_a palletizing}\n  - at: 2\n    do: stop nobody\n")
+    ended = arboleda("--faults", file)
+    assert (ended.status, ended.said) == (2, "")
+    assert ended.complained.startswith(f"arboleda: {file}: line 4: 'nobody' is nothing of this plant")
+
+
 def test_faults_may_be_written_in_yaml(arboleda: Arboleda, tmp_path: Path) -> None:
     file = tmp_path / "faults.yaml"
     file.write_text("faults:\n  - {kind: reboot, at: 12.5, target: ra_1}\n")

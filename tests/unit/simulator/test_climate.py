@@ -8,7 +8,8 @@ from dataclasses import asdict
 import pytest
 
 from arboleda.model.plant_model import Evidence
-from arboleda.simulator.climate import BadFaults, Climate
+from arboleda.simulator.checks import BadFaults
+from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_DEVICES, Fault
 from arboleda.simulator.levels import LEVELS
 from arboleda.testing import shipped

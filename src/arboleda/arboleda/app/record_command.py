@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
+from arboleda.model.counting import counted
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
@@ -162,34 +163,66 @@ OF_TASK = (
     "Or the tree of a task, with each change of its nodes, as viewers of BehaviorTree.CPP play it: "
     "`arboleda record export lot42.btlog --task lot42`."
 )
+OF_CASE = (
+    "Or a case of the simulator, of all or of a task: `arboleda record export night.yaml`, then "
+    "`arboleda simulate --faults night.yaml`."
+)
+OUTPUTS = (".mcap", ".jsonl", ".btlog", ".yaml")
 
 
-@cli.command(help=f"{EXPORT}\n\n{OF_TASK}\n\n{EXIT}", short_help=EXPORT)
+@cli.command(help=f"{EXPORT}\n\n{OF_TASK}\n\n{OF_CASE}\n\n{EXIT}", short_help=EXPORT)
 def export(
     output: Annotated[
-        Path, typer.Argument(metavar="OUTPUT", help="The file to make: .mcap, .jsonl or .btlog.")
+        Path, typer.Argument(metavar="OUTPUT", help=f"The file to make: {', '.join(OUTPUTS)}.")
     ],
     file: File = None,
-    task: Annotated[str | None, typer.Option(metavar="ID", help="The task, for .btlog.")] = None,
+    task: Annotated[
+        str | None, typer.Option(metavar="ID", help="The task, for .btlog and, from its beginning, .yaml.")
+    ] = None,
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
     from arboleda.recorder import copying, reader
 
-    if output.suffix not in (".mcap", ".jsonl", ".btlog"):
-        raise ConfigError((f"{output}: must end in .mcap, .jsonl or .btlog",))
-    if (output.suffix == ".btlog") != (task is not None):
-        raise ConfigError((f"{output}: --task ID is for files that end in .btlog, and these need it",))
+    if output.suffix not in OUTPUTS:
+        raise ConfigError((f"{output}: must end in {', '.join(OUTPUTS[:-1])} or {OUTPUTS[-1]}",))
+    if task is not None and output.suffix not in (".btlog", ".yaml"):
+        raise ConfigError((f"{output}: --task ID is for files that end in .btlog or .yaml",))
+    if task is None and output.suffix == ".btlog":
+        raise ConfigError((f"{output}: a .btlog is of one task; say which with --task ID",))
     record = reader.opened(last_of(file, plant, state))
-    if task is not None:
+    if output.suffix == ".btlog":
         from . import btlog_export
 
-        print(plain(f"{output} has {btlog_export.write(record, task, output) / 1e3:.1f} kB", LONGEST))
+        print(plain(f"{output} has {btlog_export.write(record, task or '', output) / 1e3:.1f} kB", LONGEST))
         return
-    if output.suffix == ".jsonl":
-        count = copying.as_lines(record, output)
+    if output.suffix == ".yaml":
+        _export_case(record, task, output)
+    elif output.suffix == ".jsonl":
+        _say_exported(output, copying.as_lines(record, output))
     else:
-        count = copying.as_mcap(record, output, record.numbers)
-    print(plain(f"{output} has {count} steps, {output.stat().st_size / 1e6:.1f} MB", LONGEST))
+        _say_exported(output, copying.as_mcap(record, output, record.numbers))
     if record.broken:
         print(plain(f"it ends early: {record.broken}", LONGEST))
+
+
+def _say_exported(output: Path, count: int) -> None:
+    print(plain(f"{output} has {count} steps, {output.stat().st_size / 1e6:.1f} MB", LONGEST))
+
+
+def _export_case(record: Any, task: str | None, output: Path) -> None:
+    from .case import writing
+    from .case.reading import case_of
+    from .user_file import check_new
+
+    check_new(output)
+    if record.missing:
+        gone = f"its first {record.missing} files were deleted to make room"
+        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+    case = case_of(record, task)
+    writing.write(output, writing.as_yaml(case, record.first.beginning, output.name))
+    tasks = sum(act.task is not None for act in case.people)
+    acts = len(case.people) - tasks
+    faults = counted(len(case.faults), "fault")
+    told = f"{counted(tasks, 'task')}, {counted(acts, 'act')} of operators, {faults} in {case.seconds:.1f} s"
+    print(plain(f"{output} has {told}", LONGEST))

@@ -49,3 +49,11 @@ def check_writable(path: Path) -> None:
         raise ConfigError((f"{quoted(str(path), 200)}: is not the name of a file",)) from None
     except OSError as error:
         raise ConfigError((f"{path}: cannot be written: {error.strerror}",)) from None
+
+
+def check_new(path: Path) -> None:
+    """ConfigError now rather than after minutes of work, where `path` is there or cannot be."""
+    if path.exists():
+        raise ConfigError((f"{path}: is there already; name another file",))
+    check_writable(path)
+    path.unlink()

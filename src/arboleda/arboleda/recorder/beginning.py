@@ -68,6 +68,11 @@ class Beginning:
     files: PlantFiles
     simulated: bool = False
 
+    @property
+    def shipped(self) -> bool:
+        """Whether its plant file is the one that comes with Arboleda, which needs no naming."""
+        return self.plant == "arboleda" and self.files.plant == NO_FILES.plant
+
     def data(self) -> bytes:
         """All but the files, in JSON."""
         return json.dumps(

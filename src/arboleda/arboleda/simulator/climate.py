@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from itertools import accumulate
 from typing import Any
 
-from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
+from .checks import BadFaults, is_number, only, within
 from .faults import GENERAL, KINDS, OF_CRASHES, Fault, Kind
 from .general import is_general
 from .levels import LEVELS
@@ -22,10 +21,7 @@ CRASHES, CRASH_WEIGHT = "crashes", 8.0  # beside one of each other kind
 ABSENT = 0.25  # the share of kinds that a seed does without
 FIELDS = tuple(each.name for each in fields(Fault))
 NUMBERS = ("at", "seconds", "amount", "seed")
-
-
-class BadFaults(ArboledaError):
-    """A list of faults that cannot be; the sentence says what is allowed."""
+KEYS = ("plant", "seconds", "people", "rates", "faults")  # the first three are no faults, and read elsewhere
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,15 +54,16 @@ class Climate:
 
         What such a fault leaves out is drawn; BadFaults says what is wrong with the first bad one.
         """
-        known = _only(data, ("rates", "faults"), "the file")
-        rates = _only(known.get("rates", {}), tuple(KINDS), "rates")
-        for name, rate in rates.items():
-            if not _is_number(rate) or rate < 0:
-                raise BadFaults(f"rates: {name} is {rate!r}; a number of faults per minute is needed")
+        known = only(data, KEYS, "the file")
+        with within("rates"):
+            rates = _rates(known.get("rates", {}))
         listed = known.get("faults", [])
         if not isinstance(listed, list):
-            raise BadFaults('faults is not a list, e.g. [{"kind": "reboot", "at": 12.5}]')
-        told = [_told(model, Dice(seed, "told", number), each) for number, each in enumerate(listed)]
+            raise BadFaults('faults is not a list, e.g. [{"kind": "reboot", "at": 12.5}]', "faults")
+        told: list[Fault] = []
+        for number, each in enumerate(listed):
+            with within("faults", number):
+                told.append(_told(model, Dice(seed, "told", number), each))
         return cls(model=model, seed=seed, rates=rates, told=tuple(told))
 
     def faults(self, minute: int) -> list[Fault]:
@@ -107,8 +104,16 @@ def _one_of(dice: Dice, rates: Mapping[str, float]) -> str:
     return next(name for name, below in zip(rates, sums, strict=True) if drawn < below)
 
 
+def _rates(data: Any) -> dict[str, float]:
+    rates = only(data, tuple(KINDS), "rates")
+    for name, rate in rates.items():
+        if not is_number(rate) or rate < 0:
+            raise BadFaults(f"rates: {name} is {rate!r}; a number of faults per minute is needed", name)
+    return rates
+
+
 def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
-    told = _only(data, FIELDS, "a fault")
+    told = only(data, FIELDS, "a fault")
     for name in told:
         _check(name, told[name])
     kind = KINDS.get(told.get("kind", ""))
@@ -129,19 +134,5 @@ def _told(model: PlantModel, dice: Dice, data: Any) -> Fault:
 def _check(name: str, value: Any) -> None:
     if name not in NUMBERS and not isinstance(value, str):
         raise BadFaults(f"{name} of a fault is {value!r}; a text is needed")
-    if name in NUMBERS and not _is_number(value):
+    if name in NUMBERS and not is_number(value):
         raise BadFaults(f"{name} of a fault is {value!r}; a number is needed")
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _only(data: Any, allowed: Sequence[str], where: str) -> dict[str, Any]:
-    """`data` as a mapping with no other keys."""
-    if not isinstance(data, dict):
-        raise BadFaults(f"{where} is not a mapping; its keys are {', '.join(allowed)}")
-    for key in data:
-        if key not in allowed:
-            raise BadFaults(f"{where} has no {key!r}; allowed: {', '.join(allowed)}")
-    return data

@@ -15,6 +15,7 @@ from .apart import come_apart
 from .faults import Fault
 from .invariants import Invariant
 from .people import Attendant, Customers, answer_anything
+from .told import Script, Told
 from .watched import Broken, Watched
 
 MINUTE_S = 60.0
@@ -43,7 +44,8 @@ class Result:
 class Simulation:
     """A world with people and faults; `run` until so many cycles, or so many seconds, and then to rest.
 
-    `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`.
+    `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
+    `script` people do what it says, and none are drawn: the run is as long as that, and until its tasks end.
     """
 
     def __init__(
@@ -57,6 +59,7 @@ class Simulation:
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,
         make_plant: Callable[..., Plant] | None = None,
+        script: Script | None = None,
     ) -> None:
         self.watched = Watched(
             model, invariants=invariants, keep=keep, tell=tell, recipes=recipes, make_plant=make_plant
@@ -66,15 +69,22 @@ class Simulation:
         self._plan = plan
         come_apart(self.world, seed)
         answer_anything(self.world, seed)
-        self._customers = Customers(self.world, seed)
-        Attendant(self.world, seed)
+        self._script = script
+        self._people = self._told(script, seed) if script is not None else Customers(self.world, seed)
+        if script is None:
+            Attendant(self.world, seed)
+
+    def _told(self, script: Script, seed: int) -> Told:
+        return Told(self.world, script, lambda: Attendant(self.world, seed))
 
     def run(self, *, cycles: int | None = None, seconds: float | None = None) -> Result:
         """Minute by minute until `cycles` or `seconds` are reached, then to rest; a breach ends it."""
+        if seconds is None and self._script is not None:
+            seconds = self._script.seconds
         try:
             while not self._enough(cycles, seconds):
                 self._minute(self.result.minutes, math.inf if seconds is None else seconds)
-            self._customers.go()
+            self._people.go()
             self.watched.come_to_rest()
         except Broken as broken:
             self.result.broken = broken
@@ -85,8 +95,11 @@ class Simulation:
     def _enough(self, cycles: int | None, seconds: float | None) -> bool:
         if seconds is not None:
             return self.result.minutes * MINUTE_S >= seconds
+        if isinstance(self._people, Told) and self._script is not None:
+            patience = PATIENCE + math.ceil(self._script.ends / MINUTE_S)
+            return self._people.over or self.result.minutes >= patience
         wanted = cycles or 0
-        return self._customers.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
+        return self._people.cycles >= wanted or self.result.minutes >= PATIENCE + wanted
 
     def _minute(self, minute: int, seconds: float) -> None:
         self.result.minutes += 1
@@ -98,5 +111,5 @@ class Simulation:
         result = self.result
         result.digest, result.lines = self.trace.digest, self.trace.lines
         result.seconds, result.checks = self.watched.seconds, self.watched.checks
-        result.cycles, result.outcomes = self._customers.cycles, self._customers.outcomes
+        result.cycles, result.outcomes = self._people.cycles, self._people.outcomes
         return result

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.cause import Cause
 from arboleda.recorder.incident import Incident
-from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, Trouble
+from arboleda.simulator.faults import KINDS, Fault
+from arboleda.simulator.faults.kind import NONE
+
+from ..case.faults import faults_behind, faults_of
 
 BEGIN_S = 2.0  # by then the simulated boards are heard
 SECONDS = 120.0
-OF_PARTS = {"no_part": "no_part", "not_gripped": "no_grip"}
 
 
 def case_of(incident: Incident, cause: Cause, model: PlantModel, plant_file: str) -> str:
@@ -37,38 +40,30 @@ def _text(incident: Incident) -> str:
     return incident.text.replace("\\", "").replace('"', "")
 
 
-def _faults(incident: Incident, cause: Cause, model: PlantModel) -> list[str]:
-    """What befell the devices of the cell, as faults of the simulator."""
-    cell = next((each for each in model.cells if each.name == incident.cell), None)
-    mine = {robot.name: robot.mqtt for robot in cell.robots} if cell is not None else {}
+def _faults(incident: Incident, cause: Cause, model: PlantModel) -> Iterator[str]:
+    """What befell the devices of the cell, and what else the task failed of."""
     end = incident.failed_at or math.inf
-    found = [
-        _fault(trouble, mine[trouble.robot], trouble.at - incident.asked_at)
-        for trouble in incident.troubles
-        if trouble.robot in mine and incident.asked_at <= trouble.at <= end
-    ]
-    if cause.robot in mine and cause.kind in OF_PARTS:
-        found.append(f'    sim.fault("{OF_PARTS[cause.kind]}", "{mine[cause.robot]}")')
-    failed_after = end - incident.asked_at
-    if cause.robot in mine and cause.kind == "part_lost":
-        found.append(f'    sim.fault("lost_part", "{mine[cause.robot]}", at={failed_after - 0.2:.3f})')
-    if cause.robot in mine and cause.kind == "unheard":
-        sent = incident.evidence.last
-        at = max(0.0, (sent.at if sent else end) - incident.asked_at - 0.05)
-        found.append(f'    sim.fault("partition", "{mine[cause.robot]}", at={at:.3f}, word="down, lost")')
-    if cause.robot in mine and cause.kind == "switch":
-        found.append(f'    sim.fault("stuck_effector", "{mine[cause.robot]}")')
-    return list(dict.fromkeys(found))
+    mine = [each for each in incident.troubles if _concerns(incident, each.robot, model)]
+    began = [each for each in mine if incident.asked_at <= each.at <= end]
+    for fault in _once(faults_of(began, model), faults_behind(incident, cause, model)):
+        yield _line(fault, max(0.0, fault.at - incident.asked_at))
 
 
-def _fault(trouble: Trouble, board: str, after: float) -> str:
-    at = f"at={max(0.0, after):.3f}"
-    lasts = "" if trouble.seconds == math.inf else f", seconds={trouble.seconds:.3f}"
-    if trouble.kind == BRIDGE:
-        return f'    sim.fault("bridge_restart", {at}{lasts})'
-    if trouble.kind == ALARM:
-        return f'    sim.fault("driver_alarm", "{board}", {at}{lasts})'
-    if trouble.kind == BOOT or trouble.cut:
-        told_s = (trouble.lost_at or trouble.ends) - trouble.at if trouble.cut else 60.0
-        return f'    sim.fault("brown_out", "{board}", {at}{lasts}, amount={told_s:.3f})'
-    return f'    sim.fault("mute", "{board}", {at}{lasts})'
+def _concerns(incident: Incident, robot: str, model: PlantModel) -> bool:
+    cells = [cell for cell in model.cells if cell.name == incident.cell]
+    return any(each.name == robot for cell in cells for each in cell.robots)
+
+
+def _once(*found: Iterable[Fault]) -> list[Fault]:
+    return list(dict.fromkeys(fault for faults in found for fault in faults))
+
+
+def _line(fault: Fault, after: float) -> str:
+    words = [f'"{fault.kind}"', f'"{fault.target}"', f"at={after:.3f}"]
+    if 0 < fault.seconds < math.inf:
+        words.append(f"seconds={fault.seconds:.3f}")
+    if KINDS[fault.kind].amount != NONE:
+        words.append(f"amount={fault.amount:.3f}")
+    if fault.word:
+        words.append(f'word="{fault.word}"')
+    return f"    sim.fault({', '.join(words)})"

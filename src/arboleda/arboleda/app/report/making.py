@@ -16,14 +16,13 @@ def made(read: Read) -> tuple[Cause, str]:
     """Its cause, and the content of the file."""
     found, beginning = read.incident, read.record.first.beginning
     cause = found.cause
-    shipped = beginning.files.plant == "plant.yaml" and beginning.plant == "arboleda"
     path = shlex.quote(str(read.record.paths[0]))
     report = Report(
         incident=found,
         cause=cause,
         model=read.model,
         tries=tries(read),
-        case=case_of(found, cause, read.model, "" if shipped else beginning.files.plant),
+        case=case_of(found, cause, read.model, "" if beginning.shipped else beginning.files.plant),
         command=f"arboleda replay {path} --task {shlex.quote(found.task)}",
     )
     return cause, page(report)

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from arboleda.simulator.levels import LEVELS
 
-from ..user_file import check_writable
+from ..user_file import check_new, check_writable
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
@@ -24,6 +24,7 @@ arboleda simulate --seed 4711 --trace        one seed, line by line, the same ev
 arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
 arboleda simulate --seeds 500 --json out.json
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
+arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 
 Exit status: 0 every invariant held, 1 one was broken, 2 bad input, 130 Ctrl-C."""
 
@@ -96,7 +97,7 @@ def simulate(
     jobs: Jobs = None,
 ) -> None:
     from . import one, screen  # the simulator takes a while to load, and only this command needs it
-    from .flight import SUFFIX, check_new
+    from .flight import SUFFIX
     from .many import Many
     from .request import Request
     from .workers import processors

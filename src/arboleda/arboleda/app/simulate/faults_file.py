@@ -1,8 +1,9 @@
-"""What `--faults FILE` holds: faults as a person writes them, or a broken seed that `--json` wrote."""
+"""What `--faults FILE` holds: what goes wrong and what people do, or a broken seed of `--json`."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,15 +14,17 @@ from arboleda.model.errors import ConfigError
 from arboleda.simulator.run import MINUTE_S
 
 from .. import user_file
-from ..plant_file.yaml_marks import LARGEST, MOST_VALUES
+from ..plant_file.yaml_marks import LARGEST, MOST_VALUES, YamlFault, parse
 
 LARGEST_SUMMARY = 16 * 1024 * 1024  # bytes of what --json wrote of many thousand seeds
 SUMMARY = "seeds"  # the key that a file of --json has, and no other
+SIMULATED = ("faults", "people")  # what of a broken seed is simulated again
 
 
 @dataclass(frozen=True, kw_only=True)
 class Told:
-    """`climate` is what Climate.from_file takes; of a broken seed also which it is, and how long it ran.
+    """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
+    long it ran.
 
     `plant_file` is the content of the plant's file, where it was drawn.
     """
@@ -36,8 +39,10 @@ class Told:
 def read(path: Path, seed: int | None) -> Told:
     """The file; of a summary the broken seed of that number, None for its first one. Else ConfigError."""
     data = _data(path)
-    if not isinstance(data, dict) or SUMMARY not in data:
+    if not isinstance(data, dict):
         return Told(climate=data)
+    if SUMMARY not in data:
+        return Told(climate=data, plant=_plant(path, data))
     try:
         return _broken(path, data[SUMMARY], seed)
     except (KeyError, TypeError):
@@ -49,13 +54,33 @@ def _broken(path: Path, rows: list[dict[str, Any]], seed: int | None) -> Told:
     for row in broken:
         if seed in (None, row["seed"]):
             seconds = row["broken"]["minutes"] * MINUTE_S
-            climate = {"faults": row["broken"]["faults"]}
+            climate = {key: row["broken"][key] for key in SIMULATED if key in row["broken"]}
             file = row["broken"].get("plant_file")
             return Told(
                 climate=climate, seed=row["seed"], plant=row["plant"], plant_file=file, seconds=seconds
             )
     there = f"; there are {', '.join(str(row['seed']) for row in broken)}" if broken else ""
     raise ConfigError((f"{path}: has no broken seed{'' if seed is None else f' {seed}'}{there}",))
+
+
+def _plant(path: Path, data: dict[str, Any]) -> str | None:
+    plant = data.get("plant")
+    if plant is None or isinstance(plant, str):
+        return plant
+    raise ConfigError((f"{path}: {line_of(path, ('plant',))}plant is the name of a plant, not {plant!r}",))
+
+
+def line_of(path: Path, place: Sequence[str | int]) -> str:
+    """Where in the file this is, for the beginning of a sentence; empty where that cannot be said."""
+    try:
+        node, mark = parse(user_file.read_bytes(path, LARGEST))[0], None
+    except (ConfigError, YamlFault):
+        return ""
+    for step in place:
+        if step not in node.children:
+            break
+        node, mark = node.children[step], node.keys.get(step, node.children[step].mark)
+    return f"line {mark.line}: " if mark is not None else ""
 
 
 def _data(path: Path) -> Any:

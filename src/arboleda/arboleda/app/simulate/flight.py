@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from arboleda.model.counting import counted
-from arboleda.model.errors import ArboledaError, ConfigError
+from arboleda.model.errors import ArboledaError
 from arboleda.recorder import copying, reader
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.files import parts_in
@@ -17,21 +17,12 @@ from arboleda.recorder.simulated import SimulatedRecorder, Unwritten
 from arboleda.recorder.tape import SECOND
 from arboleda.simulator.world import START_S
 
-from ..user_file import check_writable
 from .plants import Plant
 from .setting import MakePlant
 
 SUFFIX = ".mcap"
 NOON_NS = 946_728_000 * SECOND  # 2000-01-01 12:00 UTC: a seed's record has the same times always
 ALL = Limits(megabytes=1e6, days=1e6)
-
-
-def check_new(file: Path) -> None:
-    """ConfigError now rather than after minutes of work, where `file` is there or cannot be."""
-    if file.exists():
-        raise ConfigError((f"{file}: is there already; name another file",))
-    check_writable(file)
-    file.unlink()
 
 
 @dataclass

@@ -14,13 +14,13 @@ from pathlib import Path
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.beginning import PlantFiles
-from arboleda.simulator.climate import BadFaults
+from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.levels import LEVELS
 
 from .. import config
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 from .drawn import Drawn, loaded
-from .faults_file import Told, read
+from .faults_file import Told, line_of, read
 from .plants import InTurn, Plant, Plants, notes
 from .setting import Setting
 
@@ -51,7 +51,12 @@ class Request:
         """How many seeds; None: until something breaks."""
         if self.told is not None and self.told.seed is not None:
             return 1
-        return self.seeds or (None if self.until_failure else SEEDS)
+        return self.seeds or (None if self.until_failure else 1 if self.has_people else SEEDS)
+
+    @property
+    def has_people(self) -> bool:
+        """Whether a file says what people do: then seeds differ by little."""
+        return self.told is not None and isinstance(self.told.climate, dict) and "people" in self.told.climate
 
     @property
     def turn(self) -> Iterable[int]:
@@ -99,8 +104,11 @@ class Request:
         try:
             for seed in self._checked:
                 setting.climate(seed)
+                setting.script(setting.plant(seed))
         except BadFaults as error:
-            raise ConfigError((f"{self.faults}: {error} (plant {setting.plant(seed).name})",)) from None
+            where = line_of(Path(self.faults), error.place)
+            name = setting.plant(seed).name
+            raise ConfigError((f"{self.faults}: {where}{error} (plant {name})",)) from None
         return setting
 
     @property

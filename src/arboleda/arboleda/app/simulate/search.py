@@ -8,6 +8,7 @@ from typing import Any
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
+from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.plants import smaller
 from arboleda.simulator.run import MINUTE_S, Plan, Result
@@ -75,7 +76,8 @@ class _Search:
     def _breaks(self, file: dict[str, Any]) -> bool:
         try:
             plant = loaded(file)
-        except ConfigError:
+            self._setting.script(plant.model)
+        except (ConfigError, BadFaults):
             return False
         if self._runs >= ATTEMPTS or self.best.broken is None:
             return False

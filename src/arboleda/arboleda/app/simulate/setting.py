@@ -13,6 +13,7 @@ from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.judged import every
 from arboleda.simulator.run import NO_EXCEPTION, Broken, Plan, Result, Simulation
+from arboleda.simulator.told import Script, script_from
 
 from .plants import Plant, Plants
 
@@ -33,7 +34,7 @@ class Setting:
     plants: Plants
     cycles: int
     level: str
-    told: Any = None  # what Climate.from_file takes
+    told: Any = None  # what Climate.from_file and script_from take
     seconds: float | None = None
 
     def plant(self, seed: int) -> PlantModel:
@@ -45,6 +46,10 @@ class Setting:
         if self.told is not None:
             return Climate.from_file(self.plant(seed), seed, self.told)
         return Climate.draw(self.plant(seed), seed, self.level)
+
+    def script(self, plant: PlantModel) -> Script | None:
+        """What people do where that is told; BadFaults where it cannot be."""
+        return script_from(plant, self.told)
 
     def run(
         self,
@@ -67,12 +72,14 @@ class Setting:
             return drawn(minute)
 
         model = self.plant(seed)
-        simulation = Simulation(model, seed, plan, keep=keep, tell=tell, make_plant=make_plant)
+        script = self.script(model)
+        simulation = Simulation(model, seed, plan, keep=keep, tell=tell, make_plant=make_plant, script=script)
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
         """A seed on such a plant with these faults, for so long."""
-        return Simulation(plant.model, seed, plan, keep=keep).run(seconds=seconds)
+        script = self.script(plant.model)
+        return Simulation(plant.model, seed, plan, keep=keep, script=script).run(seconds=seconds)
 
 
 def rules() -> dict[str, str]:

@@ -66,6 +66,7 @@ def _broken(request: Request, tally: Tally, seed: int, shrunk: Shrunk | None) ->
         "injected": len(found.faults),
         "shrunk": fewest is not None,
         "faults": [asdict(fault) for fault in best.faults],
+        **({"people": request.told.climate["people"]} if request.told and request.has_people else {}),
         **({} if plant.file is None else {"plant_file": plant.file}),
         "replay": request.replay(seed),
     }

@@ -1,0 +1,1 @@
+"""A record's inputs as a case of the simulator: what people did, and what befell devices."""
