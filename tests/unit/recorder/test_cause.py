@@ -10,10 +10,17 @@ import pytest
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import MotionState
 from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, Sent, cause_of
+from arboleda.recorder.incident import Reader
+from arboleda.recorder.replay import plant_of
+from arboleda.recorder.tape import TapedPlant
 from arboleda.recorder.troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble, Troubles
+from arboleda.simulator.faults import KINDS, Fault
+from arboleda.simulator.world import World
+from arboleda.testing import shipped
 
 ARM = "ra1"
 SENT = Sent(id="7-1", robot=ARM, at=8.0, accepted_at=8.1)
+SWITCHED = Sent(id="7-0", robot=ARM, at=7.8, switch=True, accepted_at=7.9)
 
 
 def trouble(kind: str, at: float, seconds: float = 2.0, **more: Any) -> Trouble:
@@ -54,7 +61,11 @@ def named(**changes: Any) -> str:
             },
         ),
         ("no_part", {"reason": Reason.NO_PIECE, "key": "part.none"}),
-        ("not_gripped", {"reason": Reason.PART_LOST, "key": "part.lost", "failed_at": 8.1}),
+        (
+            "not_gripped",
+            {"reason": Reason.PART_LOST, "key": "part.lost", "failed_at": 8.1, "sent": [SWITCHED, SENT]},
+        ),
+        ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost", "failed_at": 8.1}),  # on a later way
         ("part_lost", {"reason": Reason.PART_LOST, "key": "part.lost"}),
         ("foreign", {"reason": Reason.STOPPED}),  # the plant knows of no stop
         ("other", {"reason": Reason.PRECONDITION, "key": "x", "said": "nobody knows"}),
@@ -97,3 +108,21 @@ def test_what_befell_a_robot_is_read_out_of_its_reports() -> None:
         1.1,
     )
     assert found(report(1.0)) == [(SILENCE, 1.0, math.inf, False)]
+
+
+def test_a_command_of_an_earlier_start_is_somebody_elses() -> None:
+    model = shipped("sis_a")
+    world = World(model, make_plant=TapedPlant)
+    world.advance(2.0)
+    world.request_task("sis_a 0B 7 #lot")
+    world.advance(1.5)
+    halt = Fault(kind="second_orchestrator", at=0.0, target="rm_sis_a", word="halt", seed=1)
+    KINDS[halt.kind].begin(world, halt)
+    world.advance(30.0)
+    plant = world.plant
+    assert isinstance(plant, TapedPlant)
+    again, reader = plant_of(plant.beginning, model), Reader("lot", model, drawn=False)
+    for step in plant.tape:
+        reader.take(again, step.unix_ns, step.now, step.events, again.step(step.now, step.events))
+    cause = reader.incident.cause
+    assert (cause.kind, cause.robot) == ("foreign", "rm_sis_a")

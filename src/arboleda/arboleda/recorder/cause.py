@@ -69,9 +69,14 @@ class Evidence:
         return before[-1] if before and self.reason is Reason.NOT_HOMED else None
 
     @property
+    def mine(self) -> list[Sent]:
+        """The commands of the robot before the failure, in their order."""
+        return sorted((each for each in self.sent if each.robot == self.robot), key=_at)
+
+    @property
     def last(self) -> Sent | None:
-        """The last command of the robot before the failure."""
-        return max((each for each in self.sent if each.robot == self.robot), key=_at, default=None)
+        """The last of them."""
+        return self.mine[-1] if self.mine else None
 
 
 def _at(sent: Sent) -> float:
@@ -253,8 +258,8 @@ def _of_boot(evidence: Evidence) -> Found | None:
 
 def _left_behind(evidence: Evidence) -> Found | None:
     """A part that is gone as soon as the arm moves off was never held: until then, the sensor saw it lie."""
-    sent = evidence.last
-    if evidence.key not in GONE or sent is None or sent.switch:
+    *_, before, sent = (None, None, *evidence.mine)
+    if evidence.key not in GONE or sent is None or sent.switch or before is None or not before.switch:
         return None
     return ("not_gripped", {}) if evidence.failed_at - sent.at <= MOVES_OFF_S else None
 

@@ -102,6 +102,7 @@ class Reader:
             name: deque(maxlen=MESSAGES) for name in model.robots
         }
         self._words: dict[str, object] = {}
+        self._accepted: dict[str, str] = {}
         self._stepped_at: float | None = None
         self._tree: list[Row] = []
         self._frames: deque[tuple[float, list[Row]]] = deque(maxlen=round(FRAMES_S / FRAME_S))
@@ -120,18 +121,20 @@ class Reader:
             self.incident.absences.append((now, now - self._stepped_at))
         self._stepped_at = now
         for event in events:
-            self._hear(event)
+            self._hear(event, plant.epoch)
         for message in messages:
             self._send(message, unix_ns, now)
         self._look(plant, now)
         if self.incident.ended_at is not None:
             self.incident.troubles = self._troubles.of(now)
 
-    def _hear(self, event: Event) -> None:
+    def _hear(self, event: Event, epoch: int) -> None:
         found = self.incident
         self._troubles.take([event])
         if isinstance(event, Report):
             self._report(event)
+            if self._took_from_another(event, epoch):
+                found.foreign.append((event.at, event.robot))
         elif isinstance(event, OperatorRequest):
             found.acts.append((event.at, f"{event.verb.value} {event.scope}".strip()))
         elif isinstance(event, Interference):
@@ -148,6 +151,14 @@ class Reader:
             self._said[report.robot].append((report.at, told(report)))
         if report.foreign is not None and report.foreign_obeyed:
             found.foreign.append((report.at, report.robot))
+
+    def _took_from_another(self, report: Report, epoch: int) -> bool:
+        """Whether it took a command just now that another start of a plant gave, as its id says."""
+        now, before = report.accepted, self._accepted.get(report.robot)
+        if now is None or now == before:
+            return False
+        self._accepted[report.robot] = now
+        return before is not None and not now.startswith(f"{epoch}-")
 
     def _send(self, message: Any, unix_ns: int, now: float) -> None:
         found = self.incident

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
+from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.cause import TOGETHER_S, Cause, Evidence
 from arboleda.recorder.incident import Incident
@@ -30,9 +31,18 @@ def faults_behind(incident: Incident, cause: Cause, model: PlantModel) -> list[F
     make, robot = OF_CAUSE.get(cause.kind), model.robots.get(cause.robot or "")
     if cause.kind == "plant_away":
         return [stall(at, seconds) for at, seconds in incident.absences]
+    if cause.kind == "foreign" and robot is not None:
+        return _possible(_stopped_by_another(incident, robot.name), model)
     if make is None or robot is None or incident.failed_at is None:
         return []
     return _possible(make(incident.evidence, robot.mqtt), model)
+
+
+def _stopped_by_another(incident: Incident, robot: str) -> list[Fault]:
+    """Whatever somebody else commanded: what a task can fail of is that it stopped the robot."""
+    word = "stop" if incident.failure and incident.failure.reason is Reason.STOPPED else "halt"
+    times = [at for at, name in incident.foreign if name == robot] or [incident.failed_at or 0.0]
+    return [Fault(kind="second_orchestrator", target=robot, at=times[-1], word=word)]
 
 
 def stall(until: float, seconds: float) -> Fault:
