@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -52,6 +53,7 @@ def named(**changes: Any) -> str:
         ("foreign", {"foreign": [(9.0, ARM)], "reason": Reason.NOT_REACHED}),
         ("off_target", {"foreign": [(9.0, "ra2")], "reason": Reason.NOT_REACHED, "key": "x"}),
         ("unended", {"reason": Reason.DEADLINE}),
+        ("short", {"reason": Reason.DEADLINE, "sent": [replace(SENT, moved=True, stands=True)]}),
         ("unheard", {"reason": Reason.DEADLINE, "sent": [Sent(id="7-1", robot=ARM, at=8.0)]}),
         (
             "switch",

@@ -20,13 +20,18 @@ AWAY_S = 2.0  # so long after the plant was away, what fails may fail of that
 
 @dataclass(frozen=True, kw_only=True)
 class Sent:
-    """A command of a task, and what its robot made of it; `switch`: it sets what the robot holds with."""
+    """A command of a task, and what its robot made of it; `switch`: it sets what the robot holds with.
+
+    `moved`: it was seen to move for it; `stands`: after that it was seen to stand, and not to have done it.
+    """
 
     id: str
     robot: str
     at: float
     switch: bool = False
     accepted_at: float | None = None
+    moved: bool = False
+    stands: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -271,6 +276,8 @@ def _deadline(evidence: Evidence) -> Found | None:
         return None
     if sent.accepted_at is None:
         return "unheard", {}
+    if sent.stands:
+        return "short", {}
     return ("switch", {}) if sent.switch else ("unended", {})
 
 

@@ -20,7 +20,7 @@ from arboleda.model.messages import (
     TaskState,
 )
 from arboleda.model.plant_model import Evidence as Level
-from arboleda.model.plant_model import Link, PlantModel
+from arboleda.model.plant_model import Link, MotionState, PlantModel
 from arboleda.model.sentence import Sentence
 from arboleda.views import tree_view, twin_view
 
@@ -143,8 +143,8 @@ class Reader:
     def _report(self, report: Report) -> None:
         found = self.incident
         sent = found.sent.get(report.accepted or "")
-        if sent is not None and sent.accepted_at is None:
-            found.sent[sent.id] = replace(sent, accepted_at=report.at)
+        if sent is not None:
+            found.sent[sent.id] = _after(sent, report)
         words = news_of(report)
         if report.robot in self._said and self._words.get(report.robot) != words:
             self._words[report.robot] = words
@@ -211,6 +211,16 @@ class Reader:
             found.tree = self._tree
             found.frames = [*self._frames]
             found.messages = {name: [*said] for name, said in self._said.items() if said}
+
+
+def _after(sent: Sent, report: Report) -> Sent:
+    """What a report of its robot says of a command that it has taken."""
+    moves = report.state is MotionState.MOVING
+    stands = sent.moved and report.state is MotionState.STOPPED and report.done != sent.id
+    if sent.accepted_at is not None and (moves, stands) == (sent.moved and not sent.stands, sent.stands):
+        return sent
+    accepted_at = report.at if sent.accepted_at is None else sent.accepted_at
+    return replace(sent, accepted_at=accepted_at, moved=sent.moved or moves, stands=stands)
 
 
 def supervised(model: PlantModel) -> frozenset[str]:
