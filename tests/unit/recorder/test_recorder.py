@@ -180,6 +180,20 @@ def test_a_damaged_byte_ends_the_record_there(tmp_path: Path, monkeypatch: pytes
     assert 0 < min(counts) < len(whole)
 
 
+def test_a_damaged_length_ends_the_record_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That of the text in a chunk that says how it is packed, and that of what is packed in it."""
+    site = Site(tmp_path, monkeypatch)
+    site.work("sis_a 0B 7", s=30.0)
+    site.end()
+    whole = [step.hash for step in reader.opened(site.files[0]).steps()]
+    content, broken = site.files[0].read_bytes(), tmp_path / "broken.mcap"
+    packed = content.index(b"\x04\0\0\0zstd")
+    for at in (packed + 3, packed + 15):
+        broken.write_bytes(content[:at] + b"\xff" + content[at + 1 :])
+        left = [step.hash for step in reader.opened(broken).steps()]
+        assert len(left) < len(whole) and left == whole[: len(left)]
+
+
 def test_a_file_that_grows_is_read_on_where_its_reader_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -46,7 +46,15 @@ READ: dict[int, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.CHUNK: Chunk.read,
     Opcode.FOOTER: Footer.read,
 }
-TORN = (McapError, CRCValidationError, zstandard.ZstdError, zlib.error, struct.error, UnicodeDecodeError)
+TORN = (
+    McapError,
+    CRCValidationError,
+    zstandard.ZstdError,
+    zlib.error,
+    struct.error,
+    OverflowError,  # of a length that no file has
+    UnicodeDecodeError,
+)
 Raw = tuple[int, bytes]  # nanoseconds of Unix time, and a message
 
 
