@@ -13,7 +13,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.app.parts import reports
-from arboleda.app.parts.reports import MOST_KEPT, MOST_WAITING, ReportsPart
+from arboleda.app.parts.reports import MOST_KEPT, MOST_WAITING, NoReport, ReportsPart
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import TaskChanged, TaskState
 
@@ -78,12 +78,55 @@ def test_only_so_many_wait_and_the_end_of_the_plant_waits_for_none(
         part.changed(ended(f"lot-{number}"))
     assert caplog.text.count("others wait") == 2
     part.start()
-    said = tmp_path / reports.FOLDER / "lot-0.html"
+    said = tmp_path / reports.FOLDER / "lot-0.part"
     until(lambda: said.exists() and said.read_text().endswith("\n"))
+    process = int(said.read_text())
     part.stop()
     with pytest.raises(ProcessLookupError):
-        os.kill(int(said.read_text()), 0)
+        os.kill(process, 0)
+    assert not list((tmp_path / reports.FOLDER).iterdir()), "half a report is none"
     assert "no report of lot-0" not in caplog.text, "nothing went wrong with what was ended"
+
+
+def test_a_report_that_is_asked_for_is_written_before_those_that_wait_for_their_record(
+    tmp_path: Path,
+) -> None:
+    part = ReportsPart(tmp_path, running(WRITES), after_s=3600.0)
+    part.start()
+    part.changed(ended("other"))
+    assert part.report("lot") is None
+    until(lambda: part.report("lot") == "why")
+    part.stop()
+    assert [path.name for path in (tmp_path / reports.FOLDER).iterdir()] == ["lot.html"]
+
+
+def test_why_there_is_no_report_is_said_once_and_then_it_is_tried_again(tmp_path: Path) -> None:
+    part = ReportsPart(tmp_path, running("import sys; print('arboleda: no record'); sys.exit(2)"))
+    part.start()
+    said: list[str] = []
+
+    def refused() -> bool:
+        try:
+            assert part.report("lot") is None
+        except NoReport as objection:
+            said.append(str(objection))
+        return len(said) == 2
+
+    until(refused)
+    part.stop()
+    assert said == ["no record"] * 2
+
+
+def test_what_is_no_task_and_one_too_many_are_refused(tmp_path: Path) -> None:
+    part = ReportsPart(tmp_path, running(WRITES))
+    for name in ("", "../tokens", "a/b", "x" * 65):
+        with pytest.raises(NoReport, match="is not the id of a task"):
+            part.report(name)
+    for number in range(MOST_WAITING):
+        assert part.report(f"lot-{number}") is None
+    assert part.report("lot-0") is None, "it waits already"
+    with pytest.raises(NoReport, match="20 other reports wait"):
+        part.report("one-more")
 
 
 def test_the_oldest_reports_go(tmp_path: Path) -> None:

@@ -201,3 +201,30 @@ def test_a_running_plant_leads_into_its_record_and_back(tab: Any, plant: tuple[s
     tab.wait_for_selector("#record")
     connected(tab)
     tab.wait_for_selector(FAILED)
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_report_of_a_failure_is_a_click_away(tab: Any, plant: tuple[str, Path], width: int) -> None:
+    tab.set_viewport_size({"width": width, "height": 800})
+    look(tab, f"{plant[0]}/?tab=tasks&task=failed")
+    with tab.expect_popup() as opened:
+        tab.click("#task .to-report")
+    report = opened.value
+    report.set_default_timeout(60_000)
+    report.set_viewport_size({"width": width, "height": 800})
+    report.wait_for_selector(".cause .big")
+    assert "an operator ended it: stop sis_c" in report.inner_text(".cause")
+    assert report.evaluate("document.documentElement.scrollWidth") <= width
+    assert report.evaluate("self.origin") == "null", "it reaches nothing of the plant's"
+    report.click("#language")
+    assert "un operador" in report.inner_text(".cause")
+    report.close()
+
+
+def test_the_report_of_what_did_not_fail_is_a_sentence(plant: tuple[str, Path]) -> None:
+    with httpx.Client(base_url=plant[0], trust_env=False, timeout=60.0) as client:
+        answers = [client.get("/report?task=done")]
+        until(lambda: answers.append(client.get("/report?task=done")) or answers[-1].status_code == 404)
+        assert answers[0].status_code == 200 and "is being written" in answers[0].text
+        assert "it is done, so there is nothing to report" in answers[-1].text
+        assert client.get("/report", params={"task": "../tokens"}).status_code == 404

@@ -41,7 +41,7 @@ from .parts.groot2 import Groot2Options, Groot2Part
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
-from .parts.reports import ReportsPart
+from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
 from .rate import at_rate
@@ -94,6 +94,7 @@ class App:
         self._state = StateDir(options.state_dir or default_state(model.name))
         self._store = Store(self._state.path / STORE, model.name)
         self._history, self._recalled = (TaskHistory(self._state.path / STORE) for _ in range(2))
+        self._reporting: ReportsPart | None = None
         self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))
         self._metrics: Metrics | None = None
@@ -239,6 +240,7 @@ class App:
             positions=self.positions,
             past_acts=lambda: self._past_acts,
             recorded=None if options.recording is None else self._state.path,
+            report=self.report,
         )
         mount = page.mounting(sources) if options.page else None
         metrics = self._metrics = Metrics(self.snapshot, self.links)
@@ -286,15 +288,20 @@ class App:
         logs, view = [RosLog(self.model)], ViewLog(self._past_acts, self.links)
         recorder = Recorder(Writing(self._state.path / FOLDER, beginning, wanted.limits, logs, view=view))
         plant.recorder = recorder
-        return [*self._reports(wanted), recorder]
+        return [self._reports(wanted), recorder]
 
-    def _reports(self, wanted: Recording) -> list[Part]:
-        """What has reports written, where they are wanted."""
-        if not wanted.reports:
-            return []
-        reports = ReportsPart(self._state.path)
-        self.listen(reports.changed)
-        return [reports]
+    def _reports(self, wanted: Recording) -> ReportsPart:
+        """What has reports written: those that are asked for, or one of each failure where that is wanted."""
+        self._reporting = ReportsPart(self._state.path)
+        if wanted.reports:
+            self.listen(self._reporting.changed)
+        return self._reporting
+
+    def report(self, task: str) -> str | None:
+        """The report of a task that failed, in HTML; None: it is being written. NoReport says why not."""
+        if self._reporting is None:
+            raise NoReport(NO_RECORD())
+        return self._reporting.report(task)
 
     def _build(self, parts: set[str], options: Options) -> None:
         now, bridge, drivers = int(time.time()), None, None

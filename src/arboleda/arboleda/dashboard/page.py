@@ -15,7 +15,7 @@ from nicegui import Client, app, ui
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery
 
-from . import header, links, panel, shell, tasks, timeline, trees
+from . import header, links, panel, reports, shell, tasks, timeline, trees
 from .desk import Desk
 from .faces import history, oee
 from .feed import Feed
@@ -57,6 +57,7 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
 
     window.serve(server, plant, show, stills)
     _serve_tasks(server, plant, feed)
+    reports.serve(server, plant)
     shell.serve(server, layout, build)
     _keep_running(feed, show)
 

@@ -39,6 +39,10 @@ class PlantSide(Protocol):
         """The record of this start, up to some seconds ago; it waits for the disk, so not in the event loop.
         An ArboledaError says why there is none."""
 
+    def report(self, task: str) -> str | None:
+        """Why a task failed, as one HTML file; None: it is being written now, ask again. It waits for the
+        disk; an ArboledaError says why there is none."""
+
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}}."""
 

@@ -42,6 +42,11 @@ def way(label: str | None, there: dict[str, str | None], *, classes: str = "", *
     return tag("a", label, classes=classes, href=href, data_go=json.dumps(there), **attributes)
 
 
+def report(key: str) -> Element:
+    """A link to the report of the task whose id is the state of `text/<key>`; the script leads it there."""
+    return live("a", key, classes="act to-report", target="_blank", data_report="")
+
+
 def act_button(label: str, act: str, of: str, does: str, *, classes: str = "", **attributes: Any) -> Element:
     """A button that asks the plant for something; `does` says what it will do."""
     return tag(

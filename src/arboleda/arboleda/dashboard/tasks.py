@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import task_form
 from .cell_filter import cell_filter
 from .plant_side import Layout
-from .tags import link, live, rows, tag, way
+from .tags import link, live, report, rows, tag, way
 from .trees import heard, zooms
 from .wording import Words
 
@@ -86,6 +86,7 @@ def _one(layout: Layout, words: Words) -> None:
         live("p", "task.note", classes="note")
         if layout.get("recorded"):
             way(None, {"at": "task"}, classes="to-record", data_live="task.record")
+            report("task.report")
         with tag("div", classes="tree-box"):
             with tag("div", classes="tree-tools"):
                 zooms(words)

@@ -7,7 +7,7 @@ from typing import Any
 from arboleda.views.view import devices_once
 
 from .plant_side import Layout
-from .tags import link, live, rows, tag, way
+from .tags import link, live, report, rows, tag, way
 from .wording import Words
 
 MANY = 4  # cells; more than these are shown one tree at a time on a wall screen too
@@ -20,6 +20,8 @@ def build(layout: Layout, words: Words) -> None:
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
                 _card(cell, [device for of, device in once if of == cell["name"]], words)
+                if layout.get("recorded"):
+                    report(f"{cell['name']}.report")
                 tree_box(cell, words)
                 with tag("div", classes="changes"):
                     tag("h2", words("cells.changes", cell=cell["name"]))

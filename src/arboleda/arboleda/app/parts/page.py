@@ -34,6 +34,7 @@ class Sources:
     positions: Callable[[], dict[str, Any]]
     past_acts: Callable[[], list[dict[str, Any]]]
     recorded: Path | None  # the state directory of a plant that writes a record
+    report: Callable[[str], str | None]
 
 
 class PageSide:
@@ -53,6 +54,7 @@ class PageSide:
         self.links = sources.links
         self.positions = sources.positions
         self.past_acts = sources.past_acts
+        self.report = sources.report
 
     def layout(self) -> dict[str, Any]:
         return self._layout

@@ -47,6 +47,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
     return {
         f"text/{name}.state": [words.of("cell_state", stands), stands],
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
+        f"text/{name}.report": _report(words, cell, task),
         **_ways(words, cell),
         f"text/{name}.task": [_task_line(moment, task), task["state"] if task else "none"],
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],
@@ -88,6 +89,12 @@ def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str
         return ""
     over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
     return failed_in(words, task, memory.rows) if over and task else ""
+
+
+def _report(words: Words, cell: Row, task: Row | None) -> list[str]:
+    """The way to the report of the last task, while the card says that it failed; its state is the id."""
+    over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
+    return [words("report.link"), task["id"]] if over and task else ["", ""]
 
 
 def failed_in(words: Words, task: Row, rows: list[Row]) -> str:

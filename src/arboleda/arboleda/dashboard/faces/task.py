@@ -35,6 +35,7 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         "text/task.cause": [cause, state[1]],
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
         "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],
+        "text/task.report": [words("report.link"), id] if state[1] == "failed" else ["", ""],
         **heard.rows(words, "task.heard", task["answers"] if task else []),
         **tree_face(words, TREE, tree or EndedTree(task=id, rows=[], statuses={}), title=title),
     }

@@ -1,0 +1,49 @@
+"""The report of a task that failed, as a page of its own that can be kept and sent."""
+
+from __future__ import annotations
+
+from html import escape
+
+from fastapi import FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import HTMLResponse, Response
+
+from arboleda.adapters.web import plain_page
+from arboleda.model.errors import ArboledaError
+
+from .plant_side import PlantSide
+from .shell import language_of
+from .wording import Words, words
+
+PATH = "/report"
+LOOK_S = 1
+# it has scripts of its own and words from outside: they reach nothing of this plant
+POLICY = (
+    "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; frame-ancestors 'none'"
+)
+
+
+def serve(server: FastAPI, plant: PlantSide) -> None:
+    """Have `/report?task=ID` answered: with the report, or with a page that waits until it is written."""
+
+    async def report(request: Request, task: str = "") -> Response:
+        said = words(language_of(request))
+        try:
+            content = await run_in_threadpool(plant.report, task)
+        except ArboledaError as error:
+            return _note(said, task, said.say(error.sentence), status=404)
+        if content is None:
+            waits = _note(said, task, said("report.waits"))
+            waits.headers["refresh"] = str(LOOK_S)
+            return waits
+        name = f'inline; filename="{task}.html"'
+        return HTMLResponse(content, headers={"content-security-policy": POLICY, "content-disposition": name})
+
+    server.add_api_route(PATH, report, include_in_schema=False)
+
+
+def _note(said: Words, task: str, text: str, status: int = 200) -> HTMLResponse:
+    title = said("report.title", task=task)
+    body = f"<h1>{escape(title)}</h1><p role=status>{escape(text)}</p>"
+    return plain_page.page(title, body, language=said.language, status=status)
