@@ -9,11 +9,18 @@ from typing import Any
 
 import pytest
 
+from arboleda.dashboard.past.side import Start
 from arboleda.dashboard.past.stills import Stills
 from arboleda.dashboard.past.turns import Turns
 from arboleda.dashboard.past.visitor import Arrival, Visitor
 from arboleda.dashboard.wording import words
 from arboleda.recorder.errors import NoRecord
+
+STARTS = [
+    Start(epoch=9, began=0, is_own=False, is_same=False),
+    Start(epoch=8, began=0, is_own=True, is_same=True),
+    Start(epoch=7, began=0, is_own=False, is_same=True),
+]
 
 
 class FakePast:
@@ -63,7 +70,7 @@ class Page:
 
     def __init__(self, **arrival: Any) -> None:
         self.past, self.client = FakePast(), Client()
-        side: Any = SimpleNamespace(past=lambda: self.past)
+        side: Any = SimpleNamespace(past=lambda epoch: self.past, starts=lambda: STARTS)
         self.visitor = Visitor(self.client, side, Stills(), Turns(), words("en"), Arrival(**arrival))  # type: ignore[arg-type]
         asyncio.run(self.visitor.come())
 
@@ -123,6 +130,28 @@ def test_of_moments_that_come_faster_than_frames_the_last_is_shown() -> None:
 
     asyncio.run(drag())
     assert page.at == 89 and len(page.past.made) < 10
+
+
+def test_of_a_record_that_is_longer_by_now_the_end_is_told_and_the_moment_stays() -> None:
+    page = Page(moment=10)
+    page.hear("grow")
+    assert len(page.client.frames) == 1, "it is as long as it was"
+    page.past.ended = 120
+    page.hear("grow")
+    page.hear("grow")
+    assert page.client.frames[1:] == [{"past/span": [0, 120, [20]]}]
+
+
+def test_the_other_records_can_be_chosen_but_those_of_another_plant_file() -> None:
+    own, older = Page(moment=10), Page(moment=10, epoch=7)
+    rows = own.client.frames[0]["past/starts"]
+    assert [(epoch, shown, possible) for epoch, _, shown, possible in rows] == [
+        ("9", False, False),
+        (None, True, True),
+        ("7", False, True),
+    ]
+    assert "another plant file" in rows[0][1] and "another" not in rows[2][1]
+    assert [shown for _, _, shown, _ in older.client.frames[0]["past/starts"]] == [False, False, True]
 
 
 STRANGE = [(), ("go", "x"), ("go", 2**60), ("step", 7, ""), ("task", {"a": 1}), ("__class__",), (["go"], 1)]

@@ -17,11 +17,12 @@ from arboleda.adapters.web.names import LOCAL, names_for
 from arboleda.adapters.web.server import Server
 from arboleda.dashboard.past import page
 from arboleda.dashboard.past.past import Past
+from arboleda.dashboard.past.side import Start
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.views import Views
 from arboleda.views import view
 
+from .records import Records
 from .urdf import robot_urdf
 from .waiting import interruptible, until
 
@@ -35,13 +36,18 @@ class Recorded:
     def __init__(self, record: Record, model: PlantModel) -> None:
         self._model = model
         self._layout = view.layout(model)
-        self._past = Past(Views(record), self._layout)
+        path = record.paths[-1]
+        self._records = Records(lambda: path, self._layout)
+        self._records.past()  # what cannot be seen is said before the page is
 
     def layout(self) -> dict[str, Any]:
         return self._layout
 
-    def past(self) -> Past:
-        return self._past
+    def past(self, epoch: int | None = None) -> Past:
+        return self._records.past(epoch)
+
+    def starts(self) -> list[Start]:
+        return self._records.starts()
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self._model, robot)

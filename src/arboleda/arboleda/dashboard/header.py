@@ -28,7 +28,7 @@ def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, 
             live("p", "sum", classes="sum")
         _tabs(words, parts)
         if beside:
-            way(words("record.leave"), {"at": None, "task": None}, classes="act record-leave")
+            way(words("record.leave"), {"at": None, "task": None, "record": None}, classes="act record-leave")
         _tools(words, role, sounds=False)
         tag("p", words("record.reading"), id="connection", role="status", data_lost=words("record.lost"))
         tag("div", id="answer", role="status", aria_live="polite")

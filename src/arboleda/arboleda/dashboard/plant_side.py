@@ -13,6 +13,7 @@ from arboleda.views.oee import Oee
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
     from .past.past import Past
+    from .past.side import Start
 
 
 Snapshot = dict[str, Any]
@@ -35,9 +36,12 @@ class PlantSide(Protocol):
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
 
-    def past(self) -> Past:
-        """The record of this start, up to some seconds ago; it waits for the disk, so not in the event loop.
-        An ArboledaError says why there is none."""
+    def past(self, epoch: int | None = None) -> Past:
+        """The record of this start, or of an earlier one, up to some seconds ago; it waits for the disk, so
+        not in the event loop. An ArboledaError says why there is none."""
+
+    def starts(self) -> list[Start]:
+        """The starts of which there are records, the last first; it waits for the disk, too."""
 
     def report(self, task: str) -> str | None:
         """Why a task failed, as one HTML file; None: it is being written now, ask again. It waits for the

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +20,10 @@ from .web import Side
 
 if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record needs it
     from arboleda.dashboard.past.past import Past
+    from arboleda.dashboard.past.side import Start
 
-FRESH_S = 5.0  # for so long a record that was opened is the one that is shown to others too
+    from ..records import Records
+
 NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
 
 
@@ -44,7 +46,6 @@ class PageSide:
         self._model = sources.model
         self._layout = view.layout(sources.model) | {"recorded": sources.recorded is not None}
         self._sources = sources
-        self._opened: tuple[float, Past] | None = None
         self.snapshot = side.snapshot
         self.submit = side.submit
         self.operate = side.operate
@@ -59,22 +60,27 @@ class PageSide:
     def layout(self) -> dict[str, Any]:
         return self._layout
 
-    def past(self) -> Past:
-        if self._opened is None or time.monotonic() - self._opened[0] > FRESH_S:
-            self._opened = time.monotonic(), self._read()
-        return self._opened[1]
+    def past(self, epoch: int | None = None) -> Past:
+        return self._recorded.past(epoch)
 
-    def _read(self) -> Past:
-        from arboleda.dashboard.past.past import Past
-        from arboleda.recorder import files, reader
-        from arboleda.recorder.views import Views
+    def starts(self) -> list[Start]:
+        return self._recorded.starts()
+
+    @cached_property
+    def _recorded(self) -> Records:
+        from ..records import Records
+
+        return Records(self._own, self._layout)
+
+    def _own(self) -> Path:
+        from arboleda.recorder import files
 
         state, epoch = self._sources.recorded, self.snapshot()["epoch"]
         found = files.parts_in(state / files.FOLDER) if state else []
         parts = [part for part in found if part.epoch == epoch]
         if not parts:
             raise NoRecord(NOT_YET())
-        return Past(Views(reader.opened(parts[-1].path)), self._layout)
+        return parts[-1].path
 
     def urdf(self, robot: str) -> str:
         return robot_urdf(self._model, robot)

@@ -1,7 +1,7 @@
-// Where on the page somebody is, as its address says it: part, cell, task, language, and the moment of a record.
+// Where on the page somebody is, as its address says it: part, cell, task, language, and the moment of which record.
 // Links and the browser's back lead there.
 
-const KEYS = ["tab", "cell", "task", "lang", "at"];
+const KEYS = ["tab", "cell", "task", "lang", "at", "record"];
 let arrived = () => {};
 
 export function start(arrive) {

@@ -6,6 +6,7 @@ import * as shell from "./shell.js";
 import * as tree from "./tree.js";
 
 const PLAY_MS = 100; // between two moments while it plays
+const GROW_MS = 5000; // a record that is written on is longer by then
 const NOTE_MS = 400; // browsers take a change of the address a few times a second
 const WAYS = {
   failure_before: ["failure", -1],
@@ -63,6 +64,7 @@ let noting = null;
 
 function shown(patch) {
   if (patch["past/span"]) span(patch["past/span"]);
+  if (patch["past/starts"]) starts(patch["past/starts"]);
   if (patch["past/at"] === undefined) return;
   moment = patch["past/at"];
   const slider = at("slider");
@@ -79,6 +81,17 @@ function span([first, last, marks]) {
   at("slider").max = ended - began;
   const share = (ms) => `${(100 * (ms - began)) / Math.max(1, ended - began)}%`;
   at("marks").replaceChildren(...marks.map((ms) => Object.assign(document.createElement("i"), { style: `left: ${share(ms)}` })));
+}
+
+// The records of the plant's starts; one of another plant file cannot be shown on this page.
+function starts(rows) {
+  const choice = at("start");
+  choice.replaceChildren(...rows.map(([epoch, label, chosen, possible]) => Object.assign(new Option(label, epoch ?? "", chosen, chosen), { disabled: !possible })));
+  choice.hidden = rows.length < 2;
+}
+
+function grow() {
+  if (moment !== null && !waiting && !document.hidden) tell("grow");
 }
 
 let dragged = false;
@@ -172,7 +185,9 @@ function begin() {
   if (place.here().cell) at("cell").value = place.here().cell;
   place.start(arrive);
   place.settle({});
+  at("start").addEventListener("change", () => location.assign(place.address({ record: at("start").value || null, at: "failure", task: null })));
   setInterval(watch, 1000);
+  setInterval(grow, GROW_MS);
 }
 
 shell.whenReady(begin);

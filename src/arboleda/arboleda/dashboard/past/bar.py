@@ -37,6 +37,7 @@ def build(layout: Layout, words: Words) -> None:
             _ways(AFTER, words)
             _speed(words)
             _of(layout, words)
+            tag("select", id="record-start", classes="tool", aria_label=words("record.start"), hidden="true")
 
 
 def _ways(ways: dict[str, str], words: Words) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from fastapi import FastAPI, Request
 from nicegui import Client, ui
 
@@ -15,7 +17,8 @@ from .stills import Stills
 from .turns import Turns
 from .visitor import Arrival, Visitor
 
-KEY, OF_TASK = "at", "task"  # of the page's address: which moment of a record
+KEY, OF_TASK, START = "at", "task", "record"  # of the page's address: which moment of which record
+EPOCH = re.compile(r"[0-9]{1,10}", re.ASCII)
 PARTS: Parts = {
     "cells": trees.build,
     "twin": pane.build,
@@ -78,4 +81,11 @@ def arrival(request: Request) -> Arrival:
         moment = round(float(asked) * 1000)
     except (OverflowError, ValueError):
         moment = None
-    return Arrival(moment=moment, task=query.get("task"), at_its_end=asked == OF_TASK, cell=query.get("cell"))
+    start = query.get(START, "")
+    return Arrival(
+        moment=moment,
+        task=query.get("task"),
+        at_its_end=asked == OF_TASK,
+        cell=query.get("cell"),
+        epoch=int(start) if EPOCH.fullmatch(start) else None,
+    )

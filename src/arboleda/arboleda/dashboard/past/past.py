@@ -32,12 +32,22 @@ class Past:
     def __init__(self, views: Views, layout: Row) -> None:
         self._views = views
         self._layout = layout
-        self._events = list(views.events())
         self._cells = [cell["name"] for cell in layout["cells"]]
+        self._one = threading.Lock()
+        self._take_in()
+
+    def grow(self) -> None:
+        """Take in what was written since."""
+        with self._one:
+            if moment_of(self._views.ended_ns / 1e9) != self.ended:
+                self._take_in()
+
+    def _take_in(self) -> None:
+        views = self._views
+        self._events = list(views.events())
         self._happened_ns = [nanoseconds(each["at"]) for each in self._events]
         self._moments = lru_cache(None)(self._found)
         self._trees = TreesThen(partial(followed, views), self._events, self._cells, views.began_ns)
-        self._one = threading.Lock()
         self.began, self.ended = moment_of(views.began_ns / 1e9), moment_of(views.ended_ns / 1e9)
 
     def failures(self, cell: str | None = None) -> Sequence[int]:

@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
     from .past import Past
+
+
+@dataclass(frozen=True, kw_only=True)
+class Start:
+    """A start of a plant of which there is a record: `began` at that ms of Unix time.
+
+    `is_own`: the page is of it where nothing else is chosen; `is_same`: it had the same plant file, so that
+    the page can show it.
+    """
+
+    epoch: int
+    began: int
+    is_own: bool
+    is_same: bool
 
 
 class PastSide(Protocol):
@@ -17,6 +32,9 @@ class PastSide(Protocol):
     def urdf(self, robot: str) -> str:
         """A robot's drawing; an ArboledaError says why there is none. Takes a while."""
 
-    def past(self) -> Past:
-        """Its record as of now; it waits for the disk, so not in the event loop. An ArboledaError says why
-        there is none."""
+    def past(self, epoch: int | None = None) -> Past:
+        """The record that the page is of, or that of another start, as of now; it waits for the disk, so not
+        in the event loop. An ArboledaError says why there is none."""
+
+    def starts(self) -> list[Start]:
+        """Those to choose from, the last first; it waits for the disk, too."""

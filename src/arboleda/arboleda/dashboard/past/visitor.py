@@ -15,14 +15,15 @@ from arboleda.views.changes import changed
 
 from ..faces import Face
 from ..wording import Words
-from .side import PastSide
+from .moments import dated
+from .side import PastSide, Start
 from .stills import Stills
 from .turns import Turns
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
     from .past import Past
 
-GO, STEP, FAILURE, TASK, LOOK, LEAVE = "go", "step", "failure", "task", "look", "leave"
+GO, STEP, FAILURE, TASK, LOOK, LEAVE, GROW = "go", "step", "failure", "task", "look", "leave", "grow"
 LONGEST = 300  # characters of what a browser may name
 LATEST = 2**53  # what its numbers can tell apart
 
@@ -32,12 +33,13 @@ log = logging.getLogger(__name__)
 @dataclass(frozen=True, kw_only=True)
 class Arrival:
     """Where in the record a page is opened: at a moment, at the end of the task whose page it is, else at the
-    last failure, of a cell where one is named."""
+    last failure, of a cell where one is named. `epoch`: in the record of that start."""
 
     moment: int | None = None
     task: str | None = None
     at_its_end: bool = False
     cell: str | None = None
+    epoch: int | None = None
 
 
 class Visitor:
@@ -53,6 +55,7 @@ class Visitor:
         self._words = words
         self._arrival = arrival
         self._past: Past | None = None
+        self._starts: list[Start] = []
         self._moment = 0
         self._task = arrival.task
         self._shown: Face = {}
@@ -66,18 +69,36 @@ class Visitor:
         self._shown, self._drawn = {}, {}
         if self._past is None:
             try:
-                self._past = await self._turns.take(self._side.past)
+                self._past, self._starts = await self._turns.take(self._opened)
             except ArboledaError as error:
                 self._say(self._words.say(error.sentence))
                 return
             self._arrive(self._past)
         await self._show()
 
+    def _opened(self) -> tuple[Past, list[Start]]:
+        return self._side.past(self._arrival.epoch), self._side.starts()
+
+    async def _grow(self) -> None:
+        """Tell how far the record is by now, where it is written on."""
+        try:
+            self._past = past = await self._turns.take(lambda: self._side.past(self._arrival.epoch))
+        except ArboledaError as error:
+            self._say(self._words.say(error.sentence))
+            return
+        span = _span(past)
+        if self._shown and self._shown.get("past/span") != span:
+            self._shown["past/span"] = span
+            self._tell({"past/span": span})
+
     async def hear(self, event: GenericEventArguments) -> None:
         """One event of the page: [what, of, cell]; anything else is ignored."""
         asked = event.args if isinstance(event.args, list) else [event.args]
         what, of, cell = [*asked, None, None, None][:3]
         if self._past is None:
+            return
+        if what == GROW:
+            await self._grow()
             return
         of_cell = cell if isinstance(cell, str) and cell else None
         if self._takes(self._past, what, of, of_cell):
@@ -151,9 +172,24 @@ class Visitor:
         if looks:
             self._draw(changed(self._drawn, drawn))
             self._drawn = drawn
-        face["past/span"] = [past.began, past.ended, past.marks()]
+        face["past/span"] = _span(past)
+        face["past/starts"] = self._choice()
         patch = changed(self._shown, face) | {"past/at": moment}
         self._shown = face
+        self._tell(patch)
+
+    def _choice(self) -> list[list[Any]]:
+        """The records to choose from: which, how each is called, whether it is shown, whether it can be."""
+        shown = self._arrival.epoch
+        rows = []
+        for start in self._starts:
+            label = dated(start.began).partition(".")[0]
+            label = label if start.is_same else self._words("record.other_plant", when=label)
+            is_shown = start.is_own if shown is None else start.epoch == shown
+            rows.append([None if start.is_own else str(start.epoch), label, is_shown, start.is_same])
+        return rows
+
+    def _tell(self, patch: dict[str, Any]) -> None:
         self._number += 1
         self._client.run_javascript(f"arboleda.live({self._number}, {json.dumps(patch)})")
 
@@ -162,3 +198,8 @@ class Visitor:
 
     def _say(self, sentence: str) -> None:
         self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, false)")
+
+
+def _span(past: Past) -> list[Any]:
+    """How far the record reaches, and its failures."""
+    return [past.began, past.ended, past.marks()]

@@ -1,0 +1,112 @@
+"""The records that a page can show: the one that it was opened for, and others of the same plant."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from arboleda.dashboard.past.past import Past
+from arboleda.dashboard.past.side import Start
+from arboleda.model.sentence import Phrase
+from arboleda.recorder import files, reader
+from arboleda.recorder.beginning import Beginning
+from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.views import Views
+
+FRESH_S = 5.0  # for so long nobody looks again how far a record is
+OPEN = 3  # records that are kept open, beside one another
+SHOWN = 50  # starts to choose from, the last ones
+NO_START = Phrase(
+    "record.no_start",
+    "There is no record of this start, or it had another plant file: see `arboleda record list`, then "
+    "`arboleda replay FILE --page`.",
+)
+
+
+class Records:
+    """`own` is a file of the record that is shown where none is chosen, NoRecord says why there is none.
+
+    Others can be chosen where their plant file, and whatever it uses, is the same: the page and its twin are
+    made of it. For any thread; who asks waits for the disk.
+    """
+
+    def __init__(self, own: Callable[[], Path], layout: dict[str, Any]) -> None:
+        self._own = own
+        self._layout = layout
+        self._open: OrderedDict[int | None, tuple[float, Past]] = OrderedDict()
+        self._beginnings: dict[int, tuple[Beginning, int] | None] = {}
+        self._one = threading.Lock()
+
+    def past(self, epoch: int | None = None) -> Past:
+        """The record of a start, as far as it is written; None: the own one."""
+        with self._one:
+            known = self._open.get(epoch)
+            if known is None:
+                known = time.monotonic(), Past(Views(reader.opened(self._file(epoch))), self._layout)
+            elif time.monotonic() - known[0] > FRESH_S:
+                known[1].grow()
+                known = time.monotonic(), known[1]
+            self._open[epoch] = known
+            self._open.move_to_end(epoch)
+            while len(self._open) > OPEN:
+                self._open.popitem(last=False)
+            return known[1]
+
+    def starts(self) -> list[Start]:
+        """The starts of the plant that have a record beside the own one, the last first."""
+        with self._one:
+            own = self._own()
+            mine = files.part_at(own)
+            if mine is None:  # a copy somewhere else: what is beside it need not be of this plant
+                return []
+            epochs = sorted({part.epoch for part in files.parts_in(own.parent)}, reverse=True)[:SHOWN]
+            return [start for epoch in epochs if (start := self._start(own, epoch)) is not None]
+
+    def _start(self, own: Path, epoch: int) -> Start | None:
+        known = self._beginning(own.parent, epoch)
+        if known is None:
+            return None
+        mine = files.part_at(own)
+        is_own = mine is not None and epoch == mine.epoch
+        return Start(
+            epoch=epoch, began=known[1] // 1_000_000, is_own=is_own, is_same=self._is_same(own, epoch)
+        )
+
+    def _is_same(self, own: Path, epoch: int) -> bool:
+        mine = files.part_at(own)
+        ours = self._beginning(own.parent, mine.epoch) if mine is not None else None
+        other = self._beginning(own.parent, epoch)
+        return None not in (ours, other) and _plant(ours[0]) == _plant(other[0])  # type: ignore[index]
+
+    def _beginning(self, folder: Path, epoch: int) -> tuple[Beginning, int] | None:
+        """How a start began and when, None where that cannot be read."""
+        if epoch not in self._beginnings:
+            first = next((part for part in files.parts_in(folder) if part.epoch == epoch), None)
+            try:
+                read = reader.alone(first.path).first if first is not None else None
+            except NoRecord:
+                read = None  # perhaps it is not written yet
+            if read is None:
+                return None
+            self._beginnings[epoch] = read.beginning, read.began_ns
+        return self._beginnings[epoch]
+
+    def _file(self, epoch: int | None) -> Path:
+        own = self._own()
+        if epoch is None:
+            return own
+        mine = files.part_at(own)
+        found = [part.path for part in files.parts_in(own.parent) if part.epoch == epoch]
+        if mine is None or not found or not self._is_same(own, epoch):
+            raise NoRecord(NO_START())
+        return found[-1]
+
+
+def _plant(beginning: Beginning) -> tuple[Any, ...]:
+    """What the page is made of."""
+    read = beginning.files
+    return read.plant, dict(read.contents), beginning.virtual, beginning.simulated, beginning.rate
