@@ -203,28 +203,33 @@ def test_a_running_plant_leads_into_its_record_and_back(tab: Any, plant: tuple[s
     tab.wait_for_selector(FAILED)
 
 
+@pytest.fixture(scope="module")
+def reported(plant: tuple[str, Path]) -> str:
+    """The same plant, with a report of its failure."""
+    folder = plant[1] / "reports"
+    folder.mkdir()
+    command = (MAIN, "report", "failed", "--state", str(plant[1]), "--output", str(folder / "failed.html"))
+    process = Process(sys.executable, "-c", *command, env={"PYTHONPATH": paths()})
+    process.wait_for("failed.html has ")
+    return plant[0]
+
+
 @pytest.mark.parametrize("width", [1280, 390])
-def test_the_report_of_a_failure_is_a_click_away(tab: Any, plant: tuple[str, Path], width: int) -> None:
+def test_the_report_of_a_failure_is_a_click_away(tab: Any, reported: str, width: int) -> None:
     tab.set_viewport_size({"width": width, "height": 800})
-    look(tab, f"{plant[0]}/?tab=tasks&task=failed")
+    look(tab, f"{reported}/?cell=sis_c")
     with tab.expect_popup() as opened:
-        tab.click("#task .to-report")
+        tab.click("article.cell.chosen .to-report")
     report = opened.value
-    report.set_default_timeout(60_000)
     report.set_viewport_size({"width": width, "height": 800})
-    report.wait_for_selector(".cause .big")
     assert "an operator ended it: stop sis_c" in report.inner_text(".cause")
     assert report.evaluate("document.documentElement.scrollWidth") <= width
     assert report.evaluate("self.origin") == "null", "it reaches nothing of the plant's"
     report.click("#language")
     assert "un operador" in report.inner_text(".cause")
     report.close()
-
-
-def test_the_report_of_what_did_not_fail_is_a_sentence(plant: tuple[str, Path]) -> None:
-    with httpx.Client(base_url=plant[0], trust_env=False, timeout=60.0) as client:
-        answers = [client.get("/report?task=done")]
-        until(lambda: answers.append(client.get("/report?task=done")) or answers[-1].status_code == 404)
-        assert answers[0].status_code == 200 and "is being written" in answers[0].text
-        assert "it is done, so there is nothing to report" in answers[-1].text
-        assert client.get("/report", params={"task": "../tokens"}).status_code == 404
+    look(tab, f"{reported}/?tab=tasks&task=failed")
+    tab.wait_for_selector("#task .to-report[href='/report?task=failed&lang=en']")
+    look(tab, f"{reported}/?tab=tasks&task=done")
+    tab.wait_for_selector("#task g.node.is-success")
+    assert tab.text_content("#task .to-report") == ""

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app import records
-from arboleda.app.records import Records
+from arboleda.app.parts import records
+from arboleda.app.parts.records import Records
 from arboleda.recorder.beginning import Limits, PlantFiles
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path

@@ -22,7 +22,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import view
 
-from .records import Records
+from .parts.records import Records
 from .urdf import robot_urdf
 from .waiting import interruptible, until
 

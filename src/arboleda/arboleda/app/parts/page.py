@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # it takes a while to load, and only who looks at a record ne
     from arboleda.dashboard.past.past import Past
     from arboleda.dashboard.past.side import Start
 
-    from ..records import Records
+    from .records import Records
 
 NOT_YET = Phrase("record.not_yet", "There is no record of this start yet; try again in some seconds.")
 
@@ -68,7 +68,7 @@ class PageSide:
 
     @cached_property
     def _recorded(self) -> Records:
-        from ..records import Records
+        from .records import Records
 
         return Records(self._own, self._layout)
 
