@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from unittest import mock
+from uuid import uuid4
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -20,6 +21,7 @@ from hypothesis import HealthCheck, settings
 from arboleda.testing.domains import Domain
 
 from .dealing import dealt
+from .postgres import PASSWORD, Server
 
 # How fast a machine is does not decide a test.
 settings.register_profile("arboleda", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -162,6 +164,27 @@ def _is_free(port: int) -> bool:
         except OSError:
             return False
     return True
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[Server]:
+    """A PostgreSQL server for all tests of this process; a test that stops it starts it again."""
+    server = Server(next(port for port in _ports if _is_free(port)))
+    yield server
+    server.remove()
+
+
+@pytest.fixture
+def database(postgres: Server, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The address of its database; the password is where people have it."""
+    monkeypatch.setenv("PGPASSWORD", PASSWORD)
+    return postgres.address
+
+
+@pytest.fixture
+def plant() -> str:
+    """The name of a plant that the database does not know yet."""
+    return f"plant_{uuid4().hex[:8]}"
 
 
 @pytest.fixture

@@ -19,10 +19,10 @@ from hypothesis import strategies as st
 from tests.rights import modes_count
 
 from arboleda.adapters.memory_file import VERSION
-from arboleda.adapters.store import PRUNED, Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, answers_of
+from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.messages import Fact, Journal, Reason, Remember, TaskAnswer, TaskChanged, TaskState, Verb
+from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
@@ -91,25 +91,6 @@ def refusal(path: Path) -> str:
     return str(refused.value)
 
 
-def test_a_new_memory_is_empty(store):
-    assert [store.facts(fact) for fact in Fact] == [{}] * len(Fact)
-    assert store.entries() == []
-
-
-def test_a_fact_is_kept_replaced_and_forgotten(path):
-    with Store(path) as store:
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="switching"))
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra2", value="off"))
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
-        store.keep(LATCH)
-    with Store(path) as store:
-        assert store.facts(Fact.EFFECTOR) == {"ra1": "on", "ra2": "off"}
-        store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None))
-        store.keep(Remember(fact=Fact.QUARANTINE, name="nowhere", value=None))
-        assert store.facts(Fact.EFFECTOR) == {"ra2": "off"}
-        assert store.facts(Fact.LATCH) == {"ra1": "on"}
-
-
 def test_of_facts_that_are_kept_together_all_are_kept_or_none(path, small_disk):
     both = LATCH, Remember(fact=Fact.LATCH, name="ra2", value="on")
     with Store(path) as store:
@@ -142,20 +123,6 @@ def test_the_last_word_on_each_fact_counts(facts):
             last[fact.fact][fact.name] = fact.value
         for kind, values in last.items():
             assert store.facts(kind) == {name: value for name, value in values.items() if value is not None}
-
-
-def test_the_journal_is_read_newest_first(path):
-    with Store(path) as store:
-        stopped = Journal(verb=Verb.STOP, scope="ra1", cell="sis_a", sentence=OWN(text="ra1 stopped"))
-        store.journal(stopped, 1000.25)
-        store.journal(ACT, 999.5)
-    with Store(path) as store:
-        newest, oldest = store.entries()
-        assert (newest.id, newest.unix_s, newest.verb) == (2, 999.5, Verb.OVERRIDE)
-        assert (newest.scope, newest.cell, newest.sentence) == (ACT.scope, None, str(ACT.sentence))
-        assert (oldest.scope, oldest.cell) == ("ra1", "sis_a")
-        assert (oldest.id, oldest.unix_s, oldest.verb) == (1, 1000.25, "stop")
-        assert store.entries(limit=1) == [newest]
 
 
 def test_open_and_close_may_be_called_twice(path):
@@ -298,34 +265,6 @@ def test_tasks_of_an_older_format_have_neither_who_asked_nor_attempts(path):
         assert (old.id, old.asked_by, old.attempts) == ("a", None, 0)
 
 
-def test_who_asked_first_and_how_often_a_task_was_tried_are_kept(path):
-    with Store(path) as store:
-        store.task(queued("a"), "storage", 5.0, "page")
-        store.task(queued("a"), "storage", 6.0, "http")  # whoever asks again asks for the same task
-        store.task(queued("b"), "storage", 7.0, "ros2")
-        for _ in range(2):  # as it is told anew to whoever asks
-            store.task(ended("a", TaskState.RUNNING), "storage", 8.0)
-        store.attempted("a", 3)
-        store.task(ended("a"), "storage", 9.0)
-    with Store(path) as store:
-        kept = {row.id: (row.asked_by, row.attempts) for row in store.tasks(TaskQuery())}
-    assert kept == {"a": ("page", 3), "b": ("ros2", 0)}
-
-
-def test_what_was_answered_is_kept_with_the_end_of_a_task(path):
-    heard = [
-        TaskAnswer(by="ana", asked="¿Lleno?", answer="yes"),
-        TaskAnswer(by="eye", asked="look", answer=2.5),
-    ]
-    with Store(path) as store:
-        for id, answers in (("a", heard), ("b", ())):
-            store.task(queued(id), "storage", 5.0)
-            store.task(ended(id), "storage", 9.0, answers=answers)
-    with Store(path) as store:
-        kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
-    assert kept == {"a": tuple(heard), "b": ()}
-
-
 def test_tasks_of_an_older_format_have_no_answers(path):
     with Store(path) as store:
         store.task(queued("a"), "storage", 5.0)
@@ -349,40 +288,6 @@ def test_a_file_without_times_of_cells_gets_them(path):
         store.stands("sis_a", "held", 11.0)
         assert [row.id for row in store.tasks(TaskQuery())] == ["a"]
     assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
-
-
-def test_what_stood_when_the_plant_was_killed_stood_until_it_was_seen_last(path):
-    with Store(path) as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_b", "held", 75.0)
-        store.seen(70.0)
-        store.began(500.0, 0.0)
-        store.stands("sis_a", "held", 501.0)
-        store.stands("sis_a", "aborted", 502.0)
-        store.stands("sis_a", None, 503.0)
-        store.seen(560.0, ended=True)
-    assert times(path) == (
-        [(10.0, 70.0, 0), (500.0, 560.0, 1)],
-        [
-            ("sis_a", "held", 20.0, 70.0),
-            ("sis_b", "held", 75.0, 75.0),
-            ("sis_a", "held", 501.0, 502.0),
-            ("sis_a", "aborted", 502.0, 503.0),
-        ],
-    )
-
-
-def test_old_times_of_cells_are_forgotten_at_a_start(path):
-    with Store(path) as store:
-        store.began(10.0, 0.0)
-        store.stands("sis_a", "held", 20.0)
-        store.stands("sis_a", None, 30.0)
-        store.seen(70.0, ended=True)
-        store.began(500.0, 40.0)
-        assert times(path) == ([(10.0, 70.0, 1), (500.0, 500.0, 0)], [])
-        store.began(600.0, 80.0)
-    assert times(path)[0] == [(500.0, 500.0, 0), (600.0, 600.0, 0)]
 
 
 def of_before_times(path):
@@ -410,35 +315,6 @@ def ended(id, state=TaskState.DONE, **why):
     return replace(queued(id), state=state, **why)
 
 
-def test_a_task_is_kept_from_its_acceptance_to_its_end(path):
-    with Store(path) as store:
-        store.task(queued("a"), "storage", 1.0)
-        store.task(ended("a", TaskState.RUNNING), "storage", 2.0)
-    with Store(path) as store:
-        (row,) = store.tasks(TaskQuery())
-        assert (row.id, row.text, row.cell, row.recipe) == ("a", "sis_a 0B 1", "sis_a", "storage")
-        assert (row.state, row.accepted_s, row.started_s, row.ended_s) == ("running", 1.0, 2.0, None)
-        store.task(ended("a", TaskState.FAILED, reason=Reason.DEADLINE, sentence=OWN(text="late")), "", 3.0)
-    with Store(path) as store:
-        (row,) = store.tasks(TaskQuery())
-        assert (row.state, row.reason, row.sentence, row.ended_s) == ("failed", "deadline", "late", 3.0)
-        assert json.loads(row.said) == OWN(text="late").data()
-
-
-def test_a_task_that_is_asked_for_again_stays_as_it_is(store):
-    for change, at in [(queued("a"), 1.0), (ended("a", TaskState.RUNNING), 2.0), (ended("a"), 3.0)]:
-        store.task(change, "storage", at)
-    (kept,) = store.tasks(TaskQuery())
-    for change in (queued("a"), ended("a", TaskState.RUNNING), ended("a", TaskState.FAILED)):
-        store.task(change, "storage", 9.0)
-    assert store.tasks(TaskQuery()) == [kept]
-
-
-def test_a_task_that_was_refused_is_not_kept(store):
-    store.task(ended("", TaskState.REFUSED), "", 1.0)
-    assert store.tasks(TaskQuery()) == []
-
-
 def test_every_change_of_a_task_is_forced_to_the_disk(path, on_connect):
     said: list[str] = []
     on_connect(lambda db: db.set_trace_callback(said.append))
@@ -448,36 +324,6 @@ def test_every_change_of_a_task_is_forced_to_the_disk(path, on_connect):
             del said[:]
             store.task(change, "storage", 1.0)
             assert [each.rpartition(" ")[2] for each in said if "synchronous" in each] == ["FULL"]
-
-
-@pytest.mark.parametrize(
-    ("query", "ids"),
-    [
-        (TaskQuery(), ["d", "c", "b", "a"]),
-        (TaskQuery(limit=2), ["d", "c"]),
-        (TaskQuery(limit=2, before=3), ["b", "a"]),
-        (TaskQuery(cell="sis_b"), ["c"]),
-        (TaskQuery(state="done"), ["a"]),
-        (TaskQuery(recipe="palletizing"), ["d"]),
-        (TaskQuery(is_open=True), ["d", "c", "b"]),
-        (TaskQuery(is_open=False), ["a"]),
-        (TaskQuery(words="0b 2"), ["b"]),
-        (TaskQuery(words="0_ 2"), []),
-        (TaskQuery(words="%"), []),
-        (TaskQuery(words="is_a"), ["d", "b", "a"]),
-        (TaskQuery(id="c"), ["c"]),
-        (TaskQuery(since_s=2.0, until_s=4.0), ["c", "b"]),
-        (TaskQuery(cell="sis_b", state="done"), []),
-    ],
-)
-def test_tasks_are_found_by_what_is_asked_for(path, query, ids):
-    with Store(path) as store:
-        texts = {"a": "sis_a 0B 1", "b": "sis_a 0B 2", "c": "sis_b 0B 1", "d": "sis_a palletizing"}
-        for at, (id, text) in enumerate(texts.items(), start=1):
-            store.task(queued(id, text), "palletizing" if "pall" in text else "storage", float(at))
-        store.task(ended("a"), "storage", 9.0)
-        assert [row.id for row in store.tasks(query)] == ids
-        assert [row.id for row in TaskHistory(path).select(query)] == ids
 
 
 @pytest.mark.parametrize(
@@ -511,20 +357,6 @@ def test_what_is_asked_all_day_does_not_read_the_whole_history(path, on_connect,
             store.tasks(TaskQuery(words="no such"))
 
 
-def test_ended_tasks_are_forgotten_from_the_oldest_on_and_open_ones_never(store):
-    for number in range(PRUNED + 5):
-        store.task(queued(f"n{number}"), "storage", 1.0)
-        store.task(ended(f"n{number}"), "storage", 2.0 + number)
-    store.task(queued("open"), "storage", 1.0)
-    store.forget_tasks(1000.0)
-    assert [row.id for row in store.tasks(TaskQuery())] == [
-        "open",
-        *(f"n{PRUNED + n}" for n in (4, 3, 2, 1, 0)),
-    ]
-    store.forget_tasks(2.0 + PRUNED + 2)
-    assert len(store.tasks(TaskQuery(is_open=False))) == 3
-
-
 @pytest.mark.parametrize(("column", "value"), [("state", "lost"), ("reason", "bad luck")])
 def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
     with Store(path) as store:
@@ -535,19 +367,6 @@ def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
     db.close()
     with Store(path) as store, pytest.raises(ArboledaError, match="'a' what means nothing"):
         store.tasks(TaskQuery())
-
-
-def test_the_history_of_a_plant_that_kept_nothing_is_empty(tmp_path):
-    assert TaskHistory(tmp_path / "none.sqlite").select(TaskQuery()) == []
-
-
-def test_the_history_is_read_while_the_plant_writes(path):
-    history = TaskHistory(path)
-    with Store(path) as store:
-        for id in ("a", "b"):
-            store.task(queued(id), "storage", 1.0)
-            assert history.select(TaskQuery())[0].id == id
-    history.close()
 
 
 def test_a_history_that_cannot_be_read_is_one_sentence(path):

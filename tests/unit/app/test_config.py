@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
+from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, MqttVersion, PlantModel, Timing
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "plants"
@@ -117,3 +118,20 @@ def test_a_board_without_stop_is_a_warning(tmp_path: Path, shipped: PlantModel) 
     (warning,) = config.warnings(config.load(file))
     assert warning.startswith("ra1: ")
     assert config.warnings(shipped) == ()
+
+
+def test_a_store_is_the_address_of_a_database_without_its_password() -> None:
+    content = (EXAMPLES / "by_hand.yaml").read_bytes()
+
+    def parsed(store: str) -> PlantModel:
+        return config.parse(
+            "plant.yaml", content.replace(b"\ncells:", f"\nstore: {store}\ncells:".encode(), 1)
+        )
+
+    assert parsed("postgresql://me@db.example/plants").store == "postgresql://me@db.example/plants"
+    assert config.parse("plant.yaml", content).store == ""
+    with pytest.raises(ConfigError, match="store: must be postgresql://USER@HOST:PORT/DATABASE"):
+        parsed("plants.sqlite")
+    with pytest.raises(ConfigError, match="store: has a password in it; leave it to PGPASSWORD") as refused:
+        parsed("postgresql://me:hidden@db.example/plants")
+    assert "hidden" not in str(refused.value)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from arboleda.adapters.broker_login import address
+from arboleda.adapters.plant_memory import Superseded
 from arboleda.adapters.store import Store
 from arboleda.adapters.task_rows import TaskQuery, answers_of
 from arboleda.app.build import Options, build
@@ -571,3 +572,36 @@ def test_a_task_that_cannot_be_kept_is_not_acknowledged(plant, store, monkeypatc
     plant.loop.turn()
     with pytest.raises(ArboledaError, match="The disk is full"):
         answer.result(timeout=0)
+
+
+@pytest.mark.parametrize("message", [ON, Stop(id="", robot="ra1", mode=StopMode.HALT), Heartbeat(epoch=7)])
+def test_a_plant_that_another_process_leads_sends_nothing_not_even_a_stop(
+    plant, store, monkeypatch, crashes, message
+):
+    def superseded():
+        raise Superseded("Another process leads.")
+
+    monkeypatch.setattr(store, "confirm", superseded)
+    turn(plant, message, message)
+    turn(plant, Heartbeat(epoch=7), Stop(id="", robot="ra1", mode=StopMode.HALT))
+    assert plant.robots.messages == []
+    assert {str(error) for error in crashes} == {"Another process leads."}
+
+
+def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_else(
+    plant, store, monkeypatch, crashes
+):
+    asked = []
+
+    def away():
+        asked.append(1)
+        raise ArboledaError("The server is away.")
+
+    monkeypatch.setattr(store, "confirm", away)
+    stop = Stop(id="", robot="ra1", mode=StopMode.HALT)
+    turn(plant, ON, stop, Heartbeat(epoch=7))
+    assert plant.robots.messages == [stop, Heartbeat(epoch=7)]
+    assert [str(error) for error in crashes] == ["The server is away."]
+    assert asked == [1]  # who waits for a server that is away for each message stops late
+    heard = turn(plant)
+    assert [type(event) for event in heard] == [Undelivered]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import sqlite3
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 from arboleda.model.errors import ArboledaError
 from arboleda.views.oee import Down, Kept, Run, Shortest, Work
@@ -25,7 +26,13 @@ class OeeQuery:
         return (until_s - DAY_S if self.since_s is None else self.since_s), until_s
 
 
-def kept(db: sqlite3.Connection, since_s: float, until_s: float) -> Kept:
+class Database(Protocol):
+    """What runs a query, each of its values in the place of a `?`, and gives its rows."""
+
+    def execute(self, statement: str, values: tuple[object, ...] = ..., /) -> Iterable[tuple[Any, ...]]: ...
+
+
+def kept(db: Database, since_s: float, until_s: float) -> Kept:
     """What there is of that time."""
     begun = "started_s IS NOT NULL AND ended_s > started_s"
     works = db.execute(

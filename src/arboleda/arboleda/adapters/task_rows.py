@@ -8,7 +8,9 @@ import re
 import sqlite3
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import astuple, dataclass, fields
 from io import StringIO
 from pathlib import Path
@@ -20,7 +22,7 @@ from arboleda.model.sentence import OWN, Sentence, retold
 from arboleda.views.oee import Kept, Oee, oee
 
 from .memory_file import VERSION, explained, read_only, refuse_other, refuse_version, version
-from .oee_rows import OeeQuery, kept
+from .oee_rows import Database, OeeQuery, kept
 
 COMMAND, PAGE, HTTP, ROS = "command", "page", "http", "ros2"  # the ways by which a task comes
 STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value for reason in Reason)}
@@ -30,8 +32,8 @@ STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value fo
 class TaskRow:
     """One task as it was kept; times are Unix times, `ended_s` is None while it waits or runs.
 
-    `sentence` is why it failed, in English; `said` is JSON of the same sentence. `number` grows by one with
-    each task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
+    `sentence` is why it failed, in English; `said` is JSON of the same sentence. `number` grows with each
+    task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
     `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
     `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
     """
@@ -70,7 +72,7 @@ class TaskQuery:
     until_s: float | None = None
     before: int | None = None
     is_open: bool | None = None
-    limit: int = 100
+    limit: int | None = 100
 
 
 WILD = re.compile("[!%_]")  # what LIKE takes for more than itself
@@ -94,8 +96,8 @@ ASKED = {
 }
 
 
-def selected(db: sqlite3.Connection, query: TaskQuery) -> list[TaskRow]:
-    """The rows of a query, the last accepted first; ArboledaError for a row that is damaged."""
+def selection(query: TaskQuery) -> tuple[str, tuple[object, ...]]:
+    """The query in SQL with its values, the last accepted first."""
     asked = {column: getattr(query, column) for column in ASKED}
     wanted = {column: value for column, value in asked.items() if value not in ("", None)}
     where, values = [ASKED[column] for column in wanted], list(wanted.values())
@@ -105,11 +107,14 @@ def selected(db: sqlite3.Connection, query: TaskQuery) -> list[TaskRow]:
         where.append("(text LIKE ? ESCAPE '!' OR id LIKE ? ESCAPE '!')")
         values += ["%" + WILD.sub(r"!\g<0>", query.words) + "%"] * 2
     clause = f" WHERE {' AND '.join(where)}" if where else ""
-    select = f"SELECT {', '.join(COLUMNS)} FROM task{clause} ORDER BY number DESC LIMIT ?"
-    return [_row(row) for row in db.execute(select, (*values, query.limit))]
+    select = f"SELECT {', '.join(COLUMNS)} FROM task{clause} ORDER BY number DESC"
+    if query.limit is None:
+        return select, tuple(values)
+    return f"{select} LIMIT ?", (*values, query.limit)
 
 
-def _row(row: tuple[object, ...]) -> TaskRow:
+def to_row(row: tuple[object, ...]) -> TaskRow:
+    """A row of a `selection`; ArboledaError where it is damaged."""
     known = dict(zip(COLUMNS, row, strict=True))
     if not all(isinstance(known[name], kinds) for name, kinds in KINDS_OF.items()):
         raise ArboledaError(
@@ -148,11 +153,38 @@ def table(rows: Iterable[TaskRow], *, names: bool = True) -> str:
     return text.getvalue()
 
 
-class TaskHistory:
-    """Reads the tasks of a plant, from any thread, while it runs or not; opened when it is first asked.
+class History(ABC):
+    """Reads the tasks of a plant, from any thread, while it runs or not; opened when it is first asked."""
 
-    `plant` is its name, where that is known: then the memory of another one is refused.
-    """
+    @abstractmethod
+    def _reading(self) -> AbstractContextManager[Database | None]:
+        """What is read, for one thread at a time; None where nothing was kept yet. ArboledaError."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Give it back; idempotent."""
+
+    def select(self, query: TaskQuery) -> list[TaskRow]:
+        """The tasks that a query asks for, the last accepted first; none where nothing was kept yet."""
+        with self._reading() as db:
+            return [] if db is None else [to_row(row) for row in db.execute(*selection(query))]
+
+    def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
+        """The figures of these cells, or of all that had a task, up to now at the latest."""
+        since_s, until_s = query.span(time.time())
+        found = Kept(works=[], runs=[], downs=[], shortest={})
+        with self._reading() as db:
+            if db is not None:
+                found = kept(db, since_s, until_s)
+        if cells is None:
+            cells = sorted({work.cell for work in found.works})
+        wanted = [cell for cell in cells if query.cell in ("", cell)]
+        return [oee(cell, found, since_s, until_s) for cell in wanted]
+
+
+class TaskHistory(History):
+    """That of a SQLite file. `plant` is its name, where that is known: then the memory of another one is
+    refused."""
 
     def __init__(self, path: Path, plant: str = "") -> None:
         self._path = path
@@ -160,27 +192,15 @@ class TaskHistory:
         self._lock = threading.Lock()
         self._opened: sqlite3.Connection | None = None
 
-    def select(self, query: TaskQuery) -> list[TaskRow]:
-        """The tasks that a query asks for, the last accepted first; none where nothing was kept yet."""
+    @contextmanager
+    def _reading(self) -> Iterator[Database | None]:
         if not self._path.exists():
-            return []
+            yield None
+            return
         with self._lock, explained(self._path, ArboledaError, "cannot be read"):
-            return selected(self._db(), query)
-
-    def oee(self, query: OeeQuery, cells: Sequence[str] | None = None) -> list[Oee]:
-        """The figures of these cells, or of all that had a task, up to now at the latest."""
-        since_s, until_s = query.span(time.time())
-        found = Kept(works=[], runs=[], downs=[], shortest={})
-        if self._path.exists():
-            with self._lock, explained(self._path, ArboledaError, "cannot be read"):
-                found = kept(self._db(), since_s, until_s)
-        if cells is None:
-            cells = sorted({work.cell for work in found.works})
-        wanted = [cell for cell in cells if query.cell in ("", cell)]
-        return [oee(cell, found, since_s, until_s) for cell in wanted]
+            yield self._db()
 
     def close(self) -> None:
-        """Give the file back; idempotent."""
         with self._lock:
             if self._opened is not None:
                 self._opened.close()

@@ -12,7 +12,7 @@ from arboleda.model.errors import StartError
 
 from . import config
 from .state import STORE, StateDir, find_running, holder
-from .where import PlantFile, StateFolder, folder, located, name_of
+from .where import PlantFile, StateFolder, folder, located, name_of, store_of
 
 MEMORY = "Tasks, stop latches, what effectors hold, quarantined zones and the operators' journal are in it."
 COPY = "Copy the plant's memory to a file, while the plant runs or not."
@@ -35,7 +35,9 @@ def backup(
     plant: PlantFile = None,
     state: StateFolder = None,
 ) -> None:
-    memory = located(plant, state) / STORE
+    where = located(plant, state)
+    _refuse_database(plant, where)
+    memory = where / STORE
     backups.back_up(memory, file, name_of(plant))
     print(f"{memory} is copied to {file}")
 
@@ -46,9 +48,21 @@ def restore(
     state: StateFolder = None,
 ) -> None:
     where = folder(plant, state)
+    _refuse_database(plant, where)
     if find_running(where) is not None:
         raise StartError(f"{holder(where)} End it first.")
     name = config.load(plant, recipes=False).name if plant or not state else ""
     with backups.opened(file) as source, StateDir(where):
         backups.restore(source, file, where / STORE, name)
     print(f"{where / STORE} is now {file}; what was there is {where / STORE}.before-restore")
+
+
+def _refuse_database(plant: Path | None, where: Path) -> None:
+    """StartError where the memory is in no file."""
+    running = find_running(where)
+    store = running.store if running else store_of(plant)
+    if store:
+        raise StartError(
+            f"This plant's memory is in {store}: `pg_dump --schema 'plant_*'` copies it while the plant runs,"
+            " pg_restore puts it back; see docs/how-to/two-hosts.md."
+        )

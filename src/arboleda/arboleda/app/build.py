@@ -18,8 +18,8 @@ from arboleda import __version__
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.store import JournalEntry, Store
-from arboleda.adapters.task_rows import COMMAND, TaskHistory, TaskQuery, TaskRow
+from arboleda.adapters.plant_memory import JournalEntry, PlantMemory
+from arboleda.adapters.task_rows import COMMAND, TaskQuery, TaskRow
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.facts import Value
@@ -38,6 +38,7 @@ from .parts.cell_times import CellTimes
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
 from .parts.groot2 import Groot2Options, Groot2Part
+from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
 from .parts.part import Part
@@ -45,7 +46,8 @@ from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
 from .rate import at_rate
-from .state import STORE, StateDir, default_state
+from .state import StateDir, default_state
+from .stores import history_of, memory_of
 from .waiting import until
 from .web_options import WebOptions
 
@@ -73,6 +75,7 @@ class Options:
     rate: float = 1.0
     firmware: bool = False  # boards that can be are the firmware's, compiled for Linux
     state_dir: Path | None = None
+    store: str = ""  # the address of a database; "": what the plant file says
     web: WebOptions = field(default_factory=WebOptions)
     alarms: AlarmOptions = field(default_factory=AlarmOptions)
     log_name: str = "arboleda.log"
@@ -91,9 +94,11 @@ class App:
         descriptors.raise_limit()
         self._shares = descriptors.shares(len(model.robots))
         self.orchestrator: Orchestrator | None = None
-        self._state = StateDir(options.state_dir or default_state(model.name))
-        self._store = Store(self._state.path / STORE, model.name)
-        self._history, self._recalled = (TaskHistory(self._state.path / STORE) for _ in range(2))
+        store = (options.store or model.store) if "orchestrator" in parts else ""
+        state = options.state_dir or default_state(model.name)
+        self._state = StateDir(state, plant=model.name, store=store)
+        self._store = memory_of(store, state, model.name)
+        self._history, self._recalled = (history_of(store, state, model.name) for _ in range(2))
         self._reporting: ReportsPart | None = None
         self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))
@@ -306,14 +311,16 @@ class App:
     def _build(self, parts: set[str], options: Options) -> None:
         now, bridge, drivers = int(time.time()), None, None
         virtual, scout = "devices" in parts, "broker" not in parts
+        epoch = self._lead(now) if "orchestrator" in parts else now
         if "bridge" in parts:
             waits = virtual and scout
-            bridge = self._bridge = BridgePart(self.model, now, self._broker, self._crash, waits=waits)
+            bridge = self._bridge = BridgePart(
+                self.model, max(now, epoch), self._broker, self._crash, waits=waits
+            )
             self._parts.append(bridge)
         if virtual:
             self._parts += self._boards(now, bridge, scout=scout)
         if "orchestrator" in parts:
-            epoch = self._state.next_epoch(now)
             if self.model.driven:
                 drivers = DriversPart(self.model, epoch, self._crash)
                 self._parts.append(drivers)
@@ -345,6 +352,13 @@ class App:
         if self.orchestrator is not None:
             systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
             self._parts += [systemd] if systemd else []
+
+    def _lead(self, now: int) -> int:
+        """The number of this start, higher than any before, also than those of other hosts."""
+        epoch = self._store.lead(self._state.next_epoch(now))
+        if self._store.renew_s is not None:
+            self._parts.append(LeasePart(self._store, self._store.renew_s, self._crash))
+        return epoch
 
     def _seen_at(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None
@@ -455,7 +469,7 @@ def _groot2(model: PlantModel, options: Options) -> Groot2Part | None:
     return Groot2Part([cell.name for cell in model.cells], where)
 
 
-def _acts(store: Store) -> list[dict[str, Any]]:
+def _acts(store: PlantMemory) -> list[dict[str, Any]]:
     """What operators did before this start, oldest first."""
     entries = reversed(store.entries())
     return [

@@ -59,7 +59,7 @@ from .simulate import command as simulate
 from .state import find_running, holder
 from .urdf import robot_urdf
 from .web_options import WebOptions
-from .where import PlantFile, StateFolder, client, folder
+from .where import PlantFile, StateFolder, StoreAddress, client, folder
 
 if TYPE_CHECKING:
     from arboleda.adapters.server_tls import ServerTls
@@ -244,12 +244,13 @@ def up(
     tls_key: TlsKey = None,
     groot2: Groot2 = None,
     state: StateFolder = None,
+    store: StoreAddress = "",
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model, recording = _model(plant, tasks or [])
     shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
-    options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True)
 
@@ -274,6 +275,7 @@ def run(
     tls_key: TlsKey = None,
     groot2: Groot2 = None,
     state: StateFolder = None,
+    store: StoreAddress = "",
 ) -> None:
     """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input.
 
@@ -283,7 +285,7 @@ def run(
     _refuse_beside(tasks, plant, state)
     shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
-    options = _options(broker, broker_host, broker_users, shown, rate, state, web, recording)
+    options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2)
     _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False)
 
@@ -512,6 +514,7 @@ def _options(
     shown: _Shown,
     rate: float,
     state: Path | None,
+    store: str,
     web: WebOptions,
     recording: Recording | None,
 ) -> Options:
@@ -535,6 +538,7 @@ def _options(
         alarms=alarm_options(),
         rate=rate,
         state_dir=state,
+        store=store,
         web=web,
         recording=recording,
     )

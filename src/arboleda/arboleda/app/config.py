@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from arboleda.adapters.store_address import has_password, is_address
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Cell, ForeignCommands, MqttVersion, PlantModel, Retry, Robot, Timing
 from arboleda.model.recipe import Recipe
@@ -238,6 +239,7 @@ def _plant(document: Document, used: Used, recipes: Offers) -> PlantModel | None
         foreign_commands=ForeignCommands(shape.foreign_commands),
         history_days=shape.history_days,
         groot2_port=shape.groot2 or None,
+        store=_store(document, shape.store),
     )
 
 
@@ -248,6 +250,15 @@ def _check_ports(document: Document, shape: FileShape | None) -> None:
         if shape.groot2 > last:
             rule = f"must be at most {last}, for each of the {len(shape.cells)} cells has two ports"
             document.problem(("groot2",), f"{rule}; is {shape.groot2}")
+
+
+def _store(document: Document, address: str) -> str:
+    """The database of the plant's memory; problems do not repeat it, for there may be a password in it."""
+    if address and not is_address(address):
+        document.problem(("store",), "must be postgresql://USER@HOST:PORT/DATABASE")
+    elif has_password(address):
+        document.problem(("store",), "has a password in it; leave it to PGPASSWORD or ~/.pgpass")
+    return address
 
 
 def _timing(document: Document) -> TimingShape | None:

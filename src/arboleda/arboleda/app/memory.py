@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.adapters.memory_file import MOVE_AWAY
-from arboleda.adapters.store import Store
+from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, sentence_of
 from arboleda.core.intake import HISTORY
 from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
@@ -19,25 +18,23 @@ MEANS = {  # a quarantined zone has the name of a robot, which may be none of th
 }
 
 
-def remembered(store: Store) -> dict[Fact, dict[str, str]]:
+def remembered(store: PlantMemory) -> dict[Fact, dict[str, str]]:
     """Name to value by kind of fact; StartError where a value means nothing: it may have been a latch."""
     facts = {fact: store.facts(fact) for fact in Fact}
     for fact, allowed in MEANS.items():
         for name, value in facts[fact].items():
             if value not in allowed:
                 what = f"{quoted(value)} as {fact.value} of {quoted(name)}, which means nothing"
-                raise StartError(
-                    f"The plant's memory {store.path} says {what}: put a copy in its place, or {MOVE_AWAY}."
-                )
+                raise StartError(f"The plant's memory {store.name} says {what}: {store.remedy}.")
     return facts
 
 
-def kept_tasks(store: Store, *, clock_s: float, unix_s: float) -> list[KeptTask]:
+def kept_tasks(store: PlantMemory, *, clock_s: float, unix_s: float) -> list[KeptTask]:
     """The tasks that have not ended, and the last that have, in the order of their acceptance.
 
     Their times are on the clock that says `clock_s` at the Unix time `unix_s`.
     """
-    waiting = store.tasks(TaskQuery(is_open=True, limit=-1))
+    waiting = store.tasks(TaskQuery(is_open=True, limit=None))
     rows = [*waiting, *store.tasks(TaskQuery(is_open=False, limit=HISTORY))]
     in_order = sorted(rows, key=lambda row: row.number)
     return [kept_task(row, clock_s=clock_s, unix_s=unix_s) for row in in_order]

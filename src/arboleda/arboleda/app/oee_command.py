@@ -13,13 +13,12 @@ from rich.table import Table
 from rich.text import Text
 
 from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.task_rows import TaskHistory
 from arboleda.model.outside import plain
 from arboleda.views.oee import Oee
 
-from .state import STORE
+from . import where
 from .tasks_command import moment
-from .where import PlantFile, StateFolder, located, name_of
+from .where import PlantFile, StateFolder, StoreAddress
 
 HEADINGS = ("cell", "OEE", "availability", "performance", "quality", "planned", "done", "failed")
 
@@ -33,6 +32,7 @@ def oee(
     as_json: Annotated[bool, typer.Option("--json", help="Print an object per line.")] = False,
     plant: PlantFile = None,
     state: StateFolder = None,
+    store: StoreAddress = "",
 ) -> None:
     """OEE of the cells, availability x performance x quality, whether the plant runs or not.
 
@@ -42,7 +42,7 @@ def oee(
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input.
     """
     query = OeeQuery(cell=cell, since_s=moment(since), until_s=moment(until))
-    rows = TaskHistory(located(plant, state) / STORE, name_of(plant)).oee(query)
+    rows = where.history(plant, state, store).oee(query)
     if as_json:
         for row in rows:
             print(json.dumps(row.data(), ensure_ascii=False))

@@ -51,7 +51,8 @@ def _default_root() -> Path:
 class Running:
     """Who runs the plant, and where this machine reaches its HTTP API: `port` is None until it listens,
     `host` is as in a URL (`[::1]`). `guarded` where it wants a token of everybody; `certificate` is what it
-    shows where it speaks TLS, as PEM."""
+    shows where it speaks TLS, as PEM. `plant` is its name, `store` the database that keeps its memory, "" a
+    file of this directory."""
 
     pid: int
     started: str
@@ -59,6 +60,8 @@ class Running:
     host: str = "127.0.0.1"
     guarded: bool = False
     certificate: str = ""
+    plant: str = ""
+    store: str = ""
 
     @property
     def url(self) -> str:
@@ -68,12 +71,11 @@ class Running:
 class StateDir:
     """The exclusive owner of a state directory from `open` to `close`, as `with` does it."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, plant: str = "", store: str = "") -> None:
         self.path = path
         self._lock: int | None = None
-        self._running = Running(
-            pid=os.getpid(), started=datetime.now(timezone.utc).isoformat(timespec="seconds")
-        )
+        started = datetime.now(timezone.utc).isoformat(timespec="seconds")
+        self._running = Running(pid=os.getpid(), started=started, plant=plant, store=store)
 
     def open(self) -> None:
         """Take the directory; StartError says who holds it, or why it cannot be used."""

@@ -16,13 +16,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, TaskRow, answers_of, table
+from arboleda.adapters.task_rows import History, TaskQuery, TaskRow, answers_of, table
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 
+from . import where
 from .screen import STYLES, heard
-from .state import STORE
-from .where import PlantFile, StateFolder, located, name_of
+from .where import PlantFile, StateFolder, StoreAddress
 
 AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
@@ -74,6 +74,7 @@ def tasks(
     ] = False,
     plant: PlantFile = None,
     state: StateFolder = None,
+    store: StoreAddress = "",
 ) -> None:
     """What became of the tasks, also of earlier starts, whether the plant runs or not.
 
@@ -92,7 +93,7 @@ def tasks(
         until_s=moment(until),
         limit=limit,
     )
-    history = TaskHistory(located(plant, state) / STORE, name_of(plant))
+    history = where.history(plant, state, store)
     show = _json if as_json else _csv if as_csv else _lines if follow else _table
     if not follow:
         show(list(reversed(history.select(query))), first=True)
@@ -101,7 +102,7 @@ def tasks(
         show(rows, first=not number)
 
 
-def _changes(history: TaskHistory, query: TaskQuery) -> Iterator[Sequence[TaskRow]]:
+def _changes(history: History, query: TaskQuery) -> Iterator[Sequence[TaskRow]]:
     """What there is, and then again and again what is new or has changed."""
     known: dict[str, TaskRow] = {}
     while True:

@@ -8,11 +8,13 @@ from typing import Annotated
 
 import typer
 
+from arboleda.adapters.task_rows import History
 from arboleda.model.outside import plain
 
 from . import config
 from .client import PlantClient
 from .state import default_state, find_running, running_plants
+from .stores import history_of
 
 LONGEST = 500  # characters of a line
 PlantFile = Annotated[
@@ -28,6 +30,19 @@ StateFolder = Annotated[
         metavar="DIR",
         envvar="ARBOLEDA_STATE",
         help="Where the plant keeps its state. [default: $XDG_STATE_HOME/arboleda/<plant name>]",
+    ),
+]
+
+
+StoreAddress = Annotated[
+    str,
+    typer.Option(
+        "--store",
+        metavar="URL",
+        envvar="ARBOLEDA_STORE",
+        help="Database that keeps the plant's memory, postgresql://USER@HOST/DATABASE; its password is in"
+        " PGPASSWORD or ~/.pgpass. [default: what the plant file says, else a file in the state directory]",
+        show_default=False,
     ),
 ]
 
@@ -48,6 +63,21 @@ def located(plant: Path | None, state: Path | None) -> Path:
         return named
     print(plain(f"plant {found[0].name}, the only one that runs", LONGEST), file=sys.stderr)
     return found[0]
+
+
+def history(plant: Path | None, state: Path | None, store: str) -> History:
+    """What became of the tasks of that plant, where it keeps them."""
+    where = located(plant, state)
+    running = find_running(where)
+    if running is not None and running.store and not store:
+        return history_of(running.store, where, running.plant)
+    kept_in = store or store_of(plant)
+    return history_of(kept_in, where, config.load(plant, recipes=False).name if kept_in else name_of(plant))
+
+
+def store_of(plant: Path | None) -> str:
+    """The database that the plant file names, "" where it names none."""
+    return config.load(plant, recipes=False).store
 
 
 def folder(plant: Path | None, state: Path | None) -> Path:

@@ -496,6 +496,7 @@ class PlantModel:
     foreign_commands: ForeignCommands = ForeignCommands.REFUSE
     history_days: float = 90.0  # how long ended tasks are kept
     groot2_port: int | None = None  # where the first cell's tree is shown to Groot2
+    store: str = ""  # the database where its memory is, "": in a file of its own
 
     def cell(self, name: str) -> Cell:
         return next(cell for cell in self.cells if cell.name == name)

@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 
-from arboleda.adapters.store import Store
+from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.model.errors import ArboledaError
@@ -24,7 +24,9 @@ class CellTimes:
     not be what ends a plant.
     """
 
-    def __init__(self, store: Store, history_days: float, clock: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self, store: PlantMemory, history_days: float, clock: Callable[[], float] = time.time
+    ) -> None:
         self._store = store
         self._history_days = history_days
         self._clock = clock
@@ -63,7 +65,7 @@ class CellTimes:
         self._kept(lambda store: store.seen(self._clock(), ended=True))
         self._keeps = False
 
-    def _kept(self, keep: Callable[[Store], None]) -> None:
+    def _kept(self, keep: Callable[[PlantMemory], None]) -> None:
         if not self._keeps:
             return
         try:

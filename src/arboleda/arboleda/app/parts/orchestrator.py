@@ -13,8 +13,8 @@ from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
 from arboleda.adapters import clock
-from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import COMMAND, ROS, TaskHistory, TaskQuery
+from arboleda.adapters.plant_memory import PlantMemory, Superseded
+from arboleda.adapters.task_rows import COMMAND, ROS, History, TaskQuery
 from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
@@ -114,9 +114,9 @@ class Orchestrator:
         model: PlantModel,
         epoch: int,
         crash: Crash,
-        store: Store | None = None,
+        store: PlantMemory | None = None,
         *,
-        history: TaskHistory | None = None,
+        history: History | None = None,
         drops_waiting: bool = False,
     ) -> None:
         now, memory = clock.seconds(), remembered(store) if store is not None else {}
@@ -260,9 +260,28 @@ class Orchestrator:
         if isinstance(message, TaskChanged):
             for listener in self.listeners:
                 listener(message)
-        if self._port is not None:
+        if self._port is not None and self._may_leave(message):
             self._refuse_late(message)
             self._port.send(message)
+
+    def _may_leave(self, message: Command | Notice) -> bool:
+        """Whether this plant may send at all: one that another process has taken over sends nothing more, not
+        even a stop; one that cannot find out stops what moves, and ends."""
+        if self._store is not None and self._amnesia is None:
+            try:
+                self._store.confirm()
+            except ArboledaError as error:
+                self._forget(error)
+        if self._amnesia is None or (leaves_unkept(message) and not isinstance(self._amnesia, Superseded)):
+            return True
+        if isinstance(message, Command):
+            raise self._amnesia
+        return False
+
+    def _forget(self, error: Exception) -> None:
+        """Nothing can be kept any more: the plant ends."""
+        self._amnesia = error
+        self._crash("orchestrator", error)
 
     def _refuse_unkept(self, message: Command | Notice, amnesia: Exception) -> None:
         """Whoever waits for an answer hears why there is none; nobody else hears what is not kept."""
@@ -338,8 +357,7 @@ class Orchestrator:
 
     def _not_sent(self, message: Any, error: Exception) -> None:
         if isinstance(message, Remember | Journal | TaskChanged):
-            self._amnesia = error
-            self._crash("orchestrator", error)
+            self._forget(error)
             if isinstance(message, TaskChanged):
                 self._answer(message)
         elif isinstance(message, Command):

@@ -75,6 +75,7 @@ class PlantShape(Shape):
     foreign_commands: Literal["refuse", "obey"] = "refuse"
     history_days: Annotated[float, Field(gt=0, le=36_500, allow_inf_nan=False)] = PlantModel.history_days
     groot2: Annotated[int, Field(ge=1, le=65_534)] = NO_PORT
+    store: str = ""
     paths: Any = None
     stations: Any = None
     palletizing: Any = None

@@ -21,6 +21,7 @@ NOT_DRAWN = (
     ("", "shared"),
     ("", "history_days"),
     ("", "groot2"),
+    ("", "store"),
     ("cells", "on_restart"),  # a plant that crashes here starts without the tasks that it had
     ("zones", "free_while"),
     ("arm", "driver"),  # virtual boards play their devices

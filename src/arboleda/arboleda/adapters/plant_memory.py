@@ -1,0 +1,210 @@
+"""The port of a plant's memory: what must survive a restart, as statements of SQL that every store takes."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import (
+    Fact,
+    Journal,
+    Remember,
+    TaskAnswer,
+    TaskChanged,
+    TaskState,
+    outlives_power,
+)
+
+from .task_rows import TaskQuery, TaskRow, selection, to_row
+
+PRUNED = 20  # ended tasks that are forgotten with one that ends: many more than end meanwhile, and soon done
+Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place of a `?`
+Memory = TypeVar("Memory", bound="PlantMemory")
+
+
+class Superseded(ArboledaError):
+    """Another process leads this plant now: this one writes nothing more, and must send nothing more."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JournalEntry:
+    """One act of an operator; `id` grows, `unix_s` is what the clock of the plant's machine said.
+
+    `cell` is None where the act was for more than one, or is older than this column; `said` is JSON of the
+    sentence, None where it is older than that column.
+    """
+
+    id: int
+    unix_s: float
+    verb: str
+    scope: str
+    sentence: str
+    cell: str | None
+    said: str | None
+
+
+class PlantMemory(ABC):
+    """The memory of a plant, between `open` and `close` or as `with` does it; one thread at a time.
+
+    What a method wrote survives a killed process once the method has returned; stop latches, the journal,
+    and that a task was accepted, has begun or has ended survive a power cut too. ArboledaError says in one
+    sentence what is wrong, and what to do.
+    """
+
+    name: str  # as sentences call it
+    remedy: str  # what to do where something in it means nothing
+    renew_s: float | None = None  # how often `renew` has to be called while the plant is led, None: never
+
+    @abstractmethod
+    def open(self) -> None:
+        """Open it, a new one where there is none; StartError; idempotent."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Give it back; idempotent."""
+
+    @abstractmethod
+    def _write(self, *statements: Statement, durable: bool) -> None:
+        """Commit all of them, or none."""
+
+    @abstractmethod
+    def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+        """The rows of a query."""
+
+    @abstractmethod
+    def _damaged(self) -> ArboledaError:
+        """What is said of a row that is not as it was written."""
+
+    def lead(self, epoch: int) -> int:
+        """Lead the plant from now on, under the number that is returned: this one, or a higher one where the
+        memory knows of higher ones; StartError where another process leads it."""
+        return epoch
+
+    def renew(self) -> None:  # noqa: B027 - a file has a lock for that
+        """Go on leading; from one other thread. Superseded, or ArboledaError where nobody can say."""
+
+    def confirm(self) -> None:  # noqa: B027
+        """Make sure that this process still leads; costs nothing while that is known."""
+
+    def keep(self, *facts: Remember) -> None:
+        """Commit facts, or forget those whose value is None: all of them, or none."""
+        last_words = {(fact.fact, fact.name): fact for fact in facts}.values()
+        durable = any(outlives_power(fact) for fact in facts)
+        self._write(*map(_kept, last_words), durable=durable)
+
+    def facts(self, fact: Fact) -> dict[str, str]:
+        """Name to value of what is remembered."""
+        rows = self._read("SELECT name, value FROM fact WHERE fact = ? ORDER BY name", fact.value)
+        if not all(isinstance(each, str) for row in rows for each in row):
+            raise self._damaged()
+        return dict(rows)
+
+    def journal(self, entry: Journal, unix_s: float) -> None:
+        """Commit one act of an operator."""
+        said = json.dumps(entry.sentence.data(), ensure_ascii=False)
+        row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell, said)
+        insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
+        self._write((insert, row), durable=outlives_power(entry))
+
+    def task(
+        self,
+        change: TaskChanged,
+        recipe: str,
+        unix_s: float,
+        asked_by: str | None = None,
+        answers: Sequence[TaskAnswer] = (),
+    ) -> None:
+        """Commit one change of a task; what is known already, as when it is asked for again, stays.
+
+        `answers` are kept with its end.
+        """
+        state, durable = change.state, outlives_power(change)
+        if state is TaskState.QUEUED:
+            row = (change.task, change.text, change.cell, recipe, state.value, unix_s, asked_by)
+            columns = "id, text, cell, recipe, state, accepted_s, asked_by"
+            insert = f"INSERT INTO task ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO NOTHING"
+            self._write((insert, row), durable=durable)
+        elif state is TaskState.RUNNING:
+            begin = (
+                "UPDATE task SET state = ?, started_s = ?, attempts = 1 WHERE id = ? AND started_s IS NULL"
+            )
+            self._write((begin, (state.value, unix_s, change.task)), durable=durable)
+        elif state is not TaskState.REFUSED:
+            said = json.dumps(change.sentence.data(), ensure_ascii=False)
+            reason = None if change.reason is None else change.reason.value
+            end = (
+                "UPDATE task SET state = ?, reason = ?, sentence = ?, said = ?, ended_s = ?, answers = ?"
+                " WHERE id = ? AND ended_s IS NULL"
+            )
+            told = json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
+            values = (state.value, reason, str(change.sentence), said, unix_s, told, change.task)
+            self._write((end, values), durable=durable)
+
+    def attempted(self, task: str, attempts: int) -> None:
+        """Commit how often a task was begun or tried again."""
+        self._write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
+
+    def forget_tasks(self, before_unix_s: float) -> None:
+        """Forget the oldest tasks that ended before, at most PRUNED of them."""
+        oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
+        delete = f"DELETE FROM task WHERE number IN ({oldest})"
+        self._write((delete, (before_unix_s, PRUNED)), durable=False)
+
+    def began(self, unix_s: float, before_unix_s: float) -> None:
+        """Commit that the plant runs, and forget the times of cells that were over before."""
+        last = "SELECT seen_s FROM run WHERE number = (SELECT max(number) FROM run) AND seen_s > down.since_s"
+        for statement in (
+            (f"UPDATE down SET until_s = coalesce(({last}), since_s) WHERE until_s IS NULL", ()),
+            ("DELETE FROM down WHERE until_s < ?", (before_unix_s,)),
+            ("DELETE FROM run WHERE seen_s < ?", (before_unix_s,)),
+            ("INSERT INTO run (since_s, seen_s, ended) VALUES (?, ?, 0)", (unix_s, unix_s)),
+        ):
+            self._write(statement, durable=False)
+
+    def seen(self, unix_s: float, *, ended: bool = False) -> None:
+        """Commit that the plant still runs, or that it was ended."""
+        last = "number = (SELECT max(number) FROM run)"
+        update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"
+        self._write((update, (unix_s, int(ended))), durable=False)
+
+    def stands(self, cell: str, state: str | None, unix_s: float) -> None:
+        """Commit that a cell does no work from now on, in this state; or works again, where that is None."""
+        over = "UPDATE down SET until_s = ? WHERE cell = ? AND until_s IS NULL"
+        self._write((over, (unix_s, cell)), durable=False)
+        if state is not None:
+            begun = "INSERT INTO down (cell, state, since_s) VALUES (?, ?, ?)"
+            self._write((begun, (cell, state, unix_s)), durable=False)
+
+    def tasks(self, query: TaskQuery) -> list[TaskRow]:
+        """The tasks that a query asks for, the last accepted first."""
+        statement, values = selection(query)
+        return [to_row(row) for row in self._read(statement, *values)]
+
+    def entries(self, limit: int = 100) -> list[JournalEntry]:
+        """The last acts, the newest first."""
+        columns = "id", "unix_s", "verb", "scope", "sentence", "cell", "said"
+        rows = self._read(f"SELECT {', '.join(columns)} FROM journal ORDER BY id DESC LIMIT ?", limit)
+        for _, unix_s, *texts, cell, said in rows:
+            known = [*texts, cell or "", said or ""]
+            if not isinstance(unix_s, float) or not all(isinstance(text, str) for text in known):
+                raise self._damaged()
+        return [JournalEntry(**dict(zip(columns, row, strict=True))) for row in rows]
+
+    def __enter__(self: Memory) -> Memory:
+        self.open()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _kept(fact: Remember) -> Statement:
+    key = (fact.fact.value, fact.name)
+    if fact.value is None:
+        return "DELETE FROM fact WHERE fact = ? AND name = ?", key
+    insert = "INSERT INTO fact (fact, name, value) VALUES (?, ?, ?)"
+    return f"{insert} ON CONFLICT (fact, name) DO UPDATE SET value = excluded.value", (*key, fact.value)

@@ -1,0 +1,186 @@
+"""A plant's memory in PostgreSQL: each write is one statement, which checks that its writer still leads."""
+
+from __future__ import annotations
+
+import os
+import socket
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, NoReturn, TypeVar
+
+import psycopg
+
+from arboleda.adapters import clock
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.outside import plain
+
+from ..plant_memory import PlantMemory, Statement, Superseded
+from .schema import SUPERSEDED, prepare, schema_of
+from .server import Impatient, checked, connected, explained, plain_values, translated
+
+LEASE_S = 2.5  # who did not say for so long that he leads may be superseded
+RENEW_S = 0.5
+AGAIN_S = 1.0  # for how long a write is tried again where the server is away, as while it restarts
+PAUSE_S = 0.1
+LEAD = (
+    "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp()"
+    " WHERE seen IS NULL OR seen < clock_timestamp() - %s * interval '1 second' RETURNING epoch"
+)
+RENEW = "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL RETURNING epoch"
+T = TypeVar("T")
+
+
+class PostgresMemory(PlantMemory):
+    """The memory of `plant` in the database of that address; nothing is written before `lead`."""
+
+    remedy = "put a backup in its place"
+    renew_s = RENEW_S
+
+    def __init__(self, address: str, plant: str) -> None:
+        self.address = checked(address)
+        self.name = f"{address} ({plant})"
+        self._schema = schema_of(plant)
+        self._opened: Impatient | None = None
+        self._renewing: Impatient | None = None  # of the thread that renews
+        self._is_open = False
+        self._epoch: int | None = None
+        self._leads_until = 0.0  # on the clock of this machine: by then nobody else can lead
+
+    def open(self) -> None:
+        if self._is_open:
+            return
+        with explained(self.name, StartError):
+            db = self.connect()
+            try:
+                prepare(db, self._schema, self.name)
+            except BaseException:  # whatever it is, Ctrl-C too, the connection is not left open
+                db.close()
+                raise
+        self._opened, self._is_open = db, True
+
+    def connect(self) -> Impatient:
+        """A session of its own with the server; psycopg.Error, StartError."""
+        return connected(self.address, self._schema)
+
+    def close(self) -> None:
+        """Give the plant back at once, where that can be said, for whoever waits for it; idempotent."""
+        if self._epoch is not None:
+            with suppress(psycopg.Error, StartError):  # the lease ends by itself
+                self._connection().execute("UPDATE leader SET seen = NULL WHERE epoch = %s", (self._epoch,))
+        self._epoch, self._is_open = None, False
+        self._drop()
+        if self._renewing is not None:
+            self._renewing.close()
+            self._renewing = None
+
+    def lead(self, epoch: int) -> int:
+        """As for every memory; who was killed and cannot say so is waited for, as long as a lease lasts."""
+        until, first = clock.seconds() + LEASE_S + RENEW_S, self._last_seen()
+        while True:
+            asked_at = clock.seconds()
+            row = self._asked(LEAD, epoch, plain(socket.gethostname()), os.getpid(), LEASE_S)
+            if row is not None:
+                self._epoch, self._leads_until = int(row[0]), asked_at + LEASE_S
+                return self._epoch
+            if clock.seconds() > until or self._last_seen() != first:
+                self._refuse_second()
+            time.sleep(PAUSE_S)
+
+    def renew(self) -> None:
+        if self._renewing is None or self._renewing.closed:
+            with explained(self.name, ArboledaError, "cannot be reached"):
+                self._renewing = self.connect()
+        self._renew(self._renewing)
+
+    def confirm(self) -> None:
+        if clock.seconds() < self._leads_until:
+            return
+        self._patiently(lambda db: self._renew(db))
+
+    def _renew(self, db: Impatient) -> None:
+        """Say that it leads; the time counts from before it was said."""
+        asked_at = clock.seconds()
+        with explained(self.name, ArboledaError, "cannot be reached"):
+            row = db.execute(RENEW, (self._epoch,)).fetchone()
+        if row is None:
+            raise self._superseded(db)
+        self._leads_until = asked_at + LEASE_S
+
+    def _write(self, *statements: Statement, durable: bool) -> None:
+        if self._epoch is None:
+            raise ArboledaError(f"The plant's memory {self.name} is not led by this process.")
+        parts = [f"w{n} AS ({text} RETURNING 1)" for n, (text, _) in enumerate(statements)]
+        begin = f"WITH {', '.join(parts)} " if parts else ""
+        values = [value for _, each in statements for value in each]
+        statement = translated(f"{begin}SELECT fenced(?, ?)")
+        given = plain_values((*values, self._epoch, durable))
+        self._patiently(lambda db: db.execute(statement, given))
+
+    def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+        return self._patiently(lambda db: db.execute(translated(statement), plain_values(values)).fetchall())
+
+    def _patiently(self, do: Callable[[Impatient], T]) -> T:
+        """Do it, once more where the connection was lost: what is written twice is there once."""
+        until = clock.seconds() + AGAIN_S
+        while True:
+            try:
+                with explained(self.name, ArboledaError):
+                    return do(self._connection())
+            except ArboledaError as error:
+                self._explain_end(error)
+                if clock.seconds() >= until:
+                    raise
+                self._drop()
+                time.sleep(PAUSE_S)
+
+    def _explain_end(self, error: ArboledaError) -> None:
+        """Raise what trying again does not change."""
+        cause = error.__cause__
+        if isinstance(cause, psycopg.Error) and cause.sqlstate == SUPERSEDED:
+            raise self._superseded(self._connection()) from cause
+        if not isinstance(cause, psycopg.OperationalError | psycopg.InterfaceError):
+            raise error
+
+    def _connection(self) -> Impatient:
+        if not self._is_open:
+            raise ArboledaError(f"The plant's memory {self.name} is closed.")
+        if self._opened is None or self._opened.closed:
+            self._opened = self.connect()
+        return self._opened
+
+    def _drop(self) -> None:
+        if self._opened is not None:
+            self._opened.close()
+            self._opened = None
+
+    def _asked(self, statement: str, *values: object) -> tuple[Any, ...] | None:
+        with explained(self.name, StartError):
+            return self._connection().execute(statement, values).fetchone()
+
+    def _last_seen(self) -> object:
+        return self._asked("SELECT epoch, seen FROM leader")
+
+    def _refuse_second(self) -> NoReturn:
+        raise StartError(
+            f"The plant of {self.name} is led by another process{_leader(self._connection())}: end it first."
+        )
+
+    def _superseded(self, db: Impatient) -> Superseded:
+        return Superseded(
+            f"Another process leads the plant of {self.name} now{_leader(db)}: this one steps down."
+        )
+
+    def _damaged(self) -> ArboledaError:
+        return ArboledaError(
+            f"The plant's memory {self.name} cannot be used (a row is not as it was written): {self.remedy}."
+        )
+
+
+def _leader(db: Impatient) -> str:
+    """Who leads, as far as that can be said."""
+    try:
+        row = db.execute("SELECT host, process FROM leader").fetchone()
+    except psycopg.Error:
+        return ""
+    return "" if row is None else f" (process {row[1]} on {plain(str(row[0]))})"

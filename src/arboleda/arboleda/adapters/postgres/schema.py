@@ -1,0 +1,96 @@
+"""The tables of a plant in PostgreSQL: a schema for each plant, so that several share a database."""
+
+from __future__ import annotations
+
+from psycopg import sql
+
+from arboleda.model.errors import StartError
+
+from .server import Impatient
+
+PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts names that are longer, and two plants would be one
+VERSION = 1
+NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
+TABLES = (
+    "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name))",
+    f"CREATE TABLE journal (id {NUMBER}, unix_s DOUBLE PRECISION NOT NULL, verb TEXT NOT NULL,"
+    " scope TEXT NOT NULL, sentence TEXT NOT NULL, cell TEXT, said TEXT)",
+    f"CREATE TABLE task (number {NUMBER}, id TEXT NOT NULL UNIQUE, text TEXT NOT NULL, cell TEXT NOT NULL,"
+    " recipe TEXT NOT NULL, state TEXT NOT NULL, reason TEXT, sentence TEXT, said TEXT,"
+    " accepted_s DOUBLE PRECISION NOT NULL, started_s DOUBLE PRECISION, ended_s DOUBLE PRECISION,"
+    " asked_by TEXT, attempts INTEGER NOT NULL DEFAULT 0, answers TEXT)",
+    "CREATE INDEX task_open ON task (number) WHERE ended_s IS NULL",
+    "CREATE INDEX task_ended ON task (ended_s) WHERE ended_s IS NOT NULL",
+    f"CREATE TABLE down (number {NUMBER}, cell TEXT NOT NULL, state TEXT NOT NULL,"
+    " since_s DOUBLE PRECISION NOT NULL, until_s DOUBLE PRECISION)",
+    "CREATE INDEX down_open ON down (cell) WHERE until_s IS NULL",
+    f"CREATE TABLE run (number {NUMBER}, since_s DOUBLE PRECISION NOT NULL,"
+    " seen_s DOUBLE PRECISION NOT NULL, ended INTEGER NOT NULL)",
+    # one row: the format of these tables, who leads the plant under which number, and when he said so last,
+    # by the server's clock; `seen` is null where nobody leads it
+    "CREATE TABLE leader (format INTEGER NOT NULL, epoch BIGINT NOT NULL, host TEXT NOT NULL,"
+    " process BIGINT NOT NULL, seen TIMESTAMPTZ)",
+    "INSERT INTO leader VALUES (1, 0, '', 0, NULL)",
+    # Called by each statement that writes: who does not lead any more writes nothing, since what this raises
+    # takes the statement back. The lock has a change of leaders wait for the statement, and no longer.
+    "CREATE FUNCTION fenced(mine BIGINT, durable BOOLEAN) RETURNS VOID LANGUAGE plpgsql AS $$ BEGIN"
+    " PERFORM set_config('synchronous_commit', CASE WHEN durable THEN 'on' ELSE 'off' END, true);"
+    " PERFORM FROM leader WHERE epoch = mine FOR SHARE;"
+    " IF NOT FOUND THEN RAISE EXCEPTION 'another process leads' USING ERRCODE = 'AR001'; END IF;"
+    " END $$",
+)
+SINCE: dict[int, tuple[str, ...]] = {}  # what brings the tables of a format to the next one
+SUPERSEDED = "AR001"
+
+
+def schema_of(plant: str) -> str:
+    """Where a plant has its tables; StartError where its name is too long for that."""
+    schema = PREFIX + plant
+    if len(schema.encode()) > LONGEST:
+        raise StartError(
+            f"A plant whose memory is in PostgreSQL has a name of at most {LONGEST - len(PREFIX)} characters."
+        )
+    return schema
+
+
+def exists(db: Impatient, schema: str) -> bool:
+    """Whether the plant has tables there; asked of a table, for what a session knows of names may be old."""
+    found = db.execute("SELECT FROM pg_tables WHERE schemaname = %s AND tablename = 'leader'", (schema,))
+    return found.fetchone() is not None
+
+
+def prepare(db: Impatient, schema: str, name: str) -> None:
+    """Make the tables where there are none, and bring those of an older Arboleda up to date; StartError."""
+    if exists(db, schema):
+        found = version(db)
+        refuse_newer(found, name)
+        if found == VERSION:
+            return
+    with db.transaction():  # two hosts may start at once
+        db.execute("SELECT pg_advisory_xact_lock(hashtext(%s))", (schema,))
+        if not exists(db, schema):
+            db.execute(sql.SQL("CREATE SCHEMA IF NOT EXISTS {}").format(sql.Identifier(schema)))
+            for statement in TABLES:
+                db.execute(statement)
+        found = version(db)
+        for since in sorted(each for each in SINCE if each >= found):
+            for statement in SINCE[since]:
+                db.execute(statement)
+        db.execute("UPDATE leader SET format = %s", (VERSION,))
+
+
+def version(db: Impatient) -> int:
+    """The format of the tables; 0 where they are not ours."""
+    row = db.execute("SELECT format FROM leader").fetchone()
+    return 0 if row is None else int(row[0])
+
+
+def refuse_newer(found: int, name: str) -> None:
+    """StartError where the tables are not of a format that this Arboleda knows."""
+    if found > VERSION:
+        raise StartError(
+            f"The plant's memory {name} is of a newer Arboleda (format {found}, known: {VERSION}):"
+            " use that one."
+        )
+    if found < 1:
+        raise StartError(f"The plant's memory {name} has lost its content: put a backup of it in its place.")

@@ -1,0 +1,43 @@
+"""Where a plant's memory is: a file in its state directory, or a database that several hosts reach."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from arboleda.adapters.plant_memory import PlantMemory
+from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import History, TaskHistory
+from arboleda.model.errors import StartError
+
+from . import invocation
+from .state import STORE
+
+
+def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
+    """The memory of a plant: in the database `store`, or in `state` where that is ""; StartError."""
+    if not store:
+        return Store(state / STORE, plant)
+    _refuse_without_library()
+    from arboleda.adapters.postgres.memory import PostgresMemory
+
+    return PostgresMemory(store, plant)
+
+
+def history_of(store: str, state: Path, plant: str) -> History:
+    """What only reads the tasks there; a file is not asked whose it is where `plant` is ""."""
+    if not store:
+        return TaskHistory(state / STORE, plant)
+    _refuse_without_library()
+    from arboleda.adapters.postgres.history import PostgresHistory
+
+    return PostgresHistory(store, plant)
+
+
+def _refuse_without_library() -> None:
+    try:
+        import psycopg  # noqa: F401 - it is an extra
+    except ImportError as error:
+        raise StartError(
+            "A store in PostgreSQL needs the library psycopg: type"
+            f" `{invocation.python()} -m pip install 'arboleda[postgres]'` ({error})"
+        ) from error

@@ -1,0 +1,301 @@
+"""What only a memory in PostgreSQL does: one leader at a time, servers that are away, and their sentences."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+from tests.postgres import DATABASE, PASSWORD, USER, Server
+
+from arboleda.adapters.plant_memory import PlantMemory, Superseded
+from arboleda.adapters.postgres.history import PostgresHistory
+from arboleda.adapters.postgres.memory import LEASE_S, RENEW_S, PostgresMemory
+from arboleda.adapters.task_rows import TaskQuery
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
+from arboleda.model.sentence import OWN
+
+LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
+QUEUED = TaskChanged(task="a", text="sis_a 0B 1", cell="sis_a", state=TaskState.QUEUED)
+ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped"))
+
+
+@contextmanager
+def leading(address: str, plant: str, epoch: int = 1) -> Iterator[PostgresMemory]:
+    with PostgresMemory(address, plant) as memory:
+        memory.lead(epoch)
+        yield memory
+
+
+def refusal(address: str, plant: str) -> str:
+    with pytest.raises(StartError) as refused:
+        PostgresMemory(address, plant).open()
+    assert "\n" not in str(refused.value) and PASSWORD not in str(refused.value)
+    return str(refused.value)
+
+
+def take_over(server: Server, plant: str) -> None:
+    """As another host does once a lease has ended."""
+    with server.connection() as db:
+        db.execute(f'UPDATE "plant_{plant}".leader SET epoch = epoch + 1, host = %s, process = 7', ("other",))
+
+
+def end_lease(server: Server, plant: str) -> None:
+    with server.connection() as db:
+        db.execute(f"UPDATE \"plant_{plant}\".leader SET seen = now() - interval '1 minute'")
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda memory: memory.keep(LATCH, Remember(fact=Fact.LATCH, name="ra2", value="on")),
+        lambda memory: memory.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value=None)),
+        lambda memory: memory.journal(ACT, 2.0),
+        lambda memory: memory.task(QUEUED, "storage", 2.0),
+        lambda memory: memory.attempted("kept", 5),
+        lambda memory: memory.forget_tasks(100.0),
+        lambda memory: memory.began(5.0, 4.0),
+        lambda memory: memory.seen(5.0, ended=True),
+        lambda memory: memory.stands("sis_a", "held", 5.0),
+        lambda memory: memory.renew(),
+    ],
+)
+def test_who_was_superseded_writes_nothing(
+    postgres: Server, database: str, plant: str, write: Callable[[PlantMemory], None]
+) -> None:
+    def everything() -> list[list[tuple]]:
+        tables = ("fact", "journal", "task", "down", "run", "leader")
+        with postgres.connection() as db:
+            return [db.execute(f'SELECT * FROM "plant_{plant}".{table}').fetchall() for table in tables]
+
+    with leading(database, plant) as memory:
+        memory.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="on"))
+        memory.task(TaskChanged(task="kept", text="x", cell="x", state=TaskState.QUEUED), "storage", 1.0)
+        memory.began(1.0, 0.0)
+        take_over(postgres, plant)
+        before = everything()
+        with pytest.raises(Superseded, match=r"now \(process 7 on other\): this one steps down"):
+            write(memory)
+        assert everything() == before
+
+
+def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
+    postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with leading(database, plant) as memory:
+        memory.confirm()
+        take_over(postgres, plant)
+        memory.confirm()  # its lease has not ended: nobody can have taken over but by a look into the tables
+        now = time.clock_gettime(time.CLOCK_BOOTTIME)
+        monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now + LEASE_S)
+        with pytest.raises(Superseded):
+            memory.confirm()
+
+
+def test_a_plant_has_one_leader(database: str, plant: str) -> None:
+    with leading(database, plant) as first, PostgresMemory(database, plant) as second:
+        renewing, ended = _renewing(first)
+        try:
+            with pytest.raises(StartError, match=r"is led by another process \(process \d+ on .*\): end it"):
+                second.lead(1)
+        finally:
+            ended.set()
+            renewing.join()
+
+
+def _renewing(memory: PostgresMemory) -> tuple[threading.Thread, threading.Event]:
+    ended = threading.Event()
+
+    def renew() -> None:
+        while not ended.wait(RENEW_S):
+            memory.renew()
+
+    thread = threading.Thread(target=renew)
+    thread.start()
+    return thread, ended
+
+
+def test_who_was_ended_gives_the_plant_back_at_once_and_numbers_only_grow(database: str, plant: str) -> None:
+    numbers, began = [], time.monotonic()
+    for wanted in (1000, 5, 2000):
+        with PostgresMemory(database, plant) as memory:
+            numbers.append(memory.lead(wanted))
+    assert numbers == [1000, 1001, 2000]
+    assert time.monotonic() - began < LEASE_S
+
+
+def test_who_was_killed_is_waited_for_as_long_as_his_lease_lasts(
+    postgres: Server, database: str, plant: str
+) -> None:
+    killed = PostgresMemory(database, plant)
+    killed.open()
+    killed.lead(10)
+    with PostgresMemory(database, plant) as next_start:
+        assert next_start.lead(1) == 11
+    with pytest.raises(Superseded):
+        killed.keep(LATCH)
+    killed.close()
+    with leading(database, plant):  # the one that was superseded gave nothing back that was not his
+        pass
+
+
+def test_two_plants_share_a_database_and_know_nothing_of_each_other(database: str, plant: str) -> None:
+    with leading(database, plant) as one, leading(database, f"{plant}_b") as other:
+        one.keep(LATCH)
+        one.task(QUEUED, "storage", 1.0)
+        assert other.facts(Fact.LATCH) == {} and other.tasks(TaskQuery()) == []
+        other.task(QUEUED, "palletizing", 1.0)
+        assert [row.recipe for row in one.tasks(TaskQuery())] == ["storage"]
+
+
+def test_two_hosts_may_make_it_at_once(database: str, plant: str) -> None:
+    problems: list[BaseException] = []
+
+    def make() -> None:
+        try:
+            with PostgresMemory(database, plant) as memory:
+                memory.facts(Fact.LATCH)
+        except BaseException as error:  # noqa: BLE001 - told to the test
+            problems.append(error)
+
+    threads = [threading.Thread(target=make) for _ in range(6)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert problems == []
+
+
+def test_a_character_that_postgresql_has_not_is_replaced(database: str, plant: str) -> None:
+    with leading(database, plant) as memory:
+        memory.keep(Remember(fact=Fact.STEP, name="a", value="x\0y"))
+        assert memory.facts(Fact.STEP) == {"a": "x\ufffdy"}
+
+
+def test_a_wrong_password_is_one_sentence_without_it(
+    database: str, plant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PGPASSWORD", "a-wrong-one")
+    sentence = refusal(database, plant)
+    assert f'(password authentication failed for user "{USER}"): look at the user and' in sentence
+    assert "a-wrong-one" not in sentence
+
+
+def test_a_password_in_the_address_is_refused_and_not_repeated(plant: str) -> None:
+    for address in (
+        f"postgresql://me:{PASSWORD}@127.0.0.1/x",
+        f"postgresql://me@127.0.0.1/x?password={PASSWORD}",
+    ):
+        with pytest.raises(StartError, match="has a password in it") as refused:
+            PostgresMemory(address, plant)
+        assert PASSWORD not in str(refused.value)
+
+
+def test_a_database_that_is_not_there_is_one_sentence(database: str, plant: str) -> None:
+    missing = database.replace(DATABASE, "nowhere")
+    assert 'database "nowhere" does not exist): make the database' in refusal(missing, plant)
+
+
+def test_a_server_that_is_not_there_is_one_sentence(database: str, plant: str, free_port: int) -> None:
+    nobody = f"postgresql://{USER}@127.0.0.1:{free_port}/{DATABASE}"
+    assert "look whether the server runs and can be reached" in refusal(nobody, plant)
+
+
+def test_a_user_who_may_make_nothing_is_told_so(postgres: Server, database: str, plant: str) -> None:
+    guest = f"guest_{plant}"
+    with postgres.connection() as db:
+        db.execute(f"CREATE ROLE {guest} LOGIN PASSWORD '{PASSWORD}'")
+    sentence = refusal(database.replace(USER, guest), plant)
+    assert "permission denied" in sentence and "let this user use and make schemas and tables" in sentence
+
+
+def test_tables_of_a_newer_arboleda_are_left_alone(postgres: Server, database: str, plant: str) -> None:
+    with leading(database, plant):
+        pass
+    with postgres.connection() as db:
+        db.execute(f'UPDATE "plant_{plant}".leader SET format = 99')
+    assert "is of a newer Arboleda (format 99, known: " in refusal(database, plant)
+    history = PostgresHistory(database, plant)
+    with pytest.raises(ArboledaError, match="is of a newer Arboleda"):
+        history.select(TaskQuery())
+    history.close()
+
+
+def test_a_server_that_is_too_old_is_one_sentence(
+    database: str, plant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("arboleda.adapters.postgres.server.OLDEST", 99)
+    assert "and this needs 99 or newer" in refusal(database, plant)
+
+
+def test_a_name_that_would_be_cut_off_is_refused(database: str) -> None:
+    with pytest.raises(StartError, match="a name of at most 57 characters"):
+        PostgresMemory(database, "x" * 58)
+
+
+def test_nothing_is_written_before_the_plant_is_led(database: str, plant: str) -> None:
+    with PostgresMemory(database, plant) as memory, pytest.raises(ArboledaError, match="is not led"):
+        memory.keep(LATCH)
+
+
+def test_a_restart_of_the_server_between_two_writes_is_not_noticed(
+    postgres: Server, database: str, plant: str
+) -> None:
+    history = PostgresHistory(database, plant)
+    with leading(database, plant) as memory:
+        memory.task(QUEUED, "storage", 1.0)
+        assert len(history.select(TaskQuery())) == 1
+        postgres.stop(signal.SIGINT)
+        postgres.start()
+        memory.keep(LATCH)
+        memory.confirm()
+        memory.renew()
+        assert memory.facts(Fact.LATCH) == {"ra1": "on"}
+    with pytest.raises(ArboledaError, match="cannot be read"):
+        history.select(TaskQuery())
+    assert len(history.select(TaskQuery())) == 1
+    history.close()
+
+
+def test_a_server_that_is_away_is_one_sentence_soon(postgres: Server, database: str, plant: str) -> None:
+    with leading(database, plant) as memory:
+        memory.task(QUEUED, "storage", 1.0)
+        postgres.stop()
+        try:
+            began = time.monotonic()
+            with pytest.raises(ArboledaError, match=r"look whether the server runs .* is not lost") as away:
+                memory.keep(LATCH)
+            assert time.monotonic() - began < 4.0 and not isinstance(away.value, Superseded)
+        finally:
+            postgres.start()
+        assert [row.id for row in memory.tasks(TaskQuery())] == ["a"]
+
+
+def test_a_server_that_says_nothing_counts_as_away(postgres: Server, database: str, plant: str) -> None:
+    with leading(database, plant) as memory:
+        memory.keep(LATCH)
+        postgres.freeze(on=True)
+        try:
+            began = time.monotonic()
+            with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
+                memory.keep(LATCH)
+            assert time.monotonic() - began < 4.0
+        finally:
+            postgres.freeze(on=False)
+
+
+def test_who_is_frozen_with_a_lock_keeps_nobody_out(postgres: Server, database: str, plant: str) -> None:
+    with leading(database, plant) as memory:
+        memory.keep(LATCH)
+        frozen = memory.connect()  # a session as the plant's own, which has begun and never goes on
+        frozen.execute("BEGIN")
+        frozen.execute("SELECT fenced(1, true)")
+        began = time.monotonic()
+        with postgres.connection() as db:
+            db.execute(f'UPDATE "plant_{plant}".leader SET epoch = 2')
+        assert time.monotonic() - began < 3.0
+        frozen.close()
