@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,13 +33,15 @@ class Ended(Exception):
 class Plant:
     """`arboleda up` as people start it, until `kill`; no board is there before `joined_at`."""
 
-    def __init__(self, state: Path, log: Path, on_broker: Callable[[str, int], None]) -> None:
+    def __init__(
+        self, state: Path, log: Path, on_broker: Callable[[str, int], None], options: Sequence[str] = ()
+    ) -> None:
         self.started_at = time.time()
         self.joined_at = float("inf")
         self._state, self._log, self._on_broker = state, log, on_broker
         self._port: int | None = None
         self._child = subprocess.Popen(
-            [sys.executable, "-c", UP, "up", "--no-ros", "--boards", "real", "--state", str(state)],
+            [sys.executable, "-c", UP, "up", "--no-ros", "--boards", "real", "--state", str(state), *options],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -75,6 +77,20 @@ class Plant:
                 return self.http.get("/api/plant").status_code == httpx.codes.OK
             time.sleep(LOOK_S)
         return False
+
+    def freeze(self, *, on: bool) -> None:
+        """Stop it where it is, or let it go on."""
+        self._child.send_signal(signal.SIGSTOP if on else signal.SIGCONT)
+
+    @property
+    def pid(self) -> int:
+        return self._child.pid
+
+    def ended(self) -> tuple[int, str]:
+        """Status and last words, once it has ended by itself."""
+        status = self._child.wait(PATIENCE_S)
+        self._reader.join(PATIENCE_S)
+        return status, self._last_words()
 
     def check(self) -> None:
         """Ended where it runs no more."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
@@ -13,6 +14,7 @@ from tests.postgres import DATABASE, PASSWORD, USER, Server
 
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.adapters.postgres.history import PostgresHistory
+from arboleda.adapters.postgres.leadership import Leadership
 from arboleda.adapters.postgres.memory import LEASE_S, RENEW_S, PostgresMemory
 from arboleda.adapters.task_rows import TaskQuery
 from arboleda.model.errors import ArboledaError, StartError
@@ -223,6 +225,52 @@ def test_tables_of_a_newer_arboleda_are_left_alone(postgres: Server, database: s
     with pytest.raises(ArboledaError, match="is of a newer Arboleda"):
         history.select(TaskQuery())
     history.close()
+
+
+def test_tables_of_an_older_format_are_brought_up_and_keep_what_they_have(
+    postgres: Server, database: str, plant: str
+) -> None:
+    with leading(database, plant) as memory:
+        memory.keep(LATCH)
+    with postgres.connection() as db:
+        db.execute(f'SET search_path TO "plant_{plant}"')
+        db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")
+        db.execute("DROP TABLE standby")
+        db.execute("UPDATE leader SET format = 1")
+    history = PostgresHistory(database, plant)
+    with pytest.raises(ArboledaError, match="of an older Arboleda: start the plant once"):
+        history.select(TaskQuery())
+    with leading(database, plant) as memory:
+        assert memory.facts(Fact.LATCH) == {"ra1": "on"} and memory.going == ()
+        memory.announce("http://127.0.0.1:8080")
+    assert history.select(TaskQuery()) == []
+    history.close()
+
+
+def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str, plant: str) -> None:
+    others = Leadership(database, plant)
+    others.prepare()
+    assert not others.leader().leads
+    with leading(database, plant) as first:
+        first.announce("http://host-a:8080")
+        seen = others.leader()
+        assert (seen.leads, seen.process, seen.url) == (True, os.getpid(), "http://host-a:8080")
+        others.wait_here()
+        others.wait_here()
+        assert others.leader().standbys == 1
+        others.wait_no_more()
+        assert others.leader().standbys == 0
+        assert first.renew() is False
+        others.ask_for_handover()
+        assert first.renew() is True
+        first.hand_over(["sis_a", "sis_b"])
+    assert not others.leader().leads
+    with leading(database, plant) as second:
+        assert second.going == ("sis_a", "sis_b") and others.leader().url == ""
+        assert second.renew() is False  # what was asked of the one before him
+    with leading(database, plant) as third:
+        assert third.going == ()
+    others.close()
 
 
 def test_a_server_that_is_too_old_is_one_sentence(

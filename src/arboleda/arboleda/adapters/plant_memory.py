@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from arboleda.model.errors import ArboledaError
+from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import (
     Fact,
     Journal,
@@ -28,6 +28,10 @@ Memory = TypeVar("Memory", bound="PlantMemory")
 
 class Superseded(ArboledaError):
     """Another process leads this plant now: this one writes nothing more, and must send nothing more."""
+
+
+class LedElsewhere(StartError):
+    """Another process leads this plant, and is alive."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +61,7 @@ class PlantMemory(ABC):
 
     name: str  # as sentences call it
     remedy: str  # what to do where something in it means nothing
+    going: Sequence[str] = ()  # the cells that the leader before held for nothing but the change
     renew_s: float | None = None  # how often `renew` has to be called while the plant is led, None: never
 
     @abstractmethod
@@ -84,8 +89,18 @@ class PlantMemory(ABC):
         memory knows of higher ones; StartError where another process leads it."""
         return epoch
 
-    def renew(self) -> None:  # noqa: B027 - a file has a lock for that
-        """Go on leading; from one other thread. Superseded, or ArboledaError where nobody can say."""
+    def renew(self) -> bool:
+        """Go on leading; from one other thread. Whether somebody wants another process to lead.
+
+        Superseded, or ArboledaError where nobody can say.
+        """
+        return False
+
+    def announce(self, url: str) -> None:  # noqa: B027 - who asks a file is on this machine
+        """Say where the plant's page is; from any thread. ArboledaError."""
+
+    def hand_over(self, going: Sequence[str]) -> None:  # noqa: B027
+        """Tell the next leader which cells are held for the change alone; from any thread. ArboledaError."""
 
     def confirm(self) -> None:  # noqa: B027
         """Make sure that this process still leads; costs nothing while that is known."""

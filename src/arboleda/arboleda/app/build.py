@@ -38,6 +38,7 @@ from .parts.cell_times import CellTimes
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
 from .parts.groot2 import Groot2Options, Groot2Part
+from .parts.handover import GoingOn, hold_all
 from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import Orchestrator
@@ -110,6 +111,7 @@ class App:
         self._bridge: BridgePart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
+        self._public_url = options.web.public_url
         self._firmware = options.firmware
         self._log_name = options.log_name
         self._notes = options.notes
@@ -252,7 +254,7 @@ class App:
         return WebPart(
             self,
             self._state.path,
-            self._state.announce,
+            self._announce,
             options.web,
             mount,
             connections=self._shares.http,
@@ -348,6 +350,8 @@ class App:
         if self._groot2 is not None:
             self.watch(self._groot2.saw)
             self._parts.append(self._groot2)
+        if self.orchestrator is not None and self._store.renew_s is not None:
+            self._parts.append(GoingOn(self, self._store.going, epoch))
         self._join(bridge, drivers, self._link)
         if self.orchestrator is not None:
             systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
@@ -357,8 +361,25 @@ class App:
         """The number of this start, higher than any before, also than those of other hosts."""
         epoch = self._store.lead(self._state.next_epoch(now))
         if self._store.renew_s is not None:
-            self._parts.append(LeasePart(self._store, self._store.renew_s, self._crash))
+            self._parts.append(LeasePart(self._store, self._store.renew_s, self._crash, self._hand_over))
         return epoch
+
+    def _hand_over(self) -> None:
+        """Hold what is at work, for the next leader to go on with, and end."""
+        LOG.warning("another process is to lead the plant: what is at work is held")
+        try:
+            self._store.hand_over(hold_all(self))
+        except (ArboledaError, TimeoutError) as error:
+            LOG.warning("the next leader is not told what was at work: %s", error)
+        self.end()
+
+    def _announce(self, port: int, *, host: str, guarded: bool, certificate: str) -> None:
+        self._state.announce(port, host=host, guarded=guarded, certificate=certificate)
+        scheme = "https" if certificate else "http"
+        try:
+            self._store.announce(self._public_url or f"{scheme}://{host}:{port}")
+        except ArboledaError as error:
+            LOG.warning("standbys are not told where the page is: %s", error)
 
     def _seen_at(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None

@@ -34,6 +34,7 @@ from . import (
     certs_command,
     config,
     examples_command,
+    handover_command,
     layout_check,
     logs_command,
     new_command,
@@ -221,6 +222,13 @@ Groot2 = Annotated[
         "on `groot2` of the plant file. [default: where the plant file has that]",
     ),
 ]
+Standby = Annotated[
+    bool,
+    typer.Option(
+        "--standby",
+        help="Wait until nobody leads this plant, and lead it then; needs a store that both hosts reach.",
+    ),
+]
 Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
 
 
@@ -245,6 +253,7 @@ def up(
     groot2: Groot2 = None,
     state: StateFolder = None,
     store: StoreAddress = "",
+    standby: Standby = False,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model, recording = _model(plant, tasks or [])
@@ -252,7 +261,7 @@ def up(
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2)
-    _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True)
+    _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
 
 
 @cli.command()
@@ -343,6 +352,9 @@ def status(
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
         return
+    if snapshot.get("standby"):
+        print(plain(f"{snapshot['plant']}: this process stands by; it {snapshot['sentence']}", LONGEST))
+        return
     Console(highlight=False).print(table(snapshot))
 
 
@@ -403,6 +415,7 @@ cli.command()(examples_command.examples)
 cli.command()(tasks_command.tasks)
 cli.command()(oee_command.oee)
 cli.command()(certs_command.certs)
+cli.command()(handover_command.handover)
 backup_command.add_to(cli)
 cli.add_typer(service_command.cli, name="service")
 cli.add_typer(record_command.cli, name="record")
@@ -553,9 +566,11 @@ def _run(
     ros: bool | None,
     lan: bool,
     stay: bool,
+    standby: bool = False,
 ) -> None:
     from . import session
     from .build import OF_BOARDS, PARTS, build
+    from .standby import take_over
 
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
@@ -576,8 +591,15 @@ def _run(
         keeps_waiting=stay,
         firmware=boards is Boards.LINUX,
     )
-    app = build(model, set(PARTS) - left_out, options)
-    raise typer.Exit(session.Session(app, tasks, Console(highlight=False), stay=stay).run())
+    parts, console = set(PARTS) - left_out, Console(highlight=False)
+    if standby:
+        try:
+            app = take_over(model, parts, options, lambda line: console.print(Text(line, style="dim")))
+        except KeyboardInterrupt:
+            raise typer.Exit from None
+    else:
+        app = build(model, parts, options)
+    raise typer.Exit(session.Session(app, tasks, console, stay=stay).run())
 
 
 def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tuple[str, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.adapters.store import Store
@@ -11,6 +12,9 @@ from arboleda.model.errors import StartError
 
 from . import invocation
 from .state import STORE
+
+if TYPE_CHECKING:
+    from arboleda.adapters.postgres.leadership import Leadership
 
 
 def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
@@ -31,6 +35,19 @@ def history_of(store: str, state: Path, plant: str) -> History:
     from arboleda.adapters.postgres.history import PostgresHistory
 
     return PostgresHistory(store, plant)
+
+
+def leadership_of(store: str, plant: str) -> Leadership:
+    """Who leads that plant, as its database knows it; StartError where `store` is none."""
+    if not store:
+        raise StartError(
+            "This plant's memory is a file, which one process of one host has: give it a database with"
+            " `store:` in its plant file, or with --store."
+        )
+    _refuse_without_library()
+    from arboleda.adapters.postgres.leadership import Leadership
+
+    return Leadership(store, plant)
 
 
 def _refuse_without_library() -> None:

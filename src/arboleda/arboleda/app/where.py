@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,7 +14,10 @@ from arboleda.model.outside import plain
 from . import config
 from .client import PlantClient
 from .state import default_state, find_running, running_plants
-from .stores import history_of
+from .stores import history_of, leadership_of
+
+if TYPE_CHECKING:
+    from arboleda.adapters.postgres.leadership import Leadership
 
 LONGEST = 500  # characters of a line
 PlantFile = Annotated[
@@ -68,11 +71,22 @@ def located(plant: Path | None, state: Path | None) -> Path:
 def history(plant: Path | None, state: Path | None, store: str) -> History:
     """What became of the tasks of that plant, where it keeps them."""
     where = located(plant, state)
+    kept_in, name = _kept_in(plant, where, store)
+    return history_of(kept_in, where, name if kept_in else name_of(plant))
+
+
+def database(plant: Path | None, state: Path | None, store: str) -> Leadership:
+    """Who leads that plant; StartError where its memory is no database."""
+    return leadership_of(*_kept_in(plant, located(plant, state), store))
+
+
+def _kept_in(plant: Path | None, where: Path, store: str) -> tuple[str, str]:
+    """The database of a plant, "" for none, and its name."""
     running = find_running(where)
     if running is not None and running.store and not store:
-        return history_of(running.store, where, running.plant)
+        return running.store, running.plant
     kept_in = store or store_of(plant)
-    return history_of(kept_in, where, config.load(plant, recipes=False).name if kept_in else name_of(plant))
+    return kept_in, config.load(plant, recipes=False).name if kept_in else ""
 
 
 def store_of(plant: Path | None) -> str:

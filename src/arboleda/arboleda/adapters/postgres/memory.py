@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
@@ -15,7 +16,7 @@ from arboleda.adapters import clock
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
-from ..plant_memory import PlantMemory, Statement, Superseded
+from ..plant_memory import LedElsewhere, PlantMemory, Statement, Superseded
 from .schema import SUPERSEDED, prepare, schema_of
 from .server import Impatient, checked, connected, explained, plain_values, translated
 
@@ -24,10 +25,15 @@ RENEW_S = 0.5
 AGAIN_S = 1.0  # for how long a write is tried again where the server is away, as while it restarts
 PAUSE_S = 0.1
 LEAD = (
-    "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp()"
-    " WHERE seen IS NULL OR seen < clock_timestamp() - %s * interval '1 second' RETURNING epoch"
+    "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
+    " url = '', wanted = NULL"
+    " WHERE seen IS NULL OR seen < clock_timestamp() - %s * interval '1 second' RETURNING epoch, going"
 )
-RENEW = "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL RETURNING epoch"
+RENEW = (
+    "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL"
+    " RETURNING wanted > clock_timestamp() - %s * interval '1 second'"
+)
+WANTED_S = 30.0  # who asked for another leader waits no longer
 T = TypeVar("T")
 
 
@@ -82,30 +88,44 @@ class PostgresMemory(PlantMemory):
             row = self._asked(LEAD, epoch, plain(socket.gethostname()), os.getpid(), LEASE_S)
             if row is not None:
                 self._epoch, self._leads_until = int(row[0]), asked_at + LEASE_S
+                self.going = tuple(json.loads(row[1]))
+                self._asked("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
             if clock.seconds() > until or self._last_seen() != first:
                 self._refuse_second()
             time.sleep(PAUSE_S)
 
-    def renew(self) -> None:
+    def renew(self) -> bool:
         if self._renewing is None or self._renewing.closed:
             with explained(self.name, ArboledaError, "cannot be reached"):
                 self._renewing = self.connect()
-        self._renew(self._renewing)
+        return self._renew(self._renewing)
+
+    def announce(self, url: str) -> None:
+        self._beside("UPDATE leader SET url = %s WHERE epoch = %s", url, self._epoch)
+
+    def hand_over(self, going: Sequence[str]) -> None:
+        self._beside("UPDATE leader SET going = %s WHERE epoch = %s", json.dumps(list(going)), self._epoch)
+
+    def _beside(self, statement: str, *values: object) -> None:
+        """Say something of the leader, on a connection for it: the plant's thread has its own."""
+        with explained(self.name, ArboledaError, "cannot be reached"), self.connect() as db:
+            db.execute(statement, values)
 
     def confirm(self) -> None:
         if clock.seconds() < self._leads_until:
             return
         self._patiently(lambda db: self._renew(db))
 
-    def _renew(self, db: Impatient) -> None:
-        """Say that it leads; the time counts from before it was said."""
+    def _renew(self, db: Impatient) -> bool:
+        """Say that it leads; the time counts from before it was said. Whether another leader is wanted."""
         asked_at = clock.seconds()
         with explained(self.name, ArboledaError, "cannot be reached"):
-            row = db.execute(RENEW, (self._epoch,)).fetchone()
+            row = db.execute(RENEW, (self._epoch, WANTED_S)).fetchone()
         if row is None:
             raise self._superseded(db)
         self._leads_until = asked_at + LEASE_S
+        return bool(row[0])
 
     def _write(self, *statements: Statement, durable: bool) -> None:
         if self._epoch is None:
@@ -162,8 +182,9 @@ class PostgresMemory(PlantMemory):
         return self._asked("SELECT epoch, seen FROM leader")
 
     def _refuse_second(self) -> NoReturn:
-        raise StartError(
-            f"The plant of {self.name} is led by another process{_leader(self._connection())}: end it first."
+        raise LedElsewhere(
+            f"The plant of {self.name} is led by another process{_leader(self._connection())}: end it first,"
+            " or have this one wait with --standby."
         )
 
     def _superseded(self, db: Impatient) -> Superseded:

@@ -9,7 +9,7 @@ from arboleda.model.errors import StartError
 from .server import Impatient
 
 PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts names that are longer, and two plants would be one
-VERSION = 1
+VERSION = 2
 NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
 TABLES = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name))",
@@ -30,7 +30,7 @@ TABLES = (
     # by the server's clock; `seen` is null where nobody leads it
     "CREATE TABLE leader (format INTEGER NOT NULL, epoch BIGINT NOT NULL, host TEXT NOT NULL,"
     " process BIGINT NOT NULL, seen TIMESTAMPTZ)",
-    "INSERT INTO leader VALUES (1, 0, '', 0, NULL)",
+    "INSERT INTO leader (format, epoch, host, process, seen) VALUES (1, 0, '', 0, NULL)",
     # Called by each statement that writes: who does not lead any more writes nothing, since what this raises
     # takes the statement back. The lock has a change of leaders wait for the statement, and no longer.
     "CREATE FUNCTION fenced(mine BIGINT, durable BOOLEAN) RETURNS VOID LANGUAGE plpgsql AS $$ BEGIN"
@@ -39,7 +39,16 @@ TABLES = (
     " IF NOT FOUND THEN RAISE EXCEPTION 'another process leads' USING ERRCODE = 'AR001'; END IF;"
     " END $$",
 )
-SINCE: dict[int, tuple[str, ...]] = {}  # what brings the tables of a format to the next one
+SINCE: dict[int, tuple[str, ...]] = {  # what brings the tables of a format to the next one
+    1: (
+        # where the leader's page is; since when somebody wants another leader; the cells that were at work
+        # when the last one gave the plant to the next, as JSON
+        "ALTER TABLE leader ADD COLUMN url TEXT NOT NULL DEFAULT '', ADD COLUMN wanted TIMESTAMPTZ,"
+        " ADD COLUMN going TEXT NOT NULL DEFAULT '[]'",
+        "CREATE TABLE standby (host TEXT, process BIGINT, seen TIMESTAMPTZ NOT NULL,"
+        " PRIMARY KEY (host, process))",
+    ),
+}
 SUPERSEDED = "AR001"
 
 

@@ -1,0 +1,75 @@
+"""A planned change of leaders: what is at work is held by the one, and goes on with the next."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Sequence
+from concurrent.futures import Future
+from contextlib import suppress
+from typing import Any, Protocol
+
+from arboleda.adapters import clock
+from arboleda.core.cell_states import CellState
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import OperatorAnswer, Verb
+
+LOG = logging.getLogger("arboleda.handover")
+HELD_S = 10.0  # by then what is held stands still
+HEARD_S = 30.0  # by then robots are heard
+LOOK_S = 0.05
+PATIENCE_S = 3.0
+
+
+class Operated(Protocol):
+    """The plant as it is operated."""
+
+    def operate(self, verb: Verb, scope: str = "") -> Future[OperatorAnswer]: ...
+    def snapshot(self) -> dict[str, Any]: ...
+
+
+def hold_all(plant: Operated) -> list[str]:
+    """Hold every cell that is at work, and wait until all of them stand; their names."""
+    working = [name for name, state in _states(plant).items() if state == CellState.EXECUTE]
+    held = [name for name in working if plant.operate(Verb.HOLD, name).result(HELD_S).refusal is None]
+    patience = clock.seconds() + HELD_S
+    while any(_states(plant)[name] == CellState.HOLDING for name in held) and clock.seconds() < patience:
+        threading.Event().wait(LOOK_S)
+    return held
+
+
+def _states(plant: Operated) -> dict[str, str]:
+    return {row["name"]: row["state"] for row in plant.snapshot()["cells"]}
+
+
+class GoingOn:
+    """Resumes the cells that the leader before held for the change alone, once their robots are heard."""
+
+    def __init__(self, plant: Operated, cells: Sequence[str], epoch: int) -> None:
+        self._plant = plant
+        self._cells = cells
+        self._epoch = epoch
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._go_on, name="going on", daemon=True)
+
+    def start(self) -> None:
+        LOG.warning("this process leads the plant now, under number %d", self._epoch)
+        if self._cells:
+            self._thread.start()
+
+    def stop(self) -> None:
+        self._ending.set()
+        if self._thread.ident is not None:
+            self._thread.join(PATIENCE_S)
+
+    def _go_on(self) -> None:
+        left, patience = dict.fromkeys(self._cells, ""), clock.seconds() + HEARD_S
+        while left and clock.seconds() < patience and not self._ending.wait(LOOK_S):
+            for name in list(left):
+                with suppress(ArboledaError, TimeoutError):
+                    refusal = self._plant.operate(Verb.RESUME, name).result(PATIENCE_S).refusal
+                    left[name] = str(refusal)
+                    if refusal is None:
+                        del left[name]
+        for name, why in left.items():
+            LOG.warning("%s stays held after the change of leaders: %s", name, why)

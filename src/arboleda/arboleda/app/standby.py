@@ -1,0 +1,99 @@
+"""A second process for a plant: it waits until the one that leads it ends, and shows that it waits."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from arboleda.adapters.plant_memory import LedElsewhere
+from arboleda.model.errors import ArboledaError, StartError
+from arboleda.model.plant_model import PlantModel
+
+from .build import App, Options, build
+from .parts.waiting_room import WaitingRoom
+from .state import StateDir, default_state
+from .waiting import interruptible
+
+if TYPE_CHECKING:
+    from arboleda.adapters.postgres.leadership import Leader, Leadership
+
+LOG = logging.getLogger(__name__)
+NEEDED_THEN = (
+    "arboleda.adapters.postgres.memory",
+    "arboleda.app.parts.page",
+    "arboleda.dashboard.page",
+    "arboleda.recorder.recorder",
+    "arboleda.recorder.ros_log",
+    "arboleda.recorder.view_log",
+    "arboleda.recorder.writing",
+)
+LOOK_S = 0.2
+SAY_S = 1.0  # how often it says to the database that it waits
+NEEDS_STORE = (
+    "--standby needs a memory that both hosts reach: write `store: postgresql://USER@HOST/DATABASE` into the"
+    " plant file, or give it as --store; see docs/how-to/two-hosts.md"
+)
+
+
+def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callable[[str], None]) -> App:
+    """Wait until nobody leads the plant, and be the one who does; StartError, KeyboardInterrupt."""
+    store = options.store or model.store
+    if not store:
+        raise StartError(NEEDS_STORE)
+    state = options.state_dir or default_state(model.name)
+    while True:
+        _wait(model, store, state, options, tell)
+        try:
+            return build(model, parts, options)
+        except LedElsewhere:
+            tell("another process was first; this one goes on waiting")
+
+
+def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Callable[[str], None]) -> None:
+    from .stores import leadership_of
+
+    for each in NEEDED_THEN:  # so that it need not be loaded when the plant waits for it
+        import_module(each)
+    others = leadership_of(store, model.name)
+    room = WaitingRoom(model.name, state, options.web)
+    with StateDir(state, plant=model.name, store=store) as here, interruptible():
+        others.prepare()
+        room.start(here.announce)
+        try:
+            tell(room.address)
+            _until_free(others, room, tell)
+        finally:
+            room.stop()
+            others.close()
+
+
+def _until_free(others: Leadership, room: WaitingRoom, tell: Callable[[str], None]) -> None:
+    """Look again and again; a database that is away says nothing of who leads."""
+    told, said_at = "", 0.0
+    while True:
+        try:
+            leader = others.leader()
+            if not leader.leads:
+                others.wait_no_more()
+                return
+            if time.monotonic() - said_at > SAY_S:
+                others.wait_here()
+                said_at = time.monotonic()
+            sentence = _led_by(leader)
+            room.show(sentence, leader.url)
+        except ArboledaError as error:
+            sentence = f"waits for the database: {error}"
+            room.show(sentence, "")
+        if sentence != told:
+            tell(f"standby: {sentence}")
+            told = sentence
+        time.sleep(LOOK_S)
+
+
+def _led_by(leader: Leader) -> str:
+    page = f"; its page is {leader.url}" if leader.url else ""
+    return f"waits for the end of process {leader.process} on {leader.host}, which leads the plant{page}"
