@@ -21,7 +21,7 @@ def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
     """The memory of a plant: in the database `store`, or in `state` where that is ""; StartError."""
     if not store:
         return Store(state / STORE, plant)
-    _refuse_without_library()
+    refuse_without_library()
     from arboleda.adapters.postgres.memory import PostgresMemory
 
     return PostgresMemory(store, plant)
@@ -31,7 +31,7 @@ def history_of(store: str, state: Path, plant: str) -> History:
     """What only reads the tasks there; a file is not asked whose it is where `plant` is ""."""
     if not store:
         return TaskHistory(state / STORE, plant)
-    _refuse_without_library()
+    refuse_without_library()
     from arboleda.adapters.postgres.history import PostgresHistory
 
     return PostgresHistory(store, plant)
@@ -44,13 +44,14 @@ def leadership_of(store: str, plant: str) -> Leadership:
             "This plant's memory is a file, which one process of one host has: give it a database with"
             " `store:` in its plant file, or with --store."
         )
-    _refuse_without_library()
+    refuse_without_library()
     from arboleda.adapters.postgres.leadership import Leadership
 
     return Leadership(store, plant)
 
 
-def _refuse_without_library() -> None:
+def refuse_without_library() -> None:
+    """StartError where the extra is not installed."""
     try:
         import psycopg  # noqa: F401 - it is an extra
     except ImportError as error:

@@ -27,8 +27,6 @@ SETTINGS = {
     "keepalives_count": 2,
     "tcp_user_timeout": 2000,
     "application_name": "arboleda",
-    # who is frozen between a statement and its end must not keep others out
-    "options": "-c idle_in_transaction_session_timeout=1000 -c statement_timeout=5000 -c timezone=UTC",
 }
 WORDS = {  # what a person does about it, by the class or the code that PostgreSQL gives an error
     "28": "look at the user and its password, which are in PGPASSWORD or ~/.pgpass",
@@ -76,12 +74,16 @@ def checked(address: str) -> str:
     return address
 
 
-def connected(address: str, schema: str) -> Impatient:
-    """A connection on which each statement is a transaction of its own; psycopg.Error, StartError."""
+def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
+    """A connection on which each statement is a transaction of its own; psycopg.Error, StartError.
+
+    Who is frozen between a statement and its end keeps others out for `idle_s` and no longer.
+    """
     known = psycopg.conninfo.conninfo_to_dict(address)
-    db = Impatient.connect(
-        address, autocommit=True, **{key: value for key, value in SETTINGS.items() if key not in known}
-    )
+    limits = f"-c idle_in_transaction_session_timeout={1000 * idle_s:.0f} -c statement_timeout=5000"
+    wanted = SETTINGS | {"options": f"{limits} -c timezone=UTC"}
+    ours = {key: value for key, value in wanted.items() if key not in known}
+    db = Impatient.connect(address, autocommit=True, **ours)
     try:
         if db.info.server_version < OLDEST * 10_000:
             raise StartError(

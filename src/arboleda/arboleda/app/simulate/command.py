@@ -10,7 +10,9 @@ from rich.text import Text
 
 from arboleda.simulator.levels import LEVELS
 
+from ..stores import refuse_without_library
 from ..user_file import check_new, check_writable
+from ..where import StoreAddress
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
@@ -23,6 +25,7 @@ arboleda simulate --until-failure            seed after seed until something bre
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
 arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
 arboleda simulate --seeds 500 --json out.json
+arboleda simulate --seeds 9999 --store postgresql://... --worker  on as many hosts as there are
 arboleda simulate --faults out.json --trace  what broke in there, with the faults it takes
 arboleda simulate --faults night.yaml        what a plant did: arboleda record export night.yaml
 
@@ -77,6 +80,14 @@ Jobs = Annotated[
     typer.Option(metavar="N", min=1, help="How many processes share the seeds. [default: one per processor]"),
 ]
 
+Worker = Annotated[
+    bool,
+    typer.Option(
+        "--worker",
+        help="Share the seeds with every worker of the same options: they are rows of the --store.",
+    ),
+]
+
 
 def add_to(cli: typer.Typer) -> None:
     """Add the command."""
@@ -95,6 +106,8 @@ def simulate(
     record: Record = None,
     trace: Trace = False,
     jobs: Jobs = None,
+    store: StoreAddress = "",
+    worker: Worker = False,
 ) -> None:
     from . import one, screen  # the simulator takes a while to load, and only this command needs it
     from .flight import SUFFIX
@@ -116,6 +129,10 @@ def simulate(
         faults=faults,
         until_failure=until_failure,
     )
+    if worker and (not store or alone or until_failure or jobs is not None):
+        raise typer.BadParameter(
+            "--worker needs --store, and is one process: not with --jobs, --trace, --record, --until-failure"
+        )
     if json is not None:
         check_writable(json)
     if record is not None:
@@ -123,6 +140,11 @@ def simulate(
     console = screen.console()
     for note in request.notes:
         console.print(Text(note, style="dim"), soft_wrap=True)
+    if worker:
+        refuse_without_library()
+        from .shared import work
+
+        raise typer.Exit(work(request, console, store, json))
     if alone:
         raise typer.Exit(one.run(request, console, trace=trace, record=record, file=json))
     raise typer.Exit(Many(request, console, json).run(jobs or processors()))
