@@ -8,6 +8,7 @@ setup(
     packages=find_packages(include=["arboleda", "arboleda.*"]),
     package_data={
         "arboleda": [
+            "adapters/vda5050/schemas/*.json",
             "dashboard/assets/*",
             "dashboard/words/*.yaml",
             "examples/*/*.py",
@@ -31,6 +32,7 @@ setup(
         "arboleda.drivers": [
             "dobot = arboleda.drivers.dobot.adapter:Dobot",
             "modbus = arboleda.adapters.modbus:Modbus",
+            "vda5050 = arboleda.adapters.vda5050.driver:Vda5050",
         ],
         "pytest11": ["arboleda = arboleda.testing.plugin"],
     },

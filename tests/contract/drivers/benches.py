@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import dobot, line_tcp, modbus, mqtt, ros
+from . import dobot, line_tcp, modbus, mqtt, ros, vda5050
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -11,4 +11,5 @@ BENCHES: dict[str, Bench] = {
     "line_tcp": line_tcp.BENCH,
     "modbus": modbus.BENCH,
     "dobot": dobot.BENCH,
+    "vda5050": vda5050.BENCH,
 }

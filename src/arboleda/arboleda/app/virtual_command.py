@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from arboleda.virtual.dobot import command as dobot
+from arboleda.virtual.vda5050 import command as vda5050
 
 cli = typer.Typer(
     help="Play the controller of another maker over its own protocol, with motion and with faults.",
@@ -12,3 +13,4 @@ cli = typer.Typer(
     rich_markup_mode=None,
 )
 cli.command("dobot", help=dobot.HELP)(dobot.run)
+cli.command("vda5050", help=vda5050.HELP)(vda5050.run)

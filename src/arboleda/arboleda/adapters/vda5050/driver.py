@@ -1,0 +1,132 @@
+"""The driver `vda5050`: one vehicle at an MQTT broker."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import threading
+from collections.abc import Iterable, Sequence
+
+from arboleda.adapters.broker_login import address, login
+from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.adapters.seldom import Seldom
+from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver
+from arboleda.drivers.vda5050.machine import Message, Publish, Vehicle
+from arboleda.drivers.vda5050.settings import Settings
+from arboleda.model.outside import plain, quoted
+from arboleda.wire.transport import Connection, Delivery, Publication
+
+from .messages import Headers, Unfit, from_bytes, to_bytes
+
+LOG = logging.getLogger("arboleda.drivers.vda5050")
+LONGEST_TOPIC = 300
+
+
+@driver("vda5050", settings=Settings)
+class Vda5050:
+    """One vehicle, with the devices that are parts of it. A thread of the client hears it, another says again
+    what is known."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._lock = threading.Lock()  # around the machine, and the order of what it says
+        self._ending = threading.Event()
+        self._seldom = Seldom()
+        self._client: MqttClient | None = None
+        self._ticking: threading.Thread | None = None
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        settings = self._settings
+        for problem in [sentence for device in devices for _, sentence in settings.problems(device)]:
+            raise ValueError(problem)
+        mark = secrets.token_hex(4)
+        self._hear, self._clock = hear, clock
+        self._vehicle = Vehicle(devices, settings, mark=mark)
+        self._headers = Headers(settings.version, settings.manufacturer, settings.serial)
+        topics = (f"{settings.topics}/state", f"{settings.interface}/+/+/+/connection")
+        self._client = MqttClient(
+            f"arboleda-{mark}",
+            address(settings.broker),
+            on_event=self._heard,
+            subscriptions=topics,
+            clock=clock,
+            credentials=login(),
+        )
+        self._client.start()
+        self._ticking = threading.Thread(target=self._tick, name=f"vda5050 {settings.serial}", daemon=True)
+        self._ticking.start()
+
+    def send(self, command: Command) -> None:
+        with self._lock:
+            try:
+                self._do(self._vehicle.command(self._clock(), command))
+            except (NotConnected, Unfit) as error:
+                self._vehicle.unsent(command)
+                raise NotSent(str(error)) from error
+
+    def stop(self) -> None:
+        self._ending.set()
+        if self._client is not None:
+            self._client.close()
+        if self._ticking is not None:
+            self._ticking.join()
+
+    # --- its threads ---
+
+    def _tick(self) -> None:
+        while not self._ending.is_set():
+            with self._lock:
+                now = self._clock()
+                self._try(self._vehicle.step(now))
+                wait_s = self._vehicle.next_deadline - now
+            self._ending.wait(max(0.01, wait_s))
+
+    def _heard(self, event: Delivery | Connection) -> None:
+        with self._lock:
+            if isinstance(event, Connection):
+                self._try(self._vehicle.connected(self._clock(), up=event.up))
+            elif len(event.topic) <= LONGEST_TOPIC:
+                self._read(event)
+
+    def _read(self, delivery: Delivery) -> None:
+        settings = self._settings
+        whose, _, topic = delivery.topic.rpartition("/")
+        if whose != settings.topics:
+            _, version, maker, serial = whose.split("/")
+            self._vehicle.neighbour(plain(f"{maker}/{serial} ({version})", 60))
+            return
+        if topic == "state" and delivery.retain:
+            return  # the broker kept it, nobody knows since when
+        try:
+            said = from_bytes(settings.version, topic, delivery.payload)
+            if (said["manufacturer"], said["serialNumber"]) != (settings.manufacturer, settings.serial):
+                raise Unfit(f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}")
+        except Unfit as error:
+            what = f"a message on {delivery.topic} is refused: {error}"
+            if self._seldom.is_due(what, self._clock()):
+                LOG.warning("%s", plain(what))
+            return
+        heard = {"state": self._vehicle.state, "connection": self._vehicle.connection}[topic]
+        self._try(heard(self._clock(), said))
+
+    def _try(self, messages: Iterable[Message]) -> None:
+        """Do what was not asked for by a command: what cannot leave will be missed soon enough."""
+        try:
+            self._do(messages)
+        except (NotConnected, Unfit) as error:
+            LOG.debug("%s", error)
+
+    def _do(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            if isinstance(message, Report):
+                self._hear(message)
+            elif isinstance(message, Publish):
+                self._publish(message)
+
+    def _publish(self, message: Publish) -> None:
+        assert self._client is not None
+        body = {**self._headers(message.topic), **message.body}
+        payload = to_bytes(self._settings.version, message.topic, body)
+        self._client.publish(
+            Publication(topic=f"{self._settings.topics}/{message.topic}", payload=payload, qos=0)
+        )

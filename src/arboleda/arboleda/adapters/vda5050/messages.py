@@ -1,0 +1,91 @@
+"""Messages of VDA 5050 as bytes: their headers, and whether they fit the schema of their version and topic.
+
+The schemas are the structure of those that the standard publishes (MIT); `scripts/vda5050-schemas` made them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from datetime import datetime, timezone
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import fastjsonschema
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import plain
+
+LARGEST = 1_000_000  # bytes of a message
+FULL = {"2.0": "2.0.0", "2.1": "2.1.0", "3.0": "3.0.0"}
+
+
+class Unfit(ArboledaError):
+    """A message that does not fit the schema of its topic; the sentence says where."""
+
+
+def to_bytes(version: str, topic: str, message: Mapping[str, Any]) -> bytes:
+    """A message that is sent; Unfit where the standard does not allow it."""
+    _check(version, topic, message)
+    return json.dumps(message, separators=(",", ":")).encode()
+
+
+def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
+    """A message that was received; Unfit for whatever the standard does not allow."""
+    if len(payload) > LARGEST:
+        raise Unfit(f"it has {len(payload)} bytes")
+    try:
+        said = json.loads(payload, parse_constant=_refuse, parse_float=_finite)
+    except (ValueError, RecursionError) as error:
+        raise Unfit(plain(f"it is no JSON: {error}")) from error
+    _check(version, topic, said)
+    assert isinstance(said, dict)
+    return said
+
+
+class Headers:
+    """What each message of one sender begins with; ids count by topic."""
+
+    def __init__(self, version: str, manufacturer: str, serial: str) -> None:
+        self._names = {"version": FULL[version], "manufacturer": manufacturer, "serialNumber": serial}
+        self._counts: Counter[str] = Counter()
+
+    def __call__(self, topic: str) -> dict[str, Any]:
+        number = self._counts[topic]
+        self._counts[topic] += 1
+        return {"headerId": number % 2**32, "timestamp": timestamp(), **self._names}
+
+
+def timestamp() -> str:
+    """The time of day, as the standard writes it."""
+    return datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%S.%f")[:-3] + "Z"
+
+
+def _check(version: str, topic: str, message: object) -> None:
+    try:
+        _checks(version)[topic](message)
+    except fastjsonschema.JsonSchemaValueException as error:
+        raise Unfit(plain(error.message.replace("data.", "", 1))) from error
+    assert isinstance(message, Mapping)
+    if message["version"].split(".")[:2] != version.split("."):
+        raise Unfit(plain(f"it is of version {message['version']}, not {version}"))
+
+
+@cache
+def _checks(version: str) -> dict[str, Callable[[object], object]]:
+    text = (files(__package__) / f"schemas/{version}.json").read_text("utf-8")
+    return {topic: fastjsonschema.compile(schema) for topic, schema in json.loads(text).items()}
+
+
+def _refuse(word: str) -> float:
+    raise ValueError(f"{word} is no number")
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise ValueError("a number is too large")
+    return number

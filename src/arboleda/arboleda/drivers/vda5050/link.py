@@ -1,0 +1,89 @@
+"""Whether a vehicle is there, and which of its states count."""
+
+from __future__ import annotations
+
+import math
+
+from arboleda.model.outside import plain
+
+from .settings import Settings
+from .state import VehicleState
+
+BROKEN = {"CONNECTIONBROKEN", "CONNECTION_BROKEN"}
+WRAP = 2**31  # headers count to 2**32, then from 0
+
+
+class Link:
+    """What the broker says of the vehicle's connection, and how long its states may be apart."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._broker = False
+        self._word: str | None = None  # what was said of the connection
+        self._heard_at = -math.inf
+        self._silent = False
+        self._last: VehicleState | None = None
+        self._first = True  # the next state begins a row of headers
+        self.boots = 1
+        self.has_booted = False
+        self.neighbours: set[str] = set()
+
+    @property
+    def is_online(self) -> bool:
+        return self._broker and self._word == "ONLINE"
+
+    @property
+    def trouble(self) -> str | None:
+        """Why there is no link, in a sentence; None where there is one."""
+        vehicle = plain(self._settings.vehicle, 80)
+        if not self._broker:
+            return f"the MQTT broker at {self._settings.broker} is not there"
+        if self._word is None:
+            return f"no vehicle {vehicle} has said that it is there{self._others()}"
+        if self._word in BROKEN:
+            return f"the connection of {vehicle} broke"
+        if self._word != "ONLINE":
+            return f"{vehicle} has left ({self._word})"
+        if self._silent:
+            return f"{vehicle} has told no state for {self._settings.silent_after_s:g} s"
+        if self._last is None:
+            return f"{vehicle} is there, and has told no state yet that could be read"
+        return None
+
+    def _others(self) -> str:
+        if not self.neighbours:
+            return f" (on {plain(self._settings.topics, 80)})"
+        return f"; those that have: {plain(', '.join(sorted(self.neighbours)), 120)}"
+
+    def broker(self, *, up: bool) -> None:
+        self._broker, self._word = up, None
+        self._begin_anew()
+
+    def connection(self, now: float, word: str) -> None:
+        """A vehicle that says so anew may count its headers anew."""
+        if word != "ONLINE" or self._word != "ONLINE":
+            self._begin_anew()
+        self._word, self._heard_at, self._first = word, now, True
+
+    def takes(self, now: float, state: VehicleState) -> bool:
+        """Whether a state is newer than the last; one whose header began anew is of another boot."""
+        self.has_booted = False
+        last = self._last
+        if not self.is_online:
+            return False
+        if last is not None and not self._first:
+            behind = (last.header - state.header) % 2**32
+            if behind == 0 or (behind < WRAP and state.timestamp <= last.timestamp):
+                return False
+            self.has_booted = behind < WRAP
+            self.boots += self.has_booted
+        self._last, self._heard_at, self._silent, self._first = state, now, False, False
+        return True
+
+    def falls_silent(self, now: float) -> bool:
+        """Whether it has become too long since the last state."""
+        before, self._silent = self._silent, now - self._heard_at > self._settings.silent_after_s
+        return self._silent and not before and self.is_online
+
+    def _begin_anew(self) -> None:
+        self._last, self._silent = None, False

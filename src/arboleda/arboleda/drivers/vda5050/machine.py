@@ -1,0 +1,365 @@
+"""One vehicle and its devices as a machine: commands become orders and actions, states become reports.
+
+A vehicle tells its state when something changes, else rarely. In between the driver says again what is known,
+as long as the broker calls the vehicle online; but nothing of its motion from the moment on when it was told
+something until it has named that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.kinds.declared import Device, Told
+from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command, Query, Stop, StopMode
+from arboleda.model.facts import Facts, Value, shown
+from arboleda.model.messages import Report
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import MotionState, Robot
+
+from ..port import NotSent, lost
+from .link import Link
+from .map import GridMap
+from .orders import Action, Order, action_of, instant
+from .settings import Settings
+from .state import ENDS_ORDER, FACTS, Said, VehicleState, read
+
+BEAT_S = 0.3
+NEIGHBOURS = 20  # that a sentence may name
+OURS = "arboleda-"  # what the ids of all orders of plants begin with
+STOPS = {
+    StopMode.HALT: ("cancelOrder",),
+    StopMode.LATCH: ("startPause", "cancelOrder"),
+    StopMode.CLEAR: ("stopPause",),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Publish:
+    """A message for the vehicle; whoever sends it gives it its header."""
+
+    topic: str
+    body: Mapping[str, Any]
+
+
+Message = Report | Publish
+
+
+class Vehicle:
+    """`mark` makes what it is told unlike what any other start or plant tells it."""
+
+    def __init__(self, devices: Sequence[Robot], settings: Settings, *, mark: str) -> None:
+        mobiles = [device for device in devices if isinstance(device, Mobile)]
+        if len(mobiles) > 1:
+            raise ValueError(f"{', '.join(each.name for each in mobiles)} are one vehicle by their settings")
+        self._devices = {device.name: device for device in devices}
+        self._settings, self._mark = settings, mark
+        self._map = GridMap(mobiles[0] if mobiles else None, settings)
+        self._link = Link(settings)
+        self._state: VehicleState | None = None
+        self._order: Order | None = None
+        self._instants: dict[str, Command] = {}  # what it does beside its order, by the actions
+        self._stops: set[str] = set()  # actions that are not over
+        self._count = 0  # of actions
+        self._said: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
+        self.next_deadline = 0.0
+
+    def step(self, now: float) -> list[Message]:
+        """Say what is known, if it is time to."""
+        if now < self.next_deadline:
+            return []
+        self._lose_what_is_silent(now)
+        return list(self._reports(now))
+
+    def connected(self, now: float, *, up: bool) -> list[Message]:
+        """The broker is there, or is not."""
+        self._link.broker(up=up)
+        if not up:
+            self._forget()
+        return list(self._reports(now))
+
+    def connection(self, now: float, said: Said) -> list[Message]:
+        """What the topic `connection` says of the vehicle."""
+        was_online = self._link.is_online
+        self._link.connection(now, said["connectionState"])
+        if not self._link.is_online:
+            self._forget()
+        elif not was_online:
+            return [*self._request("stateRequest"), *self._reports(now)]
+        return list(self._reports(now))
+
+    def neighbour(self, vehicle: str) -> None:
+        """Another vehicle, or this one by another version, is at the broker."""
+        if len(self._link.neighbours) < NEIGHBOURS:
+            self._link.neighbours.add(vehicle)
+
+    def state(self, now: float, said: Said) -> list[Message]:
+        """A state that fits the schema; one that is older than the last, or the same, is nothing."""
+        state = read(said)
+        if not self._link.takes(now, state):
+            return []
+        if self._link.has_booted:
+            self._forget()
+        self._state = state
+        messages = [*self._judge_order(state), *self._left_over(state)]
+        self._judge_instants(state)
+        self._stops = {action for action in self._stops if not state.is_over(action)}
+        return [*messages, *self._reports(now)]
+
+    # --- what it is told ---
+
+    def command(self, now: float, command: Command) -> list[Message]:
+        """What leaves for a command; NotSent where nothing can."""
+        if (why := self._link.trouble) is not None:
+            raise NotSent(why)
+        if isinstance(command, Stop):
+            return self._stop(command)
+        if isinstance(command, FollowPath):
+            return self._begin(command, self._map.way(self._at, command.nodes))
+        if not isinstance(command, Told):
+            raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
+        if command.verb not in self._settings.instant:
+            return self._begin(command, (self._place(command),), verb=command)
+        action = action_of(self._new_action(), command, blocking="NONE")
+        self._instants[action.id] = command
+        return [Publish(topic="instantActions", body=instant([action]))]
+
+    @property
+    def _at(self) -> str:
+        return self._state.node if self._state is not None else ""
+
+    def _place(self, told: Told) -> str:
+        if not self._at:
+            raise NotSent(f"the vehicle says of no node that it stands there, so it cannot {told.verb} there")
+        return self._at
+
+    def _begin(self, command: Command, nodes: tuple[str, ...], verb: Told | None = None) -> list[Message]:
+        state = self._state
+        if self._order is not None:
+            raise NotSent(f"the vehicle is still at its order {self._order.id}")
+        if state is not None and state.ahead:
+            other = plain(state.order, 60)
+            raise NotSent(f"the vehicle is at the order {other} of somebody else; stop it, then clear")
+        actions = () if verb is None else (action_of(self._new_action(), verb, blocking="HARD"),)
+        released = min(len(nodes), 1 + self._settings.base) if self._settings.base else len(nodes)
+        id = f"{OURS}{self._mark}-{command.id}"
+        self._order = Order(id=id, command=command, nodes=nodes, released=released, actions=actions)
+        return [self._sent(self._order)]
+
+    def _sent(self, order: Order, first: int = 0) -> Publish:
+        return Publish(topic="order", body=order.message(self._map.position, self._settings.map, first))
+
+    def _stop(self, command: Stop) -> list[Message]:
+        return self._request(*STOPS[command.mode])
+
+    def _request(self, *types: str) -> list[Message]:
+        """Instant actions of the standard; what is to stop it has to be over before it counts as standing."""
+        actions = [Action(id=self._new_action(), type=type, blocking="NONE") for type in types]
+        for action in actions:
+            if action.type == "stateRequest":
+                continue
+            self._stops.add(action.id)
+            if action.type == "cancelOrder" and self._order is not None:
+                self._order.cancels.append(action.id)
+        return [Publish(topic="instantActions", body=instant(actions))]
+
+    def _new_action(self) -> str:
+        self._count += 1
+        return f"{self._mark}-a{self._count}"
+
+    def unsent(self, command: Command) -> None:
+        """What was made of a command has not left."""
+        if self._order is not None and self._order.command is command:
+            self._order = None
+        self._instants = {id: each for id, each in self._instants.items() if each is not command}
+
+    # --- what it says ---
+
+    def _judge_order(self, state: VehicleState) -> list[Message]:
+        order = self._order
+        if order is None:
+            return []
+        if order.cancels:
+            if not state.driving and any(state.is_over(action) for action in order.cancels):
+                self._order = None
+            return []
+        if state.order != order.id:
+            return self._judge_strange(order, state)
+        if not order.taken:
+            order.taken = True
+            self._say(order.command, "accepted")
+        word = self._end_of(order, state)
+        if word is not None:
+            return self._fail(order, word, state)
+        if self._is_done(order, state):
+            found = next((state.actions.get(action.id) for action in order.actions), None)
+            self._end(order.command, found.result if found is not None else None)
+            self._order = None
+            return []
+        first = order.extend(state.node, state.sequence, self._settings.base)
+        return [] if first is None else [self._sent(order, first)]
+
+    def _judge_strange(self, order: Order, state: VehicleState) -> list[Message]:
+        """The vehicle has another order than ours, or none."""
+        word = next((each.word for each in state.troubles if order.id in dict(each.about).values()), None)
+        if order.taken:
+            self._say(order.command, "failed", "order_lost")
+            self._order = None
+        elif word is not None:
+            self._say(order.command, "rejected", word)
+            self._order = None
+        elif state.hindrance is not None:
+            self._say(order.command, "rejected", state.hindrance)
+            return self._request("cancelOrder")
+        return []
+
+    def _end_of(self, order: Order, state: VehicleState) -> str | None:
+        """In a word, why the vehicle will not come to the end of an order that it has."""
+        if state.hindrance is not None:
+            return state.hindrance
+        for trouble in state.troubles:
+            refused = state.update < order.update and order.id in dict(trouble.about).values()
+            if trouble.level in ENDS_ORDER or refused:
+                return trouble.word
+        for action in order.actions:
+            found = state.actions.get(action.id)
+            if found is not None and found.status == "FAILED":
+                return self._trouble_with(action.id, state) or f"{action.type}_failed"
+        if state.ahead or state.driving or state.update < order.update:
+            return None
+        return self._short(order, state)
+
+    def _short(self, order: Order, state: VehicleState) -> str | None:
+        """Nothing is before the vehicle: in a word, what of its order it cannot have done."""
+        if order.released < len(order.nodes):
+            return "ended_at_its_base"
+        if state.node == order.nodes[-1]:
+            return None if state.sequence == order.last_sequence else "ended_on_its_way"
+        known = isinstance(order.command, FollowPath) and self._map.number(state.node) is not None
+        return None if known else f"at_node_{state.node}"
+
+    def _is_done(self, order: Order, state: VehicleState) -> bool:
+        """Where it stands, and its facts, the plant compares with what was asked."""
+        return (
+            not state.ahead
+            and not state.driving
+            and state.update >= order.update
+            and all(state.is_over(action.id) for action in order.actions)
+        )
+
+    def _fail(self, order: Order, word: str, state: VehicleState) -> list[Message]:
+        """It failed; what the vehicle may still do of it is cancelled."""
+        self._say(order.command, "failed", word)
+        if state.ahead or state.driving:
+            return self._request("cancelOrder")
+        self._order = None
+        return []
+
+    def _left_over(self, state: VehicleState) -> list[Message]:
+        """What it still does of an order of before a silence, or of an earlier start, is nobody's."""
+        ours = state.order.startswith(OURS) and state.ahead
+        return self._request("cancelOrder") if ours and self._order is None and not self._stops else []
+
+    def _judge_instants(self, state: VehicleState) -> None:
+        for action, command in list(self._instants.items()):
+            found = state.actions.get(action)
+            trouble = self._trouble_with(action, state)
+            if found is None and trouble is not None:
+                self._say(command, "rejected", trouble)
+            elif found is not None:
+                self._say(command, "accepted")
+                if found.status == "FAILED":
+                    self._say(command, "failed", trouble or "action_failed")
+                elif found.status == "FINISHED":
+                    self._end(command, found.result)
+            if state.is_over(action) or (found is None and trouble is not None):
+                del self._instants[action]
+
+    def _end(self, command: Command, result: str | None) -> None:
+        if isinstance(command, Query):
+            self._say(command, "answered", _answer(command, result))
+        else:
+            self._say(command, "done")
+
+    def _trouble_with(self, action: str, state: VehicleState) -> str | None:
+        return next((each.word for each in state.troubles if action in dict(each.about).values()), None)
+
+    # --- what the plant hears ---
+
+    def _say(self, command: Command, what: str, word: Value | None = None) -> None:
+        said = self._said[command.robot]
+        said[what] = command.id
+        if word is not None:
+            said[WORDS[what]] = plain(word, 100) if isinstance(word, str) else word
+
+    def _reports(self, now: float) -> Iterator[Report]:
+        self.next_deadline = now + BEAT_S
+        why = self._link.trouble
+        for device in self._devices.values():
+            if why is not None:
+                yield lost(device.name, at=now, why=why)
+            elif self._state is not None:
+                yield self._report(now, device, self._state)
+
+    def _report(self, now: float, device: Robot, state: VehicleState) -> Report:
+        mobile = isinstance(device, Mobile)
+        return Report(
+            at=now,
+            robot=device.name,
+            boot_id=self._link.boots,
+            state=self._motion(state),
+            node=self._map.number(state.node) if mobile else None,
+            homed=state.homed if mobile else None,
+            facts=_facts(device, state),
+            **self._said[device.name],
+        )
+
+    def _motion(self, state: VehicleState) -> MotionState | None:
+        """None where what it said last says nothing of what it was told since."""
+        if state.hindrance is not None:
+            return MotionState.FAULT
+        if state.driving:
+            return MotionState.MOVING
+        if self._order is not None:
+            return MotionState.MOVING if self._order.taken and not self._order.cancels else None
+        if self._stops:
+            return None
+        if state.ahead:
+            return MotionState.MOVING
+        return MotionState.STOP_LATCHED if state.paused else MotionState.STOPPED
+
+    # --- its link ---
+
+    def _lose_what_is_silent(self, now: float) -> None:
+        if self._link.falls_silent(now):
+            self._forget()
+
+    def _forget(self) -> None:
+        """Nothing that was open is anybody's; an order that it still has is cancelled when it is back."""
+        self._state, self._order, self._stops = None, None, set()
+        self._instants.clear()
+        for said in self._said.values():
+            said.clear()
+
+
+WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}
+
+
+def _answer(command: Query, result: str | None) -> Value:
+    """The answer that the kind knows by these words, or else the words."""
+    known = command.told.answers if isinstance(command, Told) else ()
+    return next((each for each in known if shown(each) == result), result or "")
+
+
+def _facts(device: Robot, state: VehicleState) -> Facts:
+    if not isinstance(device, Device):
+        return ()
+    found = ((name, type, FACTS[name](state)) for name, type in device.kind.facts.items() if name in FACTS)
+    read = (
+        (name, type.read(int(value) if type.type is int else value))
+        for name, type, value in found
+        if value is not None
+    )
+    return tuple((name, value) for name, value in read if value is not None)

@@ -1,0 +1,39 @@
+"""The plant's grid as a vehicle has it: names and places of nodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from arboleda.kinds.mobile import Mobile
+
+from .settings import Settings
+
+
+class GridMap:
+    """Without a mobile robot it has no nodes."""
+
+    def __init__(self, mobile: Mobile | None, settings: Settings) -> None:
+        self._mobile = mobile
+        self._names = settings.node_names(mobile)
+        self._numbers = {name: number for number, name in enumerate(self._names)}
+
+    def number(self, name: str) -> int | None:
+        """The plant's number of a node of the vehicle."""
+        return self._numbers.get(name)
+
+    def way(self, at: str, nodes: Sequence[int]) -> tuple[str, ...]:
+        """The names of a way, from where the vehicle stands on."""
+        assert self._mobile is not None
+        here = self.number(at)
+        before = () if here is None else self._mobile.grid.route(here, nodes[0])[:-1]
+        return tuple(self._names[node] for node in (*before, *nodes))
+
+    def position(self, name: str) -> tuple[float, float] | None:
+        """Where a node is on the floor, m."""
+        number = self.number(name)
+        if self._mobile is None or number is None:
+            return None
+        (x, y), origin = self._mobile.grid.position(number), self._mobile.grid.origin
+        cos, sin = math.cos(origin.yaw), math.sin(origin.yaw)
+        return (round(origin.x + cos * x - sin * y, 6), round(origin.y + sin * x + cos * y, 6))

@@ -1,0 +1,107 @@
+"""What a vehicle is told: orders that it gets part by part, and instant actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from arboleda.kinds.declared import Told
+from arboleda.model.commands import Command
+
+Place = Callable[[str], tuple[float, float] | None]
+"""Where a node is on the vehicle's map, m; None where that is not known."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Action:
+    """Something that a vehicle does at a node, or at once."""
+
+    id: str
+    type: str
+    values: tuple[tuple[str, Any], ...] = ()
+    blocking: str = "HARD"
+
+    def message(self) -> dict[str, Any]:
+        return {
+            "actionId": self.id,
+            "actionType": self.type,
+            "blockingType": self.blocking,
+            "actionParameters": [{"key": key, "value": value} for key, value in self.values],
+        }
+
+
+@dataclass(kw_only=True)
+class Order:
+    """A command that the vehicle is at: its nodes, of which the first `released` may be driven to.
+
+    The node number i of the way has the sequence id 2 i, the edge after it 2 i + 1.
+    """
+
+    id: str
+    command: Command
+    nodes: tuple[str, ...]
+    released: int
+    actions: tuple[Action, ...] = ()  # at the last node
+    update: int = 0
+    taken: bool = False  # the vehicle has said that it has it
+    cancels: list[str] = field(default_factory=list)  # the actions that are to end it
+
+    @property
+    def last_sequence(self) -> int:
+        return 2 * (len(self.nodes) - 1)
+
+    def extend(self, node: str, sequence: int, base: int) -> int | None:
+        """Release `base` nodes ahead of one that was reached: where the update begins, None without one."""
+        step, between = divmod(sequence, 2)
+        if between or not 0 <= step < self.released or self.nodes[step] != node:
+            return None
+        released = min(len(self.nodes), step + 1 + base)
+        if base == 0 or released <= self.released:
+            return None
+        first, self.released, self.update = self.released - 1, released, self.update + 1
+        return first
+
+    def message(self, place: Place, map: str, first: int = 0) -> dict[str, Any]:
+        """The order as it is sent, from a node of the way on: an update begins where the base ended."""
+        steps = range(first, len(self.nodes))
+        return {
+            "orderId": self.id,
+            "orderUpdateId": self.update,
+            "nodes": [self._node(step, place, map) for step in steps],
+            "edges": [self._edge(step) for step in steps[:-1]],
+        }
+
+    def _node(self, step: int, place: Place, map: str) -> dict[str, Any]:
+        name = self.nodes[step]
+        at = place(name)
+        last = step == len(self.nodes) - 1
+        position = {} if at is None else {"nodePosition": {"x": at[0], "y": at[1], "mapId": map}}
+        return {
+            "nodeId": name,
+            "sequenceId": 2 * step,
+            "released": step < self.released,
+            **position,
+            "actions": [action.message() for action in self.actions] if last else [],
+        }
+
+    def _edge(self, step: int) -> dict[str, Any]:
+        start, end = self.nodes[step : step + 2]
+        return {
+            "edgeId": f"{start}_{end}",
+            "sequenceId": 2 * step + 1,
+            "released": step + 1 < self.released,
+            "startNodeId": start,
+            "endNodeId": end,
+            "actions": [],
+        }
+
+
+def action_of(id: str, told: Told, *, blocking: str) -> Action:
+    """A verb as an action of the same name."""
+    return Action(id=id, type=told.verb, values=tuple(told.values), blocking=blocking)
+
+
+def instant(actions: Sequence[Action]) -> dict[str, Any]:
+    """Instant actions as they are sent."""
+    return {"actions": [action.message() for action in actions]}

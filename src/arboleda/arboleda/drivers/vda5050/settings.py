@@ -1,0 +1,78 @@
+"""The keys of the driver in a plant file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from arboleda.kinds.declared import Device
+from arboleda.kinds.mobile import Mobile
+from arboleda.model.plant_model import Evidence, Robot
+
+NOT_IN_TOPICS = frozenset("/+#$")
+TYPES: dict[str, tuple[type, ...]] = {"loaded": (bool,), "charging": (bool,), "battery": (int, float)}
+KNOWN = "loaded: bool, charging: bool, battery: number"
+MAJOR = {"2.0": "v2", "2.1": "v2", "3.0": "v3"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Which vehicle it is, at which broker; what its map and its nodes are called, and how far it may go.
+
+    `nodes` are its names of the nodes of the grid, in their order. `base` is how many nodes ahead of the
+    vehicle are released, 0: all of them. `instant` are the verbs that it does at once, also on its way.
+    `silent_after_s` is after how long without a state it is lost.
+    """
+
+    broker: str
+    manufacturer: str
+    serial: str
+    version: Literal["2.0", "2.1", "3.0"] = "2.1"
+    interface: str = "uagv"
+    map: str = "map"
+    nodes: tuple[str, ...] = ()
+    base: int = 2
+    instant: tuple[str, ...] = ()
+    silent_after_s: float = 35.0
+
+    def __post_init__(self) -> None:
+        for name in ("manufacturer", "serial", "interface"):
+            if not getattr(self, name) or NOT_IN_TOPICS & set(getattr(self, name)):
+                raise ValueError(f"{name} is {getattr(self, name)!r}; allowed: a word without / + # $")
+        if self.base < 0:
+            raise ValueError(f"base is {self.base}; allowed: 0 (all nodes) or more")
+        if not 0.5 <= self.silent_after_s <= 3600:
+            raise ValueError(f"silent_after_s is {self.silent_after_s:g}; allowed: 0.5 to 3600")
+        if len(set(self.nodes)) < len(self.nodes):
+            raise ValueError("nodes has a name twice")
+
+    @property
+    def vehicle(self) -> str:
+        return f"{self.manufacturer}/{self.serial}"
+
+    @property
+    def topics(self) -> str:
+        """What all topics of the vehicle begin with."""
+        return f"{self.interface}/{MAJOR[self.version]}/{self.vehicle}"
+
+    def node_names(self, mobile: Mobile | None) -> tuple[str, ...]:
+        """The vehicle's name of each node of the grid."""
+        return self.nodes or tuple(str(node) for node in range(mobile.grid.size if mobile else 0))
+
+    def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
+        """What of these does not fit a device."""
+        if device.evidence is not Evidence.IDS:
+            yield (), f"{device.name} has evidence: {device.evidence.value}; a vehicle of VDA 5050 proves ids"
+        if isinstance(device, Mobile):
+            if self.nodes and len(self.nodes) != device.grid.size:
+                yield (
+                    ("nodes",),
+                    f"there are {len(self.nodes)} names for the {device.grid.size} nodes of {device.name}",
+                )
+        elif isinstance(device, Device):
+            wrong = [name for name, type in device.kind.facts.items() if type.type not in TYPES.get(name, ())]
+            if wrong:
+                yield (), f"a vehicle says nothing of {', '.join(wrong)}; it has {KNOWN}"
+        else:
+            yield (), f"{device.name} is no mobile robot and of no declared kind"

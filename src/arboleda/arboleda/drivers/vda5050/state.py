@@ -1,0 +1,125 @@
+"""What a vehicle says of itself, the same for all versions of VDA 5050."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.model.facts import Value
+
+Said = Mapping[str, Any]
+"""A message that fits the schema of its topic."""
+BROKEN = frozenset({"FATAL"})  # levels of errors with which a vehicle takes no order
+ENDS_ORDER = frozenset({"FATAL", "CRITICAL"})
+OVER = frozenset({"FINISHED", "FAILED"})
+HELD_BY_HAND = frozenset({"MANUAL", "REMOTE"})  # other stops end by themselves
+DRIVES_BY_ORDER = frozenset({"AUTOMATIC", "SEMIAUTOMATIC"})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trouble:
+    """An error as a vehicle tells it; `about` are the values that it names, by what they are."""
+
+    word: str
+    level: str
+    about: tuple[tuple[str, str], ...]
+
+    def names(self, key: str, value: str) -> bool:
+        return (key, value) in self.about
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActionState:
+    """How far an action is; `result` is what it has found."""
+
+    status: str
+    result: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class VehicleState:
+    """One state of a vehicle; `ahead` is how many nodes and edges of its order it has before it."""
+
+    header: int
+    timestamp: str
+    order: str
+    update: int
+    node: str
+    sequence: int
+    ahead: int
+    driving: bool
+    paused: bool | None
+    homed: bool
+    mode: str
+    stop: str
+    actions: Mapping[str, ActionState]
+    troubles: tuple[Trouble, ...]
+    loaded: bool | None
+    charging: bool
+    battery: float
+
+    @property
+    def hindrance(self) -> str | None:
+        """In a word, why it takes no order at all; None where it does."""
+        if self.stop in HELD_BY_HAND:
+            return f"stop_{self.stop}"
+        if self.mode not in DRIVES_BY_ORDER:
+            return f"mode_{self.mode}"
+        return next((each.word for each in self.troubles if each.level in BROKEN), None)
+
+    def is_over(self, action: str) -> bool:
+        found = self.actions.get(action)
+        return found is not None and found.status in OVER
+
+
+FACTS: dict[str, Callable[[VehicleState], Value | None]] = {
+    "loaded": lambda state: state.loaded,
+    "charging": lambda state: state.charging,
+    "battery": lambda state: state.battery,
+}
+"""The facts that a declared kind may have."""
+
+
+def read(said: Said) -> VehicleState:
+    """A state out of a message that fits the schema of its version."""
+    power = said.get("batteryState") or said.get("powerSupply") or {}
+    position = said.get("agvPosition") or said.get("mobileRobotPosition")
+    safety, loads = said["safetyState"], said.get("loads")
+    actions = [*said["actionStates"], *said.get("instantActionStates", ())]
+    return VehicleState(
+        header=said["headerId"],
+        timestamp=said["timestamp"],
+        order=said["orderId"],
+        update=said["orderUpdateId"],
+        node=said["lastNodeId"],
+        sequence=said["lastNodeSequenceId"],
+        ahead=len(said["nodeStates"]) + len(said["edgeStates"]),
+        driving=said["driving"],
+        paused=said.get("paused"),
+        homed=_homed(position, said["lastNodeId"]),
+        mode=said["operatingMode"],
+        stop=safety.get("eStop") or safety.get("activeEmergencyStop", "NONE"),
+        actions={each["actionId"]: _action(each) for each in actions},
+        troubles=tuple(map(_trouble, said["errors"])),
+        loaded=None if loads is None else len(loads) > 0,
+        charging=power.get("charging", False),
+        battery=float(power.get("batteryCharge", power.get("stateOfCharge", 0.0))),
+    )
+
+
+def _homed(position: Said | None, node: str) -> bool:
+    if position is None:
+        return node != ""
+    return bool(position.get("positionInitialized", position.get("localized", False)))
+
+
+def _action(said: Said) -> ActionState:
+    return ActionState(
+        status=said["actionStatus"], result=said.get("resultDescription") or said.get("actionResult")
+    )
+
+
+def _trouble(said: Said) -> Trouble:
+    about = tuple((each["referenceKey"], each["referenceValue"]) for each in said.get("errorReferences", ()))
+    return Trouble(word=said["errorType"], level=said["errorLevel"], about=about)

@@ -1,0 +1,1 @@
+"""A mobile robot that speaks VDA 5050."""

@@ -1,0 +1,71 @@
+"""The state of a virtual vehicle, as each version of VDA 5050 has it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .machine import Doing, VirtualAgv
+
+NODE_KEYS = ("nodeId", "sequenceId", "released")
+EDGE_KEYS = ("edgeId", "sequenceId", "released")
+
+
+def state_of(agv: VirtualAgv, faults: Collection[str], version: str) -> dict[str, Any]:
+    """The body of a state message."""
+    doing = agv.actions.values()
+    body: dict[str, Any] = {
+        "orderId": agv.course.id,
+        "orderUpdateId": agv.course.update,
+        "lastNodeId": agv.node,
+        "lastNodeSequenceId": agv.sequence,
+        "nodeStates": _part(agv.course.nodes, NODE_KEYS),
+        "edgeStates": _part(agv.course.edges, EDGE_KEYS),
+        "driving": agv.driving,
+        "paused": agv.paused,
+        "operatingMode": "MANUAL" if "manual" in faults else "AUTOMATIC",
+        "errors": [*agv.errors, *([FATAL] if "fatal" in faults else [])],
+        "loads": [{"loadId": "load"}] if agv.loaded else [],
+    }
+    stop = "MANUAL" if "e_stop" in faults else "NONE"
+    if version == "3.0":
+        return body | _of_3(agv, doing, faults, stop)
+    return body | _of_2(agv, doing, faults, stop)
+
+
+FATAL = {"errorType": "driveError", "errorLevel": "FATAL", "errorReferences": []}
+
+
+def _of_2(agv: VirtualAgv, doing: Iterable[Doing], faults: Collection[str], stop: str) -> dict[str, Any]:
+    return {
+        "actionStates": [_action(each, "resultDescription") for each in doing],
+        "batteryState": {"batteryCharge": agv.battery, "charging": agv.charging},
+        "safetyState": {"eStop": stop, "fieldViolation": False},
+        "agvPosition": {**_place(agv), "positionInitialized": "lost" not in faults},
+    }
+
+
+def _of_3(agv: VirtualAgv, doing: Iterable[Doing], faults: Collection[str], stop: str) -> dict[str, Any]:
+    instant = [each for each in doing if each.instant]
+    return {
+        "actionStates": [_action(each, "actionResult") for each in doing if not each.instant],
+        "instantActionStates": [_action(each, "actionResult") for each in instant],
+        "powerSupply": {"stateOfCharge": agv.battery, "charging": agv.charging},
+        "safetyState": {"activeEmergencyStop": stop, "fieldViolation": False},
+        "mobileRobotPosition": {**_place(agv), "localized": "lost" not in faults},
+    }
+
+
+def _place(agv: VirtualAgv) -> dict[str, Any]:
+    x, y = agv.at or (0.0, 0.0)
+    return {"x": x, "y": y, "theta": 0.0, "mapId": "map"}
+
+
+def _action(doing: Doing, result: str) -> dict[str, Any]:
+    said = {"actionId": doing.id, "actionType": doing.type, "actionStatus": doing.status}
+    return said if doing.result is None else {**said, result: doing.result}
+
+
+def _part(steps: Iterable[Mapping[str, Any]], keys: Iterable[str]) -> list[dict[str, Any]]:
+    return [{key: step[key] for key in keys} for step in steps]

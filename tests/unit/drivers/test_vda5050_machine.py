@@ -1,0 +1,297 @@
+"""The driver of VDA 5050 against a virtual vehicle: what counts as proof, and what each fault becomes."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.drivers import MotionState, NotSent, Stop, StopMode
+from arboleda.kinds.mobile import FollowPath
+from arboleda.virtual.vda5050.faults import FAULTS
+
+from .vda5050_rig import Rig
+
+WAY_S = 4.0  # three edges of 0.4 m at 0.5 m/s
+
+
+@pytest.fixture
+def rig() -> Rig:
+    rig = Rig()
+    rig.run(0.5)
+    return rig
+
+
+@pytest.mark.parametrize("version", ["2.0", "2.1", "3.0"])
+def test_a_way_is_driven_and_proven_by_its_ids(version: str) -> None:
+    rig = Rig(version)
+    rig.run(0.5)
+    rig.drive(0, 3, 6, 7)
+    rig.run(1.0)
+    assert (rig.said["cart"].accepted, rig.said["cart"].state) == ("1-1", MotionState.MOVING)
+    assert rig.said["cart"].done is None
+    rig.run(WAY_S)
+    said = rig.said["cart"]
+    assert (said.done, said.state, said.node, said.homed) == ("1-1", MotionState.STOPPED, 7, True)
+
+
+def test_the_base_goes_two_nodes_ahead_and_grows_by_updates(rig: Rig) -> None:
+    rig.drive(0, 3, 6, 7, 8)
+    rig.run(WAY_S)
+    orders = [said for topic, said in rig.told if topic == "order"]
+    assert [said["orderUpdateId"] for said in orders] == [0, 1, 2]
+    assert [[node["released"] for node in said["nodes"]] for said in orders] == [
+        [True, True, True, False, False],
+        [True, True, False],
+        [True, True],
+    ]
+    assert [said["nodes"][0]["sequenceId"] for said in orders] == [0, 4, 6]
+
+
+def test_without_a_plant_the_vehicle_stops_at_the_end_of_its_base(rig: Rig) -> None:
+    rig.drive(0, 3, 6, 7, 8)
+    rig.faults.switch("vanish", on=True)
+    rig.run(10)
+    assert (rig.agv.node, rig.agv.driving) == ("6", False)
+
+
+def test_a_base_of_0_releases_all(rig: Rig) -> None:
+    rig = Rig(base=0)
+    rig.run(0.5)
+    rig.drive(0, 3, 6, 7, 8)
+    assert all(node["released"] for node in rig.told[-1][1]["nodes"])
+
+
+def test_a_way_begins_where_the_vehicle_stands(rig: Rig) -> None:
+    rig.drive(6, 7)
+    assert [node["nodeId"] for node in rig.told[-1][1]["nodes"]] == ["0", "3", "6", "7"]
+
+
+def test_a_way_that_comes_by_its_goal_is_driven_to_its_end(rig: Rig) -> None:
+    rig.drive(0, 3, 0)
+    rig.run(0.4)
+    assert rig.said["cart"].done is None
+    rig.run(WAY_S)
+    assert rig.said["cart"].done == "1-1"
+
+
+def test_nodes_have_the_names_and_places_of_the_vehicle() -> None:
+    rig = Rig(nodes=tuple("abcdefghi"), map="hall")
+    rig.agv.node = "a"
+    rig.run(0.5)
+    rig.drive(0, 1)
+    node = rig.told[-1][1]["nodes"][1]
+    assert node["nodeId"] == "b"
+    assert node["nodePosition"] == {"x": pytest.approx(0.4), "y": 0.0, "mapId": "hall"}
+
+
+def test_a_verb_is_an_action_at_the_node_where_the_vehicle_stands(rig: Rig) -> None:
+    rig.do("pick", height_mm=400)
+    assert rig.told[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [
+        {"key": "height_mm", "value": 400}
+    ]
+    rig.run(2)
+    said = rig.said["forks"]
+    assert (said.done, said.fact("loaded")) == ("1-2", True)
+
+
+def test_an_instant_verb_is_done_on_the_way() -> None:
+    rig = Rig(instant=("drop",))
+    rig.run(0.5)
+    rig.drive(0, 3, 6)
+    rig.do("drop")
+    rig.run(1.3)
+    assert (rig.said["forks"].done, rig.said["cart"].done) == ("1-2", None)
+
+
+def test_a_question_is_answered_by_the_result_of_its_action(rig: Rig) -> None:
+    rig.do("look")
+    rig.run(0.1)
+    action = next(iter(rig.agv.actions.values()))
+    action.result = "loaded"
+    rig.run(2)
+    assert (rig.said["forks"].answered, rig.said["forks"].answer) == ("1-2", "loaded")
+
+
+def test_nothing_is_said_of_its_motion_until_it_has_named_what_it_was_told(rig: Rig) -> None:
+    rig.faults.switch("hush", on=True)
+    rig.drive(0, 3)
+    rig.run(2)
+    assert rig.said["cart"].state is None
+    assert rig.said["cart"].accepted is None
+
+
+def test_a_halt_counts_once_the_cancel_is_over(rig: Rig) -> None:
+    rig.drive(0, 3, 6)
+    rig.run(0.5)
+    rig.faults.switch("deaf", on=True)
+    rig.stop(StopMode.HALT)
+    rig.run(WAY_S)
+    assert rig.said["cart"].state is not MotionState.STOPPED
+    rig.faults.switch("deaf", on=False)
+    rig.stop(StopMode.HALT)
+    rig.run(0.5)
+    assert (rig.said["cart"].state, rig.said["cart"].done) == (None, None)  # the first one never ended
+
+
+def test_a_halted_vehicle_stands_short_of_its_goal(rig: Rig) -> None:
+    rig.drive(0, 3, 6)
+    rig.run(0.5)
+    rig.stop(StopMode.HALT)
+    rig.run(0.5)
+    assert (rig.said["cart"].state, rig.said["cart"].done) == (MotionState.STOPPED, None)
+    rig.drive(0, 3, id="1-3")
+    rig.run(WAY_S)
+    assert rig.said["cart"].done == "1-3"
+
+
+def test_a_latch_pauses_and_cancels_and_its_clear_ends_the_pause(rig: Rig) -> None:
+    rig.drive(0, 3, 6)
+    rig.run(0.5)
+    rig.stop(StopMode.LATCH)
+    rig.run(0.5)
+    assert rig.said["cart"].state is MotionState.STOP_LATCHED
+    rig.stop(StopMode.CLEAR)
+    rig.run(0.5)
+    assert rig.said["cart"].state is MotionState.STOPPED
+
+
+def test_a_second_order_while_driving_is_not_sent(rig: Rig) -> None:
+    rig.drive(0, 3)
+    with pytest.raises(NotSent, match="still at its order"):
+        rig.drive(0, 1, id="1-2")
+
+
+def test_an_order_of_somebody_else_is_left_alone_and_named(rig: Rig) -> None:
+    rig.agv.course.id, rig.agv.course.steps = "other", [{"nodeId": "9", "sequenceId": 4, "released": False}]
+    rig.run(1.5)
+    assert rig.said["cart"].state is MotionState.MOVING
+    with pytest.raises(NotSent, match="at the order other of somebody else"):
+        rig.drive(0, 3)
+
+
+def test_what_is_left_of_an_order_is_cancelled_when_the_vehicle_is_back(rig: Rig) -> None:
+    rig.drive(0, 3, 6, 7, 8)
+    rig.run(0.5)
+    rig.faults.switch("vanish", on=True)
+    rig.run(0.5)
+    assert "the connection of arboleda/agv1 broke" in str(rig.said["cart"].lost)
+    rig.faults.switch("vanish", on=False)
+    rig.run(1)
+    assert [each["actionType"] for each in rig.told[-1][1]["actions"]] == ["cancelOrder"]
+    assert (rig.said["cart"].state, rig.agv.course.steps) == (MotionState.STOPPED, [])
+
+
+def test_no_vehicle_of_that_name_is_told_with_those_that_there_are() -> None:
+    rig = Rig()
+    rig.faults.switch("vanish", on=True)
+    rig.vehicle.neighbour("arboleda/agv2 (v2)")
+    rig.run(1)
+    assert "no vehicle arboleda/agv1 has said" in str(rig.said["cart"].lost)
+    assert "those that have: arboleda/agv2 (v2)" in str(rig.said["cart"].lost)
+    with pytest.raises(NotSent, match="no vehicle"):
+        rig.drive(0, 3)
+
+
+def test_a_boot_is_a_new_boot_id_and_forgets_the_order(rig: Rig) -> None:
+    rig.drive(0, 3, 6)
+    rig.run(0.5)
+    before = rig.said["cart"].boot_id
+    rig.faults.switch("power_cycle", on=True)
+    rig.run(0.5)
+    assert rig.said["cart"].state is MotionState.NO_LINK
+    rig.faults.switch("power_cycle", on=False)
+    rig.run(0.5)
+    said = rig.said["cart"]
+    assert (said.state, said.done, said.accepted) == (MotionState.STOPPED, None, None)
+    assert before is not None
+
+
+# What becomes of a way with a fault half a second after it began: a field of the report, its value.
+BECOMES = {
+    "vanish": ("state", MotionState.NO_LINK),
+    "power_cycle": ("state", MotionState.NO_LINK),
+    "hush": ("done", None),
+    "frozen": ("done", None),
+    "late": ("done", "1-1"),
+    "double": ("done", "1-1"),
+    "garbled": ("done", None),
+    "no_route": ("done", "1-1"),  # it has its order already
+    "no_update": ("failure", "orderUpdateError"),
+    "forget": ("failure", "order_lost"),
+    "short": ("node", 6),
+    "lie": ("failure", "ended_at_its_base"),
+    "obstacle": ("state", MotionState.MOVING),
+    "e_stop": ("failure", "stop_MANUAL"),
+    "manual": ("failure", "mode_MANUAL"),
+    "fatal": ("failure", "driveError"),
+    "deaf": ("done", "1-1"),
+    "action_fails": ("done", "1-1"),
+    "action_stalls": ("done", "1-1"),
+    "lost": ("homed", False),
+    "slow": ("state", MotionState.MOVING),
+}
+
+
+@pytest.mark.parametrize("fault", BECOMES)
+def test_what_becomes_of_a_way(rig: Rig, fault: str) -> None:
+    rig.drive(0, 3, 6, 7)
+    rig.run(0.5)
+    rig.faults.switch(fault, on=True)
+    rig.run(WAY_S)
+    name, value = BECOMES[fault]
+    assert getattr(rig.said["cart"], name) == value
+
+
+def test_a_vehicle_that_lies_says_done_at_a_node_that_is_not_the_goal() -> None:
+    rig = Rig(base=0)
+    rig.run(0.5)
+    rig.faults.switch("lie", on=True)
+    rig.drive(0, 3, 6, 7)
+    rig.run(1)
+    assert (rig.said["cart"].done, rig.said["cart"].node) == ("1-1", 0)  # so the plant sees it
+
+
+def test_every_fault_has_a_row_but_the_one_that_the_connection_refuses() -> None:
+    assert {*FAULTS} - {*BECOMES} == {"wrong_serial"}
+
+
+def test_an_order_that_is_refused_is_rejected_with_the_vehicle_s_word(rig: Rig) -> None:
+    rig.faults.switch("no_route", on=True)
+    rig.drive(0, 3)
+    rig.run(0.5)
+    assert (rig.said["cart"].rejected, rig.said["cart"].refusal) == ("1-1", "noRouteError")
+    assert rig.said["cart"].state is MotionState.STOPPED
+
+
+def test_an_action_that_fails_is_failed_with_the_vehicle_s_word(rig: Rig) -> None:
+    rig.faults.switch("action_fails", on=True)
+    rig.do("pick", height_mm=0)
+    rig.run(2)
+    assert (rig.said["forks"].failed, rig.said["forks"].failure) == ("1-2", "actionError")
+
+
+def test_a_vehicle_that_is_silent_for_too_long_is_lost() -> None:
+    rig = Rig(silent_after_s=2.0)
+    rig.run(0.5)
+    rig.faults.switch("hush", on=True)
+    rig.run(1.5)
+    assert rig.said["cart"].state is MotionState.STOPPED
+    rig.run(1)
+    assert "has told no state for 2 s" in str(rig.said["cart"].lost)
+    rig.faults.switch("hush", on=False)
+    rig.run(1)
+    assert rig.said["cart"].state is MotionState.STOPPED
+
+
+def test_what_was_not_sent_is_not_open(rig: Rig) -> None:
+    command = FollowPath(id="1-1", robot="cart", nodes=(0, 3))
+    rig.vehicle.command(rig.now, command)
+    rig.vehicle.unsent(command)
+    rig.drive(0, 3, id="1-2")
+    rig.run(WAY_S)
+    assert rig.said["cart"].done == "1-2"
+
+
+def test_a_stop_without_a_link_is_not_sent() -> None:
+    rig = Rig()
+    with pytest.raises(NotSent):
+        rig.vehicle.command(0.0, Stop(id="", robot="cart", mode=StopMode.HALT))
