@@ -136,3 +136,10 @@ def test_what_was_seen_of_a_variable_is_kept() -> None:
     assert again.watch("x") == 2
     again.unset("x")
     assert again.watch("x") == 0
+
+
+def test_a_timeout_leaves_a_child_that_was_skipped_when_the_time_came() -> None:
+    """The page says that the original never does."""
+    tree = '<Timeout msec="100"><T plan="KRRRSF"/></Timeout>'
+    said = ticks(f'<BehaviorTree ID="Main">{tree}</BehaviorTree>', 3)
+    assert said == ["K:RI:0", "R:RR:0", "F:II:0"]
