@@ -46,11 +46,6 @@ def take_over(server: Server, plant: str) -> None:
         db.execute(f'UPDATE "plant_{plant}".leader SET epoch = epoch + 1, host = %s, process = 7', ("other",))
 
 
-def end_lease(server: Server, plant: str) -> None:
-    with server.connection() as db:
-        db.execute(f"UPDATE \"plant_{plant}\".leader SET seen = now() - interval '1 minute'")
-
-
 @pytest.mark.parametrize(
     "write",
     [
@@ -271,6 +266,20 @@ def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str,
     with leading(database, plant) as third:
         assert third.going == ()
     others.close()
+
+
+def test_what_was_left_at_work_waits_for_a_person_where_the_next_leader_comes_late(
+    postgres: Server, database: str, plant: str
+) -> None:
+    others = Leadership(database, plant)
+    with leading(database, plant) as first:
+        others.ask_for_handover()
+        first.hand_over(["sis_a"])
+    others.close()
+    with postgres.connection() as db:
+        db.execute(f"UPDATE \"plant_{plant}\".leader SET wanted = now() - interval '1 minute'")
+    with leading(database, plant) as late:
+        assert late.going == ()
 
 
 def test_a_server_that_is_too_old_is_one_sentence(

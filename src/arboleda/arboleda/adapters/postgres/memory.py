@@ -26,7 +26,9 @@ AGAIN_S = 1.0  # for how long a write is tried again where the server is away, a
 PAUSE_S = 0.1
 LEAD = (
     "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
-    " url = '', wanted = NULL"
+    " url = '', wanted = NULL,"
+    # what was left at work goes on by itself only where somebody has just asked for the change
+    " going = CASE WHEN wanted > clock_timestamp() - %s * interval '1 second' THEN going ELSE '[]' END"
     " WHERE seen IS NULL OR seen < clock_timestamp() - %s * interval '1 second' RETURNING epoch, going"
 )
 RENEW = (
@@ -85,7 +87,8 @@ class PostgresMemory(PlantMemory):
         until, first = clock.seconds() + LEASE_S + RENEW_S, self._last_seen()
         while True:
             asked_at = clock.seconds()
-            row = self._asked(LEAD, epoch, plain(socket.gethostname()), os.getpid(), LEASE_S)
+            me = plain(socket.gethostname()), os.getpid()
+            row = self._asked(LEAD, epoch, *me, WANTED_S, LEASE_S)
             if row is not None:
                 self._epoch, self._leads_until = int(row[0]), asked_at + LEASE_S
                 self.going = tuple(json.loads(row[1]))
