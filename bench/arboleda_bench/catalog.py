@@ -24,6 +24,7 @@ NAMES = (
     "bridge",
     "step",
     "kept",
+    "modbus_driver",
     "simulate",
     "dobot",
 )

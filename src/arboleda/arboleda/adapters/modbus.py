@@ -83,11 +83,13 @@ class Line:
         self.open()
         read: Any = getattr(self._client, READS[block.table])
         answer = read(block.address, count=block.length, device_id=unit)
-        _check(answer, f"to show {block.table} {block.address}")
+        _check(answer, f"to show {block.table} {block.address}", CODES[block.table])
         values = answer.bits if block.table in ("coil", "discrete") else answer.registers
-        if len(values) < block.length:
-            how_many = f"{len(values)} values, not {block.length}"
-            raise ConnectionError(f"{self._settings.peer} has answered with {how_many}")
+        whole = -(-block.length // 8) * 8 if block.table in ("coil", "discrete") else block.length
+        if len(values) != whole:
+            raise ConnectionError(
+                f"{self._settings.peer} has answered with {len(values)} values, not {whole}"
+            )
         return [int(value) for value in values[: block.length]]
 
     def write(self, unit: int, put: Put) -> None:
@@ -107,7 +109,10 @@ class Line:
             if len(values) == 1
             else many(put.address, values, device_id=unit)
         )
-        _check(answer, f"to take {put.table} {put.address}")
+        code = WRITES[put.table, len(values) == 1]
+        _check(answer, f"to take {put.table} {put.address}", code)
+        if answer.address != put.address:
+            raise ConnectionError(f"{self._settings.peer} has answered to another write")
 
 
 READS = {
@@ -116,6 +121,11 @@ READS = {
     "holding": "read_holding_registers",
     "input": "read_input_registers",
 }
+
+
+CODES = {"coil": 1, "discrete": 2, "holding": 3, "input": 4}
+WRITES = {("coil", True): 5, ("holding", True): 6, ("coil", False): 15, ("holding", False): 16}
+"""The function codes of the standard; True: of one value."""
 
 
 class Lines:
@@ -161,7 +171,7 @@ class Modbus:
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
         if len(devices) != 1:
             raise DriverError("a mapping is for one device")
-        _need_library()
+        need_library()
         self._name, self._hear, self._clock = devices[0].name, hear, clock
         self._device = ModbusDevice(devices[0], self._settings)
         self._line = LINES.take(self._settings)
@@ -261,12 +271,21 @@ def _client(settings: Settings) -> ModbusBaseSyncClient:
     )
 
 
-def _check(answer: Any, what: str) -> None:
+def _check(answer: Any, what: str, code: int) -> None:
+    """Refused for an exception code; ConnectionError for an answer to another request than `code`.
+
+    pymodbus takes such an answer as well.
+    """
+    if answer.function_code & 0x7F != code:
+        raise ConnectionError(
+            f"the PLC was asked {what}, and has answered with function {answer.function_code}"
+        )
     if answer.isError():
         raise Refused(what, answer.exception_code)
 
 
-def _need_library() -> None:
+def need_library() -> None:
+    """DriverError, which says what to install, where pymodbus is missing; else it is told to be quiet."""
     try:
         import pymodbus
         import serial

@@ -78,7 +78,8 @@ class ModbusServer:
         self._server = self._made()
         if not await self._server.listen():
             host, port, serial = self._where
-            raise OSError(f"nothing can listen on {serial or f'{host}:{port}'}; is something there already?")
+            where = serial or f"{host}:{port}"
+            raise OSError(f"nothing can listen on {where}; name another port, or 0 for any that is free")
         listening = getattr(self._server.transport, "sockets", None)
         self._started.set_result(listening[0].getsockname()[1] if listening else 0)
         await self._server.serving

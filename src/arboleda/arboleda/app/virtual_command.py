@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from arboleda.virtual.dobot import command as dobot
+from arboleda.virtual.modbus import command as modbus
 from arboleda.virtual.vda5050 import command as vda5050
 
 cli = typer.Typer(
@@ -14,3 +15,4 @@ cli = typer.Typer(
 )
 cli.command("dobot", help=dobot.HELP)(dobot.run)
 cli.command("vda5050", help=vda5050.HELP)(vda5050.run)
+cli.command("modbus", help=modbus.HELP)(modbus.run)

@@ -1,0 +1,1 @@
+"""The belt behind Modbus TCP or RTU: `arboleda virtual modbus`."""

@@ -1,0 +1,56 @@
+"""The belt of the example behind its virtual PLC, as it is typed: at work, jammed, and gone in the middle."""
+
+from __future__ import annotations
+
+import re
+import sys
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
+
+EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor"
+COMMAND = "from arboleda.app.cli import main; main()"
+
+
+@pytest.fixture
+def plc(start: Callable[..., Any], tmp_path: Path) -> tuple[Any, str, str]:
+    """A virtual PLC, the plant file that reaches it, and where its faults are."""
+    process = start(sys.executable, "-c", COMMAND, "virtual", "modbus", "--port", "0", "--fault-port", "0")
+    process.wait_for("faults are switched on ")
+    port = re.search(r"Modbus on \S+:(\d+)", process.output)
+    faults = re.search(r"switched on (\S+)", process.output)
+    assert port and faults
+    for name in ("plant.yaml", "recipes.py"):
+        text = (EXAMPLE / name).read_text("utf-8")
+        (tmp_path / name).write_text(text.replace("port: 5020", f"port: {port[1]}"), "utf-8")
+    return process, str(tmp_path / "plant.yaml"), faults[1]
+
+
+def test_a_part_is_carried_then_the_belt_jams_then_the_plc_is_gone(
+    plc: tuple[Any, str, str], arboleda: Callable[..., Any]
+) -> None:
+    process, plant, faults = plc
+    up = arboleda("up", "line pass 400 #first", "--plant", plant, "--boards", "real", "--no-ros")
+    up.wait_for("done      line 400")
+    urllib.request.urlopen(urllib.request.Request(f"{faults}/gives_up", method="PUT"), timeout=10).close()
+    arboleda("submit", "line pass 200 #second", "--plant", plant).wait()
+    up.wait_for("gave up (jam) while doing load")
+    urllib.request.urlopen(urllib.request.Request(f"{faults}/gives_up", method="DELETE"), timeout=10).close()
+    arboleda("submit", "line pass 100 #third", "--plant", plant).wait()
+    up.wait_for("belt advance exit 100")
+    process.kill()
+    up.wait_for("the link was lost while doing")
+    assert up.interrupt() == 0, up.output
+    assert "Traceback" not in up.output + process.output
+
+
+def test_a_port_that_is_taken_is_named(plc: tuple[Any, str, str], start: Callable[..., Any]) -> None:
+    port = plc[0].output.split("Modbus on 127.0.0.1:")[1].split()[0]
+    second = start(sys.executable, "-c", COMMAND, "virtual", "modbus", "--port", port)
+    assert second.wait() == 1
+    assert f"127.0.0.1:{port}" in second.output and "Traceback" not in second.output
