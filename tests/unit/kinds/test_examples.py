@@ -39,9 +39,15 @@ from .lab import Bench
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PAGES = EXAMPLES.parent / "docs/examples"
 FOLDERS = sorted(file.parent.name for file in EXAMPLES.glob("*/plant.yaml"))
-OF_HOW_TOS = ("own_board", "own_driver", "own_tree", "plc_conveyor")  # their pages are in docs/how-to
+OF_HOW_TOS = (
+    "mixed",
+    "own_board",
+    "own_driver",
+    "own_tree",
+    "plc_conveyor",
+)  # their pages are in docs/how-to
 SHOWN = [folder for folder in FOLDERS if folder not in OF_HOW_TOS]
-WITH_ARMS = ("assembly", "kitting", "machine_tending", "own_tree")
+WITH_ARMS = ("assembly", "kitting", "machine_tending", "mixed", "own_tree")
 ENDED = (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED)
 PUBLIC = {each.__name__: each.__all__ for each in (arboleda.drivers, arboleda.kinds, arboleda.recipes)}
 SAME_M, APART_M = 0.001, 0.05
@@ -89,6 +95,14 @@ CASES = (
     tending(task=MILL, answers={"camera": "bad"}, ends_with=REJECTED),
     tending(task=MILL, answers={"camera": "unsure"}, ends_with=SOLD),
     tending(task=MILL, answers={"camera": "unsure", "operator": "bad"}, ends_with=REJECTED),
+    Case(folder="mixed", task="line deliver slot_1 200", ends_with=("belt gate", "belt scan")),
+    Case(folder="mixed", task="line deliver slot_2 400", answers={"belt": "bad"}, ends_with=("belt scan",)),
+    Case(
+        folder="mixed",
+        task="line deliver slot_2 100",
+        answers={"belt": "bad", "operator": "no"},
+        why="the part is bad",
+    ),
     Case(folder="own_board", task="bench fill 5", ends_with=("valve dose", "valve close")),
     Case(folder="own_board", task="bench fill 10", answers={"valve": "low"}, why="the tank is low"),
     Case(folder="own_driver", task="shop form 2", ends_with=("press open", "press measure")),

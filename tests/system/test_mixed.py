@@ -1,0 +1,48 @@
+"""The example of several makers, as it is typed: its virtual controllers and its plant with one command."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus")]
+
+EXAMPLE = Path(__file__).parents[2] / "examples/mixed"
+
+
+def free_ports(count: int) -> list[int]:
+    with_all = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    found = [each.getsockname()[1] for each in with_all]
+    for each in with_all:
+        each.close()
+    return found
+
+
+def test_a_part_is_delivered_by_one_command(tmp_path: Path, start: Callable[..., Any]) -> None:
+    dobot, feedback, plc = map(str, free_ports(3))
+    texts = {file.name: file.read_text("utf-8") for file in EXAMPLE.iterdir() if file.is_file()}
+    other = {
+        "plant.yaml": {
+            "{host: 127.0.0.1}": f"{{host: 127.0.0.1, port: {dobot}, feedback_port: {feedback}}}",
+            "port: 5020": f"port: {plc}",
+        },
+        "start.py": {
+            '"--enabled"': f'"--enabled", "--port", "{dobot}", "--feedback-port", "{feedback}"',
+            '["modbus"]': f'["modbus", "--port", "{plc}"]',
+        },
+    }
+    for name, text in texts.items():
+        for old, new in other.get(name, {}).items():
+            assert old in text
+            text = text.replace(old, new)
+        (tmp_path / name).write_text(text, "utf-8")
+    state = ("--state", str(tmp_path / "state"))
+    plant = start(sys.executable, str(tmp_path / "start.py"), "line deliver slot_1 200", *state)
+    plant.wait_for("done      line slot_1 200", patience_s=90)
+    assert plant.interrupt() == 0, plant.output
+    assert "Traceback" not in plant.output
