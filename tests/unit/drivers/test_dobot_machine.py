@@ -155,6 +155,20 @@ def test_getting_ready_powers_and_enables_the_arm() -> None:
     ]
 
 
+@pytest.mark.parametrize("fault", [None, "collision", "alarm"])
+def test_getting_ready_shows_as_unready_and_then_ready_whatever_was_missing(fault: str | None) -> None:
+    joined = moving(*([fault] if fault else []))
+    joined.wait(3.0)
+    if fault:
+        joined.faults.switch(fault, on=False)
+    joined.reports.clear()
+    joined.ask(READY)
+    joined.wait(3.0, until=lambda report: report.done == READY.id)
+    seen = [(report.homed, report.done == READY.id) for report in joined.reports]
+    assert seen[0] == (False, False) and seen[-1] == (True, True)
+    assert all(report.state is not MotionState.FAULT for report in joined.reports)
+
+
 def test_an_arm_whose_button_stays_pressed_does_not_get_ready() -> None:
     joined = up("stop_button")
     joined.ask(READY)

@@ -406,12 +406,16 @@ class Machine:
         assert self._feedback is not None and self._boot is not None
         self._news, self._reported_at = False, now
         state = self._state(self._feedback)
+        # What proves that an arm was made ready is that it was not, and then is.
+        is_ready = STATES[self._feedback.mode] is not MotionState.NOT_HOMED and not isinstance(
+            self._work, Readying
+        )
         said = Report(
             at=now,
             robot=self._arm.name,
             boot_id=self._boot[0],
             state=state,
-            homed=STATES[self._feedback.mode] is not MotionState.NOT_HOMED,
+            homed=is_ready,
             q=_radians(self._feedback),
             effector=self._effector,
         )
