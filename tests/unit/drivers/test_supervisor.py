@@ -134,6 +134,14 @@ def test_a_driver_that_knows_says_why_there_is_no_link(driven: Driven) -> None:
     assert driven.step(Said(at=driven.now, life=driven.life, report=report)) == []  # that is no news
 
 
+def test_another_reason_for_a_link_that_is_still_lost_is_told_once(driven: Driven) -> None:
+    told: list[str] = []
+    for why in ("nobody is there", "nobody is there", "it refuses us", "it refuses us"):
+        said = Said(at=driven.now, life=driven.life, report=lost("station", at=driven.now, why=why))
+        told += [str(report.lost) for report in reports(driven.step(said))]
+    assert told == ["nobody is there", "it refuses us"]
+
+
 def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None:
     driven.asks(GO)
     (undelivered,) = driven.step(Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="cut")))

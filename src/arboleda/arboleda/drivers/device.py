@@ -73,6 +73,10 @@ class DrivenDevice:
         """There is no link any more, and whatever was open is nobody's; nothing is sent again."""
         return [self.no_link(at, why)] if self.up else []
 
+    def say_lost(self, at: float, why: Sentence) -> list[Report]:
+        """The driver says that there is no link; where there was none before, only another reason is news."""
+        return [self.no_link(at, why)] if self.up or why != self._why else []
+
     def no_link(self, at: float, why: Sentence) -> Report:
         """The report that there is none, whether that is new or not."""
         self.up, self.stale_at, self._work, self._why = False, math.inf, None, why

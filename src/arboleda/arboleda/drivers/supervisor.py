@@ -192,7 +192,7 @@ class SupervisedDriver:
         if self._stuck or device.is_late(report, event.at):
             return []
         if report.state is MotionState.NO_LINK:
-            return [*device.lose(report.at, report.lost or UNSAID(driver=self.name))]
+            return [*device.say_lost(report.at, report.lost or UNSAID(driver=self.name))]
         heard, stop = device.hear(report)
         return [heard] if stop is None else [heard, self._give(event.at, device, stop)]
 
