@@ -21,8 +21,8 @@ from ..postgres import Server
 pytestmark = pytest.mark.system
 
 TASK = {"text": "sis_a 0B 7 #lot-1"}
-PATIENCE_S = 30.0
-TAKEN_OVER_S = 5.0
+PATIENCE_S = 75.0
+TAKEN_OVER_S = 20.0  # 3 s on a machine that has time; how long it takes is measured, not tested
 
 
 class Hosts:
@@ -147,7 +147,7 @@ def test_a_planned_handover_fails_no_task_and_needs_nobody_to_resume(
     assert asked.wait() == 0, asked.output
     assert f"process {hosts.plants['b'].pid} on" in asked.output
     gap_s = float(re.search(r"for ([\d.]+) s of them nobody did", asked.output)[1])
-    assert gap_s < 2.0  # a second on a machine with nothing else to do
+    assert gap_s < TAKEN_OVER_S
     assert hosts.plants["a"].ended()[0] == 0
     hosts.done_with("b")
     alone = arboleda("handover", "--state", str(tmp_path / "b"))
