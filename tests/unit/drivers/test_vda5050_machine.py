@@ -154,6 +154,13 @@ def test_a_latch_pauses_and_cancels_and_its_clear_ends_the_pause(rig: Rig) -> No
     assert rig.said["cart"].state is MotionState.STOPPED
 
 
+def test_instant_actions_of_2_0_are_under_both_keys_that_its_vehicles_read() -> None:
+    rig = Rig("2.0")
+    rig.run(0.5)
+    rig.stop(StopMode.CLEAR)
+    assert rig.told[-1][1]["instantActions"] == rig.told[-1][1]["actions"]
+
+
 def test_a_second_order_while_driving_is_not_sent(rig: Rig) -> None:
     rig.drive(0, 3)
     with pytest.raises(NotSent, match="still at its order"):

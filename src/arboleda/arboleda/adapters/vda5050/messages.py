@@ -20,6 +20,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
 LARGEST = 1_000_000  # bytes of a message
+DIGITS = 20  # of a whole number
 FULL = {"2.0": "2.0.0", "2.1": "2.1.0", "3.0": "3.0.0"}
 
 
@@ -38,7 +39,7 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
     if len(payload) > LARGEST:
         raise Unfit(f"it has {len(payload)} bytes")
     try:
-        said = json.loads(payload, parse_constant=_refuse, parse_float=_finite)
+        said = json.loads(payload, parse_constant=_refuse, parse_float=_finite, parse_int=_whole)
     except (ValueError, RecursionError) as error:
         raise Unfit(plain(f"it is no JSON: {error}")) from error
     _check(version, topic, said)
@@ -82,6 +83,12 @@ def _checks(version: str) -> dict[str, Callable[[object], object]]:
 
 def _refuse(word: str) -> float:
     raise ValueError(f"{word} is no number")
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > DIGITS:
+        raise ValueError("a number is too large")
+    return int(digits)
 
 
 def _finite(digits: str) -> float:

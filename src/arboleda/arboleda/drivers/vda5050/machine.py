@@ -124,7 +124,7 @@ class Vehicle:
             return self._begin(command, (self._place(command),), verb=command)
         action = action_of(self._new_action(), command, blocking="NONE")
         self._instants[action.id] = command
-        return [Publish(topic="instantActions", body=instant([action]))]
+        return [Publish(topic="instantActions", body=instant([action], self._settings.version))]
 
     @property
     def _at(self) -> str:
@@ -163,7 +163,7 @@ class Vehicle:
             self._stops.add(action.id)
             if action.type == "cancelOrder" and self._order is not None:
                 self._order.cancels.append(action.id)
-        return [Publish(topic="instantActions", body=instant(actions))]
+        return [Publish(topic="instantActions", body=instant(actions, self._settings.version))]
 
     def _new_action(self) -> str:
         self._count += 1

@@ -102,6 +102,7 @@ def action_of(id: str, told: Told, *, blocking: str) -> Action:
     return Action(id=id, type=told.verb, values=tuple(told.values), blocking=blocking)
 
 
-def instant(actions: Sequence[Action]) -> dict[str, Any]:
-    """Instant actions as they are sent."""
-    return {"actions": [action.message() for action in actions]}
+def instant(actions: Sequence[Action], version: str) -> dict[str, Any]:
+    """Instant actions as they are sent; vehicles of 2.0 read the one key or the other."""
+    messages = [action.message() for action in actions]
+    return {"actions": messages, **({"instantActions": messages} if version == "2.0" else {})}
