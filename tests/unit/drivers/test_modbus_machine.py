@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -124,3 +125,13 @@ def test_what_says_that_it_is_done_is_read_before_the_facts(machine: ModbusDevic
 def test_writes_keep_their_order() -> None:
     first, second = Put(table="holding", address=5, values=(1,)), Put(table="holding", address=4, values=(2,))
     assert joined([first, second]) == (first, second)
+
+
+def test_without_numbers_facts_and_state_are_all_that_is_said(belt: Device) -> None:
+    assert belt.driver is not None and isinstance(belt.driver.settings, Settings)
+    plain = ModbusDevice(belt, replace(belt.driver.settings, sequence=None))
+    plain.begin(shown())
+    assert plain.order(told(belt, "load")) == (Put(table="holding", address=0, values=(1,)),)
+    report = plain.report(5.0, shown(i2=1, i3=1, i4=1, i10=1))
+    assert (report.state, report.fact("part_at")) == (MotionState.MOVING, "entry")
+    assert (report.accepted, report.done, report.rejected, report.failed) == (None, None, None, None)
