@@ -30,7 +30,7 @@ setup(
     entry_points={
         "console_scripts": ["arboleda = arboleda.app.command:main"],
         "arboleda.drivers": [
-            "dobot = arboleda.drivers.dobot.adapter:Dobot",
+            "dobot = arboleda.adapters.dobot:Dobot",
             "modbus = arboleda.adapters.modbus:Modbus",
             "vda5050 = arboleda.adapters.vda5050.driver:Vda5050",
         ],

@@ -1,5 +1,5 @@
-"""The driver `dobot`: arms of Dobot's CR series at a controller of version 4, over its TCP/IP interface.
+"""The driver `dobot` without its sockets: arms of Dobot's CR series at a controller V4, over TCP/IP.
 
-`frames` and `replies` are what is on the wire, `machine` is what the driver makes of it, `adapter` has the
-sockets.
+`frames.py` and `replies.py` are what is on the wire, `machine.py` what the driver makes of it, `settings.py`
+has the keys of the plant file.
 """

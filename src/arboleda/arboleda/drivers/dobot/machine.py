@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from arboleda.drivers.port import lost
-from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.kinds.arm import Arm, MoveJoints, SetEffector
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
@@ -116,8 +116,11 @@ class Pending:
 class Machine:
     """One arm behind one controller. `step` takes what happened, and says what to do and to report."""
 
-    def __init__(self, arm: Robot, settings: Settings) -> None:
-        self._arm = arm
+    def __init__(self, devices: Sequence[Robot], settings: Settings) -> None:
+        """ValueError where that is anything but one arm of six joints."""
+        if len(devices) != 1 or not isinstance(devices[0], Arm) or len(devices[0].joints) != 6:
+            raise ValueError("a Dobot of the CR series is one arm of six joints")
+        self._arm = devices[0]
         self._settings = settings
         self._out: list[Message] = []
         self._open = False

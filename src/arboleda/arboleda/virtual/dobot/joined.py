@@ -32,7 +32,7 @@ class Joined:
 
     def __init__(self, arm: Robot, dobot: VirtualDobot, hear: Callable[[Report], None], now: float) -> None:
         self.dobot = dobot
-        self.driver = Machine(arm, Settings(host="dobot"))
+        self.driver = Machine([arm], Settings(host="dobot"))
         self.now = now
         self.told: list[str] = []  # lines of the dashboard
         self._hear = hear

@@ -1,4 +1,4 @@
-"""The driver `dobot` itself: two sockets and a thread around the machine."""
+"""The driver `dobot`: two sockets and a thread around its machine."""
 
 from __future__ import annotations
 
@@ -8,14 +8,25 @@ import threading
 from collections.abc import Sequence
 from contextlib import suppress
 
+from arboleda.drivers.dobot.machine import (
+    Answered,
+    Asked,
+    Close,
+    Closed,
+    Event,
+    Fed,
+    Machine,
+    Message,
+    Open,
+    Opened,
+    Say,
+    Unsent,
+)
+from arboleda.drivers.dobot.settings import Settings
 from arboleda.drivers.port import Clock, Hear, NotSent, driver
-from arboleda.kinds.arm import Arm
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-
-from .machine import Answered, Asked, Close, Closed, Event, Fed, Machine, Message, Open, Opened, Say, Unsent
-from .settings import Settings
 
 CONNECT_S = 0.5
 AT_ONCE = 65536  # bytes
@@ -36,10 +47,8 @@ class Dobot:
         self._thread: threading.Thread | None = None
 
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
-        if len(devices) != 1 or not isinstance(devices[0], Arm) or len(devices[0].joints) != 6:
-            raise ValueError("a Dobot of the CR series is one arm of six joints")
         self._hear, self._clock = hear, clock
-        self._machine = Machine(devices[0], self._settings)
+        self._machine = Machine(devices, self._settings)
         self._selector.register(self._woken, selectors.EVENT_READ)
         self._thread = threading.Thread(target=self._run, name=f"dobot {devices[0].name}", daemon=True)
         self._thread.start()
