@@ -18,7 +18,7 @@ from arboleda.recipes.storage_cell import StorageCell
 from . import settings
 from .document import Document, Place, choice, nearest, shown
 from .shared import SECTION as SHARED
-from .used import LONGEST, Spot, Used, said
+from .used import LONGEST, Spot, Used, refused, said
 
 KEY, SHORT = "driver", "link"
 GROUP = "arboleda.drivers"
@@ -161,10 +161,10 @@ def _settings(document: Document, place: Place, spec: DriverSpec, used: Used) ->
     try:
         read = settings.read(document, place, fits, spec.settings) if has else spec.settings(**dict(fits()))
     except settings.Unfit as unfit:
-        document.problem(unfit.place, plain(said(unfit.error), LONGEST))
+        document.problem(unfit.place, plain(refused(unfit.error), LONGEST))
         return FAULTY
     except Exception as error:  # noqa: BLE001 - it is user code: whatever it raises is told
-        document.problem(place, plain(said(error), LONGEST))
+        document.problem(place, plain(refused(error), LONGEST))
         return FAULTY
     return FAULTY if read is None else read
 

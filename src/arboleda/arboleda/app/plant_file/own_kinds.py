@@ -23,7 +23,7 @@ from .robot_kind import RobotKind
 from .settings import TYPES, keys
 from .shapes import DeviceShape
 from .shared import SECTION
-from .used import LONGEST, KindInPython, Spot, Used, said
+from .used import LONGEST, KindInPython, Spot, Used, refused, said
 
 GROUP = "arboleda.kinds"
 
@@ -165,7 +165,7 @@ def _settings(document: Document, place: Place, kind: WrittenKind, shape: Device
     try:
         return kind.settings(**given)
     except (ValueError, ArboledaError) as error:
-        document.problem(place, plain(str(error) or said(error), LONGEST))
+        document.problem(place, plain(refused(error), LONGEST))
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         _tell(document, place, kind, error, used)
     return None

@@ -95,6 +95,11 @@ def said(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
+def refused(error: BaseException) -> str:
+    """Why the settings of a kind or driver are refused: its own rules raise ValueError with a sentence."""
+    return str(error) if isinstance(error, ValueError) and str(error) else said(error)
+
+
 def _function(written: Written) -> Callable[..., object]:
     if isinstance(written, Recipe):
         return written.build

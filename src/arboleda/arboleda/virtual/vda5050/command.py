@@ -40,7 +40,7 @@ def run(
     ] = None,
     port: Annotated[int, typer.Option(help="Of the broker that it brings; 0: any free.")] = 1884,
     fault: FaultNames = None,
-    fault_port: FaultPort = 4713,
+    fault_port: FaultPort = 4715,
 ) -> None:
     from .broker import Server  # it loads a library of MQTT
 
