@@ -13,6 +13,9 @@ setup(
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
     entry_points={
+        "arboleda.drivers": [
+            "follow_joint_trajectory = arboleda_ros.joint_trajectory:FollowJointTrajectory",
+        ],
         "arboleda.links": ["ros = arboleda_ros.link:connect"],
         "console_scripts": [
             "orchestrator = arboleda_ros.nodes:orchestrator",

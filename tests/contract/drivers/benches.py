@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from . import dobot, line_tcp, modbus, mqtt, ros, vda5050
+from importlib.util import find_spec
+
+from . import dobot, joint_trajectory, line_tcp, modbus, mqtt, ros, vda5050
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -13,3 +15,5 @@ BENCHES: dict[str, Bench] = {
     "dobot": dobot.BENCH,
     "vda5050": vda5050.BENCH,
 }
+if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, and runs this bench
+    BENCHES["follow_joint_trajectory"] = joint_trajectory.BENCH

@@ -1,0 +1,66 @@
+"""The keys of the driver in a plant file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from arboleda.kinds.arm import Arm, Joint
+from arboleda.model.plant_model import Evidence, Robot
+
+SHORTEST_S = 0.1
+# A move from rest to rest along a polynomial of the fifth degree is faster at its middle than on average,
+# and accelerates most at a fifth of its way: by these factors of distance / time and distance / time squared.
+PEAK_SPEED = 15 / 8
+PEAK_ACCELERATION = 10 / math.sqrt(3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Which action and which joint states are those of the arm, and what its joints are called there.
+
+    `speed_percent` is of what the model of the arm allows; `lan` lets the driver reach other machines.
+    """
+
+    action: str = "joint_trajectory_controller/follow_joint_trajectory"
+    joint_states: str = "joint_states"
+    joints: tuple[str, ...] = ()
+    speed_percent: int = 50
+    lan: bool = False
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.speed_percent <= 100:
+            raise ValueError(f"speed_percent is {self.speed_percent}; allowed: 1 to 100")
+        if len(set(self.joints)) < len(self.joints):
+            raise ValueError("joints has a name twice")
+        for name in ("action", "joint_states"):
+            if not getattr(self, name):
+                raise ValueError(f"{name} is empty; it is a name of ROS 2")
+
+    def joint_names(self, arm: Arm) -> tuple[str, ...]:
+        """What ros2_control calls the joints of the arm, in the arm's order."""
+        return self.joints or tuple(joint.name for joint in arm.joints)
+
+    def duration_s(self, arm: Arm, start: Sequence[float], goal: Sequence[float]) -> float:
+        """How long a move may take at least, so that no joint passes its share of what the model allows."""
+        share = self.speed_percent / 100
+        ways = zip(arm.joints, start, goal, strict=True)
+        times_s = [_least_s(joint, abs(there - here), share) for joint, here, there in ways]
+        return max(SHORTEST_S, *times_s)
+
+    def problems(self, device: Robot) -> Iterable[tuple[tuple[str | int, ...], str]]:
+        """What of these does not fit a device."""
+        if not isinstance(device, Arm):
+            yield (), f"{device.name} is no arm; a joint trajectory controller moves arms"
+        elif self.joints and len(self.joints) != len(device.joints):
+            count = len(device.joints)
+            yield ("joints",), f"there are {len(self.joints)} names for the {count} joints of {device.name}"
+        if device.evidence is not Evidence.IDS:
+            yield (), f"{device.name} has evidence: {device.evidence.value}; an action proves ids"
+
+
+def _least_s(joint: Joint, distance: float, share: float) -> float:
+    by_speed_s = PEAK_SPEED * distance / (joint.speed * share)
+    by_acceleration_s = math.sqrt(PEAK_ACCELERATION * distance / (joint.acceleration * share))
+    return max(by_speed_s, by_acceleration_s)
