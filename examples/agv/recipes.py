@@ -7,4 +7,8 @@ from arboleda.recipes import Target, recipe, work
 def fetch(cell, source=Target("shelves"), goal=Target("shelves")):
     """Carry what stands at one shelf to another."""
     cart, forks = cell.devices("cart", "forks")
-    return work(cart.go(source), forks.pick(height_mm=0), cart.go(goal), forks.drop(), cart.go("home"))
+    seen = forks.detect_object()
+    carried = [cart.go(goal), forks.drop(), cart.go("home")]
+    nothing = [forks.drop(), cart.go("home"), cell.fail("nothing stood there")]
+    judged = cell.choose(seen, {"loaded": carried, "empty": nothing})
+    return work(cart.go(source), forks.pick(height=0.0), seen, judged)

@@ -57,7 +57,7 @@ def test_a_plant_that_loses_its_database_ends_and_has_lost_nothing(
     arboleda: Callable[..., Any], store: tuple[str, str], postgres: Server
 ) -> None:
     plant = arboleda(*UP, *store, "sis_a 0B 1 #one", "sis_a 0B 2 #two")
-    plant.wait_for("running   sis_a 0B 1")
+    plant.wait_for("queued    sis_a 0B 2")
     postgres.stop()
     try:
         assert plant.wait() == 1

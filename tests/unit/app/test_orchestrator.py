@@ -473,6 +473,14 @@ def test_the_bridge_gets_only_what_is_for_robots(notice):
     part.send(notice)
 
 
+def test_a_bridge_whose_robots_another_process_leads_does_not_halt_them_when_it_leaves():
+    part = BridgePart(shipped("sis_a"), 7, OtherBroker(address("127.0.0.1:1883"), None), pytest.fail)
+    part.loop.post = pytest.fail
+    part.leave_robots()
+    part.loop.start()
+    part.stop()
+
+
 def test_an_error_in_a_cell_is_one_line_for_people_and_whole_in_the_log(plant, caplog):
     try:
         raise ZeroDivisionError("by design")

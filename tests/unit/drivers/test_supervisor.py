@@ -274,6 +274,11 @@ def test_whoever_still_works_is_halted_before_the_driver_ends(driven: Driven) ->
     assert driven.machine.next_deadline is None and driven.says() == []
 
 
+def test_robots_that_another_process_leads_are_not_halted(driven: Driven) -> None:
+    driven.gives(GO)
+    assert driven.step(Leaving(at=driven.now, halts=False)) == [End(life=driven.life)]
+
+
 def test_whose_work_has_ended_is_not_halted(driven: Driven) -> None:
     driven.gives(GO)
     driven.says(accepted="9-1", done="9-1")

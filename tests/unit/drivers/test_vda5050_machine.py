@@ -84,10 +84,8 @@ def test_nodes_have_the_names_and_places_of_the_vehicle() -> None:
 
 
 def test_a_verb_is_an_action_at_the_node_where_the_vehicle_stands(rig: Rig) -> None:
-    rig.do("pick", height_mm=400)
-    assert rig.told[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [
-        {"key": "height_mm", "value": 400}
-    ]
+    rig.do("pick", height=0.4)
+    assert rig.told[-1][1]["nodes"][0]["actions"][0]["actionParameters"] == [{"key": "height", "value": 0.4}]
     rig.run(2)
     said = rig.said["forks"]
     assert (said.done, said.fact("loaded")) == ("1-2", True)
@@ -103,12 +101,11 @@ def test_an_instant_verb_is_done_on_the_way() -> None:
 
 
 def test_a_question_is_answered_by_the_result_of_its_action(rig: Rig) -> None:
-    rig.do("look")
+    rig.do("detect_object")
     rig.run(0.1)
-    action = next(iter(rig.agv.actions.values()))
-    action.result = "loaded"
+    assert [action.type for action in rig.agv.actions.values()] == ["detectObject"]
     rig.run(2)
-    assert (rig.said["forks"].answered, rig.said["forks"].answer) == ("1-2", "loaded")
+    assert (rig.said["forks"].answered, rig.said["forks"].answer) == ("1-2", "empty")
 
 
 def test_nothing_is_said_of_its_motion_until_it_has_named_what_it_was_told(rig: Rig) -> None:
@@ -271,7 +268,7 @@ def test_an_order_that_is_refused_is_rejected_with_the_vehicle_s_word(rig: Rig) 
 
 def test_an_action_that_fails_is_failed_with_the_vehicle_s_word(rig: Rig) -> None:
     rig.faults.switch("action_fails", on=True)
-    rig.do("pick", height_mm=0)
+    rig.do("pick", height=0.0)
     rig.run(2)
     assert (rig.said["forks"].failed, rig.said["forks"].failure) == ("1-2", "actionError")
 

@@ -40,6 +40,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 PAGES = EXAMPLES.parent / "docs/examples"
 FOLDERS = sorted(file.parent.name for file in EXAMPLES.glob("*/plant.yaml"))
 OF_HOW_TOS = (
+    "agv",
     "mixed",
     "own_board",
     "own_driver",
@@ -95,6 +96,8 @@ CASES = (
     tending(task=MILL, answers={"camera": "bad"}, ends_with=REJECTED),
     tending(task=MILL, answers={"camera": "unsure"}, ends_with=SOLD),
     tending(task=MILL, answers={"camera": "unsure", "operator": "bad"}, ends_with=REJECTED),
+    Case(folder="agv", task="hall fetch left right", ends_with=("forks drop", "cart to home")),
+    Case(folder="agv", task="hall fetch left right", answers={"forks": "empty"}, why="nothing stood there"),
     Case(folder="mixed", task="line deliver slot_1 200", ends_with=("belt gate", "belt scan")),
     Case(folder="mixed", task="line deliver slot_2 400", answers={"belt": "bad"}, ends_with=("belt scan",)),
     Case(

@@ -18,7 +18,7 @@ from arboleda import __version__
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.plant_memory import JournalEntry, PlantMemory
+from arboleda.adapters.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.adapters.task_rows import COMMAND, TaskQuery, TaskRow
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.model.errors import ArboledaError, StartError
@@ -109,6 +109,7 @@ class App:
         self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
         self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
         self._bridge: BridgePart | None = None
+        self._drivers: DriversPart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
         self._public_url = options.web.public_url
@@ -324,7 +325,7 @@ class App:
             self._parts += self._boards(now, bridge, scout=scout)
         if "orchestrator" in parts:
             if self.model.driven:
-                drivers = DriversPart(self.model, epoch, self._crash)
+                drivers = self._drivers = DriversPart(self.model, epoch, self._crash)
                 self._parts.append(drivers)
             self.orchestrator = Orchestrator(
                 self.model,
@@ -448,6 +449,9 @@ class App:
         if not isinstance(error, ArboledaError):
             what = f"{type(error).__name__}: {error}"
             error = ArboledaError(f"internal error in the {name} ({what}); details are in {self.log_file}")
+        for part in (self._bridge, self._drivers) if isinstance(error, Superseded) else ():
+            if part is not None:
+                part.leave_robots()
         self._trouble = self._trouble or error
         self.end()
 

@@ -81,9 +81,10 @@ class Taken:
 
 @dataclass(frozen=True, kw_only=True)
 class Leaving:
-    """The plant ends."""
+    """The plant ends; `halts`: not where another process leads its robots by now."""
 
     at: float
+    halts: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,10 +209,12 @@ class SupervisedDriver:
         why = SILENT(driver=self.name, seconds=self._stuck_after_s)
         return [message for device in silent for message in device.lose(now, why)]
 
-    def leave(self, at: float) -> list[Message]:
+    def leave(self, leaving: Leaving) -> list[Message]:
         """Whatever may still move is halted before the driver ends."""
-        halts = [(device, device.halt()) for device in self.devices.values()]
-        given: list[Message] = [self._give(at, device, halt) for device, halt in halts if halt is not None]
+        halts = [(device, device.halt()) for device in self.devices.values()] if leaving.halts else []
+        given: list[Message] = [
+            self._give(leaving.at, device, halt) for device, halt in halts if halt is not None
+        ]
         alive, self.begin_at = self.begin_at == math.inf, math.inf
         return [*given, *([End(life=self.life)] if alive else [])]
 
@@ -260,7 +263,7 @@ class Supervisor:
             return []
         if isinstance(event, Leaving):
             self._leaving = True
-            return [message for driver in self._drivers for message in driver.leave(event.at)]
+            return [message for driver in self._drivers for message in driver.leave(event)]
         if isinstance(event, Asked):
             return self._of_device[event.command.robot].command(event.at, event.command)
         driver = self._drivers[event.life.driver]

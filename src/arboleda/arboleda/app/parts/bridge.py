@@ -41,6 +41,7 @@ class BridgePart:
         self._client: MqttClient | None = None
         self._lock = threading.Lock()
         self._ended = False
+        self._halts = True
         self._report: Callable[[Report], None] = lambda report: None
         self._tell_link: Callable[[bool, str], None] = _nobody
         self._tell: Callable[[Rejection | ForeignCommand], None] = lambda news: None
@@ -99,9 +100,14 @@ class BridgePart:
 
         return self.loop.read(look)
 
+    def leave_robots(self) -> None:
+        """Another process leads them now: `stop` halts none of them."""
+        self._halts = False
+
     def stop(self) -> None:
         """Halt what still moves, then leave; the plant may be another process that has ended already."""
-        self.loop.post(Leaving(at=clock.seconds()))
+        if self._halts:
+            self.loop.post(Leaving(at=clock.seconds()))
         self.loop.stop()
         with self._lock:
             self._ended = True

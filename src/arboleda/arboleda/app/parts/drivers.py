@@ -52,6 +52,7 @@ class DriversPart:
         machine = Supervisor(named, epoch=epoch, stale_after_s=model.timing.stale_after_s)
         self.loop: Loop[Any, Any] = Loop("drivers", machine, self._send, on_crash=crash)
         self._threads = DeadThreads(self._died)
+        self._halts = True
 
     def connect(self, hear: Callable[[Report | Undelivered], None]) -> None:
         """Who gets the reports, and is told of what could not leave."""
@@ -68,9 +69,13 @@ class DriversPart:
             worker.start()
         self.loop.start()
 
+    def leave_robots(self) -> None:
+        """Another process leads them now: `stop` halts none of them."""
+        self._halts = False
+
     def stop(self) -> None:
         """Halt what may still move, then end every driver; one that does not end is left behind."""
-        self.loop.post(Leaving(at=clock.seconds()))
+        self.loop.post(Leaving(at=clock.seconds(), halts=self._halts))
         self.loop.stop()
         until = time.monotonic() + PATIENCE_S
         for worker in self._workers:

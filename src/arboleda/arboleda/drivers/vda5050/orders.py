@@ -98,8 +98,14 @@ class Order:
 
 
 def action_of(id: str, told: Told, *, blocking: str) -> Action:
-    """A verb as an action of the same name."""
-    return Action(id=id, type=told.verb, values=tuple(told.values), blocking=blocking)
+    """A verb `start_charging` as the action `startCharging`, its values as parameters named likewise."""
+    values = tuple((_as_the_standard_writes(name), value) for name, value in told.values)
+    return Action(id=id, type=_as_the_standard_writes(told.verb), values=values, blocking=blocking)
+
+
+def _as_the_standard_writes(name: str) -> str:
+    first, *others = name.split("_")
+    return first + "".join(map(str.capitalize, others))
 
 
 def instant(actions: Sequence[Action], version: str) -> dict[str, Any]:
