@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import statistics
+import subprocess
+import sys
 import time
 
 import pytest
@@ -10,7 +13,8 @@ from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from arboleda.adapters.broker_login import Credentials
-from arboleda.adapters.mqtt import NotConnected
+from arboleda.adapters.clock import seconds
+from arboleda.adapters.mqtt import WAITS_S, NotConnected
 from arboleda.model.plant_model import MqttVersion
 from arboleda.wire.transport import Publication
 
@@ -252,3 +256,53 @@ def test_mqtt_5_lets_commands_expire_after_a_second(mosquitto, peer):
         listener.loop_stop()
 
     assert expiries == {b"goal": 1, b"1": None, b"beat": None}
+
+
+def test_what_was_right_too_long_ago_never_leaves_and_ends_the_connection(broker, peer, caplog):
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    bridge = peer("bridge", broker.address).up()
+
+    bridge.client.publish(message(b"late"), since=seconds() - WAITS_S - 0.1)
+
+    bridge.inbox.wait(lambda inbox: inbox.links == [True, False, True])
+    bridge.client.publish(message(b"fresh"))
+    board.inbox.wait(lambda inbox: inbox.deliveries)
+    assert board.inbox.payloads == [b"fresh"]
+    assert any("waited in this process for more than 1.5 s" in line for line in lines(caplog))
+
+
+TALKATIVE = """
+import sys, time
+from arboleda.adapters.broker_login import Address
+from arboleda.adapters.clock import seconds
+from arboleda.adapters.mqtt import MqttClient, NotConnected
+from arboleda.wire.transport import Publication
+
+client = MqttClient("bridge", Address(host=sys.argv[1], port=int(sys.argv[2])), on_event=lambda event: None)
+client.start()
+while True:
+    try:
+        client.publish(Publication(topic="ra_1/juntas", payload=repr(seconds()).encode()))
+    except NotConnected:  # nor does it take more than some in advance
+        time.sleep(0.01)
+"""
+
+
+@pytest.mark.parametrize("stopped_broker", ["embedded", "mosquitto"], indirect=True)
+def test_a_process_that_was_frozen_sends_nothing_of_before(broker, peer):
+    """What lay in it was right for the leader that it was; another one may lead the robots by now."""
+    board = peer("ra_1", broker.address, subscriptions=[GOALS]).up()
+    where = broker.address.host, str(broker.address.port)
+    child = subprocess.Popen([sys.executable, "-c", TALKATIVE, *where])
+    try:
+        board.inbox.wait(lambda inbox: len(inbox.deliveries) > 50)
+        child.send_signal(signal.SIGSTOP)
+        time.sleep(WAITS_S + 0.5)
+        thawed_at = seconds()
+        child.send_signal(signal.SIGCONT)
+        board.inbox.wait(lambda inbox: float(inbox.payloads[-1]) > thawed_at)
+    finally:
+        child.kill()
+        child.wait()
+    late = [each for each in board.inbox.deliveries if each.at - float(each.payload) > WAITS_S]
+    assert late == []

@@ -8,6 +8,7 @@ import ssl
 import struct
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
@@ -36,6 +37,7 @@ QUEUE_LIMIT = 100
 LARGEST_PACKET = 4096  # bytes; all that plant and boards say is shorter
 AT_ONCE = 40  # topics of one SUBSCRIBE: the plant's own broker takes packets of 4 kB
 EXPIRY_S = 1
+WAITS_S = 1.5  # what has waited here for longer, as in a process that was stopped, was right once
 CHECK = "check its certificate"
 MISTRUST = {  # by X509_V_ERR of OpenSSL
     9: "set the clock of this machine",
@@ -51,6 +53,20 @@ PAHO_VERSION = {MqttVersion.V3_1_1: MQTTProtocolVersion.MQTTv311, MqttVersion.V5
 
 class NotConnected(ArboledaError):
     """A publication was refused because the broker is not there; it will not be sent later."""
+
+
+class PromptClient(Client):
+    """paho's client, but it writes nothing while `is_late` says so: its connection ends instead.
+
+    Whatever leaves passes here, also what paho itself kept until the broker had the message before.
+    """
+
+    def __init__(self, is_late: Callable[[], bool], *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._is_late = is_late
+
+    def loop_write(self) -> MQTTErrorCode:
+        return MQTTErrorCode.MQTT_ERR_CONN_LOST if self._is_late() else super().loop_write()
 
 
 class MqttClient:
@@ -91,6 +107,9 @@ class MqttClient:
         self._lock = threading.Lock()
         self._paho: Client | None = None  # only while up
         self._last: MQTTMessageInfo | None = None
+        self._waits: deque[tuple[float, MQTTMessageInfo]] = deque()  # with since when each waits
+        self._late = False  # whether this connection ends because something waited for too long
+        self._turned_at = 0.0  # when the client's thread was last seen at work
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"mqtt {client_id}", daemon=True)
 
@@ -98,9 +117,13 @@ class MqttClient:
         """Connect, and reconnect until `close`; returns at once."""
         self._thread.start()
 
-    def publish(self, publication: Publication) -> None:
-        """Send now or raise NotConnected; nothing is kept for a later connection."""
-        self._sent(publication)
+    def publish(self, publication: Publication, since: float | None = None) -> None:
+        """Send now or raise NotConnected; nothing is kept for a later connection.
+
+        `since`: when it was right to send it, now where that is not said. What is older than WAITS_S here, or
+        once a process that was stopped goes on, never leaves: the connection ends, with all that waits.
+        """
+        self._sent(publication, since)
 
     def deliver(self, publication: Publication, within_s: float) -> None:
         """Send now, and return once the broker has it; NotConnected where it does not say so in time."""
@@ -111,7 +134,8 @@ class MqttClient:
                 return
         raise NotConnected(f"the MQTT broker at {self._address} did not say that it has it")
 
-    def _sent(self, publication: Publication) -> MQTTMessageInfo:
+    def _sent(self, publication: Publication, since: float | None = None) -> MQTTMessageInfo:
+        since = self._clock() if since is None else since
         with self._lock:
             if self._paho is None:
                 raise NotConnected(f"the MQTT broker at {self._address} is not connected")
@@ -127,7 +151,26 @@ class MqttClient:
                     f"the MQTT broker at {self._address} does not take messages: {info.rc.name}"
                 )
             self._last = info
+            self._late = self._late or self._clock() - since > WAITS_S
+            self._waits.append((since, info))
+            self._forget_sent()
             return info
+
+    def _forget_sent(self) -> None:
+        while self._waits and self._waits[0][1].is_published():
+            self._waits.popleft()
+
+    def _is_late(self) -> bool:
+        """Whether something has waited for too long; asked before each write.
+
+        A queue that is long, or a broker that is slow, is no reason while this thread is at work.
+        """
+        with self._lock:
+            now = self._clock()
+            was_away, self._turned_at = now - self._turned_at > WAITS_S, now
+            self._forget_sent()
+            self._late = self._late or (was_away and bool(self._waits) and now - self._waits[0][0] > WAITS_S)
+            return self._late
 
     def close(self) -> None:
         """Let what was published leave, disconnect (no last will) and join; idempotent."""
@@ -163,19 +206,27 @@ class MqttClient:
             delay = min(2 * delay, LAST_RETRY_S)
 
     def _serve_one_connection(self) -> None:
-        self._refused, self._answered, self._early = None, False, []
+        self._refused, self._answered, self._early, self._late = None, False, [], False
         paho = self._new_paho()
         try:
             paho.connect(
                 self._address.host, self._address.port, KEEPALIVE_S, properties=self._largest_packet()
             )
-            while paho.loop(WAKE_S) == MQTTErrorCode.MQTT_ERR_SUCCESS:
+            self._turned_at = self._clock()
+            while paho.loop(WAKE_S) == MQTTErrorCode.MQTT_ERR_SUCCESS and not self._is_late():
                 if self._closing.is_set():
                     paho.disconnect()
-            trouble = "connection lost" if self._answered else self._silence()
+            trouble = self._end_in_words()
+            if self._late and (there := paho.socket()) is not None:
+                there.close()
         except (OSError, ValueError, struct.error) as error:
             trouble = self._refusal_of_tls(error) or str(error)
         self._down(paho, trouble)
+
+    def _end_in_words(self) -> str:
+        if self._late:
+            return f"a message waited in this process for more than {WAITS_S:g} s and must not leave any more"
+        return "connection lost" if self._answered else self._silence()
 
     def _silence(self) -> str:
         """What may be wrong where a broker ends a connection without a word."""
@@ -200,7 +251,8 @@ class MqttClient:
         return properties
 
     def _new_paho(self) -> Client:
-        paho = Client(
+        paho = PromptClient(
+            self._is_late,
             CallbackAPIVersion.VERSION2,
             client_id=self.client_id,
             clean_session=None if self._version == MQTTProtocolVersion.MQTTv5 else True,
@@ -281,6 +333,7 @@ class MqttClient:
     def _down(self, paho: Client, trouble: str) -> None:
         with self._lock:
             was_up, self._paho, self._last = self._paho is paho, None, None
+            self._waits.clear()
         if was_up:
             self._on_event(Connection(at=self._clock(), client=self.client_id, up=False))
         if self._closing.is_set():

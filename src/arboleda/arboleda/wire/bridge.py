@@ -58,7 +58,8 @@ Event = FromPlant | Delivery | Connection | Leaving
 class Bridge:
     """`epoch` is Unix seconds at this start; a board that has heard a higher one raises its own.
 
-    `subscriptions` are the topics to subscribe to, of every robot that speaks MQTT.
+    `subscriptions` are the topics to subscribe to, of every robot that speaks MQTT; `now` is the time of its
+    last step.
     """
 
     def __init__(self, model: PlantModel, *, epoch: int, now: float) -> None:
@@ -76,7 +77,7 @@ class Bridge:
         heard = (Channel.TELEMETRY, Channel.PRESENCE)
         self.subscriptions = tuple(topic for topic, (*_, channel) in self._routes.items() if channel in heard)
         self._epoch = epoch
-        self._now = now
+        self.now = now
         self._stale_after_s = stale_after_s
         self._started_at = now  # never again once that was told
         self._plant_epoch = 0
@@ -103,7 +104,7 @@ class Bridge:
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
         """Publications for MQTT and reports for the plant, in the order they must leave."""
-        self._now = now
+        self.now = now
         out = self._start(now)
         for event in events:
             out += self._deliver(event) if isinstance(event, Delivery) else self._take(event)
@@ -238,7 +239,7 @@ class Bridge:
 
     def _late(self, at: float, command: Command) -> str | None:
         """The word that refuses what lay here while this process did nothing; a stop is never too late."""
-        late = self._now - at > self._stale_after_s
+        late = self.now - at > self._stale_after_s
         return "no_link" if late and not isinstance(command, Stop) else None
 
     def _relay(self, at: float, heartbeat: Heartbeat) -> list[Message]:

@@ -127,7 +127,7 @@ class BridgePart:
                 LOG.warning("%s", message.sentence)
             self._tell(message)
         elif self._client is not None:
-            self._client.publish(message)
+            self._client.publish(message, self._bridge.now)
 
 
 def _nobody(up: bool, broker: str) -> None: ...
