@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -48,12 +48,22 @@ def beginning_of(model: PlantModel, *, epoch: int = 7, now: float = 0.0, **made_
     )
 
 
-def until(condition: Callable[[], object], what: str) -> None:
-    """Wait for another thread."""
-    ends = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < ends, what
-        time.sleep(0.01)
+class Told(Writing):
+    """One that tells the test's thread when it has written what waited, or has given up."""
+
+    wrote: threading.Condition
+
+    def tend(self) -> None:
+        super().tend()
+        self._tell()
+
+    def drop(self) -> None:
+        super().drop()
+        self._tell()
+
+    def _tell(self) -> None:
+        with self.wrote:
+            self.wrote.notify_all()
 
 
 class Site:
@@ -66,6 +76,7 @@ class Site:
         self.model: PlantModel = shipped()
         self.recorders: list[Recorder] = []
         self.seen: list[tuple[int, dict[str, Any], dict[str, Any]]] = []  # when, what screens and twin got
+        self._wrote = threading.Condition()
         self._limits = limits
         self._options = options
         patch.setattr(world, "Plant", self._new)
@@ -81,6 +92,11 @@ class Site:
             self.rig.submit(text)
         self.rig.wait(s)
 
+    def until(self, condition: Callable[[], object], what: str) -> None:
+        """Wait for the recorder's thread."""
+        with self._wrote:
+            assert self._wrote.wait_for(condition, PATIENCE_S), what
+
     def end(self) -> None:
         for recorder in self.recorders:
             recorder.stop()
@@ -90,7 +106,8 @@ class Site:
         beginning = beginning_of(model, **made_of)
         unix_ns = lambda: round(plant.now * 1e9)  # noqa: E731
         options = {"least_free": 0, **self._options}
-        writing = Writing(self.folder, beginning, self._limits, unix_ns=unix_ns, **options)
+        writing = Told(self.folder, beginning, self._limits, unix_ns=unix_ns, **options)
+        writing.wrote = self._wrote
         recorder = Recorder(writing, unix_ns)
         self.recorders.append(recorder)
         recorder.start()

@@ -17,7 +17,7 @@ from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
 
-from .recorded import PATIENCE_S, Site, until
+from .recorded import PATIENCE_S, Site
 
 STOPPED = "the record has stopped: {}; the plant goes on without it"
 
@@ -50,9 +50,9 @@ def test_a_disk_that_fills_up_later_leaves_what_was_written(
         return writes(part)
 
     monkeypatch.setattr(PartFile, "flush", full)
-    until(lambda: site.files, "no file is made")  # what comes later is more than a flush away
+    site.until(lambda: site.files, "no file is made")  # what comes later is more than a flush away
     site.work(s=10.0)
-    until(lambda: site.files and site.files[0].stat().st_size > 5000, "nothing was written")
+    site.until(lambda: site.files and site.files[0].stat().st_size > 5000, "nothing was written")
     site.work(s=60.0)
     site.end()
     assert told(caplog) == [STOPPED.format("No space left on device")]
@@ -64,7 +64,7 @@ def test_a_folder_that_cannot_be_is_one_line(
 ) -> None:
     (tmp_path / files.FOLDER).write_text("in the way")
     site = Site(tmp_path, monkeypatch)
-    until(lambda: site.recorders[0].trouble, "the recorder goes on")
+    site.until(lambda: site.recorders[0].trouble, "the recorder goes on")
     site.work("sis_a 0B 7", s=5.0)
     site.end()
     assert told(caplog) == [STOPPED.format("File exists")]
@@ -102,7 +102,9 @@ def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: 
     for turn in range(2):
         seen = len(site.files)
         site.work(f"sis_a 0B 7 #{turn}", "sis_b 1C 3", "sis_c 2A 5")
-        until(lambda seen=seen: len(site.files) != seen or site.files[0].name != "1000-0001.mcap", "one file")
+        site.until(
+            lambda seen=seen: len(site.files) != seen or site.files[0].name != "1000-0001.mcap", "one file"
+        )
     site.end()
     parts = parts_in(site.folder)
     assert sum(part.bytes for part in parts) <= 65_000
@@ -130,7 +132,7 @@ def test_what_a_killed_process_left_is_read_up_to_its_last_chunk(
     for _ in range(3):
         before = site.files[0].stat().st_size if site.files else 0
         site.work("sis_a 0B 7", s=30.0)
-        until(lambda before=before: site.files[0].stat().st_size > before + 3000, "nothing is written")
+        site.until(lambda before=before: site.files[0].stat().st_size > before + 3000, "nothing is written")
     killed = tmp_path / "killed.mcap"
     shutil.copy(site.files[0], killed)
     site.end()

@@ -20,7 +20,7 @@ from arboleda.recorder.views import Views
 from arboleda.recorder.writing import Writing
 from arboleda.views.chronicle import Chronicle
 
-from .recorded import Site, beginning_of, until
+from .recorded import Site, beginning_of
 
 SPANS = ("age_s", "since_s", "deadline_s", "left_s", "elapsed_s")
 
@@ -136,7 +136,7 @@ def test_files_that_follow_each_other_are_one_record_also_without_the_first(
     for _ in range(4):
         count = len(site.files)
         busy(site)
-        until(lambda count=count: len(site.files) > count, "no file is added")
+        site.until(lambda count=count: len(site.files) > count, "no file is added")
     site.end()
     assert len(site.files) > 2
     views = views_of(site)

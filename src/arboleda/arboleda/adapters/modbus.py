@@ -62,7 +62,7 @@ class Line:
                 yield
         except (Refused, Unreadable):
             raise
-        except Exception:
+        except Exception:  # whatever it was: an answer may still be on its way
             self.close()
             raise
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -109,37 +109,38 @@ def replay(
     from arboleda.recorder import reader
 
     record = reader.opened(last_of(file, None, state))
-    beginning = record.first.beginning
+    other = any((fork_at, setting, recipe, healthy))
     if page:
-        if speed or plant or fork_at or setting or recipe or healthy:
+        if speed or plant or other:
             only = "only --until, --task and --port go with it"
             raise ConfigError((f"--page shows a record as it was: {only}",))
         _show(record, until, task, port)
         return
-    if record.missing:
-        gone = f"its first {record.missing} files were deleted to make room"
-        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
-    for line in _notes(beginning, plant):
+    _refuse_part(record)
+    for line in _notes(record.first.beginning, plant):
         _say(line)
     began_ns = record.first.began_ns
     end_ns = None if until is None else _time("--until", until, began_ns)
-    if fork_at or setting or recipe or healthy:
-        from .fork import command
-
-        options = command.Options(
-            at_ns=None if fork_at is None else _time("--fork-at", fork_at, began_ns),
-            task=task,
-            settings=tuple(setting or ()),
-            plant=plant,
-            recipe=recipe,
-            healthy=healthy,
-            until_ns=end_ns,
-        )
-        _fork(record, options)
+    if not other:
+        _compare(record, plant, Chosen(end_ns, task, speed))
         return
-    chosen = Chosen(end_ns, task, speed)
-    last = _run(record, model_of(beginning, plant), chosen)
-    _finish(record, last)
+    from .fork import command
+
+    at_ns = None if fork_at is None else _time("--fork-at", fork_at, began_ns)
+    settings = tuple(setting or ())
+    changed = command.Options(settings=settings, plant=plant, recipe=recipe, healthy=healthy)
+    _fork(record, replace(changed, at_ns=at_ns, task=task, until_ns=end_ns))
+
+
+def _refuse_part(record: Record) -> None:
+    if record.missing:
+        gone = f"its first {record.missing} files were deleted to make room"
+        raise NoRecord(f"{record.paths[0]} cannot be replayed, only read: {gone}.")
+
+
+def _compare(record: Record, plant: Path | None, chosen: Chosen) -> None:
+    """Say whether every step is what it was."""
+    _finish(record, _run(record, model_of(record.first.beginning, plant), chosen))
 
 
 def _fork(record: Record, options: Options) -> None:
