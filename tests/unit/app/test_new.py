@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,8 @@ from arboleda.app.cli import cli
 from arboleda.app.command import main
 
 from ..kinds.lab import Bench
+
+ROOT = Path(__file__).parents[3]
 
 
 def new(folder: Path) -> Result:
@@ -29,6 +32,21 @@ def test_the_folder_is_a_plant_that_does_its_task(tmp_path: Path) -> None:
     here = Bench(plant)
     here.submit("cell press spare 5")
     assert here.outcome().state.value == "done"
+
+
+@pytest.mark.parametrize("page", ["README.md", "README.es.md"])
+def test_what_the_first_page_shows_of_it_is_in_it(tmp_path: Path, page: str) -> None:
+    new(tmp_path / "my_plant")
+    written = {
+        name: (tmp_path / "my_plant" / name).read_text("utf-8") for name in ("plant.yaml", "recipes.py")
+    }
+    text = (ROOT / page).read_text("utf-8")
+    kinds, recipe = (
+        re.search(f"```\\w+\n({start}.*?)```", text, re.DOTALL) for start in ("kinds:", "@recipe")
+    )
+    assert kinds and kinds[1] in written["plant.yaml"]
+    docstring = '    """Put a blank into the press, press it, and bring it back."""\n'
+    assert recipe and recipe[1] in written["recipes.py"].replace(docstring, "")
 
 
 def test_what_is_there_is_never_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
