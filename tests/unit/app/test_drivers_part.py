@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from arboleda.app.parts.drivers import DriversPart
-from arboleda.drivers import Clock, Command, Hear, NotSent
+from arboleda.drivers import Clock, Command, Hear, NotSent, Stop, StopMode
 from arboleda.model.messages import Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
 
@@ -20,6 +20,8 @@ from ..kinds.station import STATION, plant
 WAIT_S = 10.0
 EPOCH = 9
 GO = STATION.command(id="9-1", robot="station", verb="go", values={})
+LIGHT = STATION.command(id="9-2", robot="station", verb="light", values={"on": True})
+HALT = Stop(id="9-3", robot="station", mode=StopMode.HALT)
 
 
 class Tame:
@@ -257,6 +259,27 @@ def test_a_driver_that_hangs_loses_its_device_and_holds_up_nobody(
         go.set()
         speaker.join()
     assert there.made[0].stopped.wait(WAIT_S)
+
+
+def test_a_command_that_waited_for_its_driver_for_too_long_never_leaves_and_a_stop_does(
+    running: Callable[..., Plant],
+) -> None:
+    go = threading.Event()
+
+    class Slow(Tame):
+        def send(self, command: Command) -> None:
+            super().send(command)
+            go.wait(WAIT_S)
+
+    there = running(Slow(), stale_after_s=1.0)
+    there.is_up()
+    for command in (GO, LIGHT, HALT):
+        there.part.send(command)
+    there.is_lost()
+    go.set()
+    undelivered = there.hears(lambda event: isinstance(event, Undelivered))
+    assert undelivered.id == LIGHT.id and "must not leave any more" in str(undelivered.sentence)
+    assert [there.made[0].sent.get(timeout=WAIT_S) for _ in range(2)] == [GO, HALT]
 
 
 def speak(driver: Tame, until: threading.Event) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -60,9 +61,14 @@ class Driven:
     def asks(self, command: Command) -> list[Message]:
         return self.step(Asked(at=self.now, command=command))
 
+    def given(self, command: Command) -> Give:
+        """What the driver gets of a command of now, where it waits behind no other."""
+        until = math.inf if isinstance(command, Stop) else self.now + STALE_S
+        return Give(life=self.life, command=command, until=until)
+
     def gives(self, command: Command) -> None:
         """The plant commands it, and the driver sends that."""
-        assert self.asks(command) == [Give(life=self.life, command=command)]
+        assert self.asks(command) == [self.given(command)]
         assert self.step(Taken(at=self.now, life=self.life, command=command)) == []
 
 
@@ -116,7 +122,7 @@ def test_silence_loses_the_link_and_what_comes_after_brings_it_back(driven: Driv
     assert driven.machine.next_deadline is None
     (back,) = driven.says(after=5.0)
     assert isinstance(back, Report) and back.state is MotionState.STOPPED
-    assert driven.asks(GO) == [Give(life=driven.life, command=GO)]
+    assert driven.asks(GO) == [driven.given(GO)]
 
 
 def test_silence_means_nothing_at_state() -> None:
@@ -147,7 +153,7 @@ def test_what_could_not_leave_is_told_and_the_link_stays(driven: Driven) -> None
     (undelivered,) = driven.step(Taken(at=driven.now, life=driven.life, command=GO, error=OWN(text="cut")))
     assert isinstance(undelivered, Undelivered) and (undelivered.id, undelivered.robot) == ("9-1", "station")
     assert str(undelivered.sentence) == "its driver plc could not send a command (cut)"
-    assert driven.asks(LIGHT) == [Give(life=driven.life, command=LIGHT)]
+    assert driven.asks(LIGHT) == [driven.given(LIGHT)]
 
 
 def test_a_defect_in_send_also_loses_the_link_until_the_device_is_heard(driven: Driven) -> None:
@@ -157,7 +163,7 @@ def test_a_defect_in_send_also_loses_the_link_until_the_device_is_heard(driven: 
     assert isinstance(undelivered, Undelivered) and isinstance(gone, Report)
     assert gone.lost == undelivered.sentence
     driven.says()
-    assert driven.asks(LIGHT) == [Give(life=driven.life, command=LIGHT)]
+    assert driven.asks(LIGHT) == [driven.given(LIGHT)]
 
 
 def test_a_driver_that_does_not_come_back_from_send_has_lost_its_devices(driven: Driven) -> None:
@@ -202,7 +208,7 @@ def test_a_latch_is_told_again_to_who_comes_back_or_boots(driven: Driven) -> Non
     assert len(driven.says(boot_id=1)) == 1
     again = Stop(id="", robot="station", mode=StopMode.LATCH)
     _, give = driven.says(boot_id=2)
-    assert give == Give(life=driven.life, command=again)
+    assert give == driven.given(again)
     driven.step(Taken(at=driven.now, life=driven.life, command=again))
     (refused,) = driven.asks(GO)
     assert isinstance(refused, Report) and refused.refusal == "paro"

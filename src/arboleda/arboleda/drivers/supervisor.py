@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from arboleda.model.commands import Command
+from arboleda.model.commands import Command, Stop
 from arboleda.model.messages import Report, Undelivered
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
@@ -25,6 +25,7 @@ SILENT = Phrase("driver.silent", "its driver {driver} has said nothing for {seco
 STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send for {seconds:g} s")
 FAILED = Phrase("driver.failed", "its driver {driver} broke down ({error}), and is started again")
 NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({error}), and tries again")
+LATE = Phrase("driver.late", "it waited for too long and must not leave any more")
 NOT_SENT = Phrase("driver.not_sent", "its driver {driver} could not send a command ({error})")
 UNSAID = Phrase("driver.unsaid", "its driver {driver} says that there is no link")
 NONSENSE = Phrase("driver.nonsense", "the driver {driver} reported nonsense: {why}")
@@ -96,10 +97,11 @@ class Begin:
 
 @dataclass(frozen=True, kw_only=True)
 class Give:
-    """Have a driver send a command."""
+    """Have a driver send a command, unless it is later than `until` by then."""
 
     life: Life
     command: Command
+    until: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,9 +221,11 @@ class SupervisedDriver:
         return [*given, *([End(life=self.life)] if alive else [])]
 
     def _give(self, at: float, device: DrivenDevice, command: Command) -> Give:
+        """What waits behind a `send` that is stuck was given up with it; a stop is never too late."""
         device.leaves(command)
         self._given.append(at)
-        return Give(life=self.life, command=command)
+        until = math.inf if isinstance(command, Stop) else self._given[0] + self._stuck_after_s
+        return Give(life=self.life, command=command, until=until)
 
 
 class Supervisor:

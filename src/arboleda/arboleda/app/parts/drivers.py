@@ -175,7 +175,9 @@ class Worker:
         life, command = job.life, job.command
         back: dict[str, Any] = {}
         try:
-            if self._driver is not None and life == self._life:
+            if clock.seconds() > job.until:
+                back = {"error": supervisor.LATE()}
+            elif self._driver is not None and life == self._life:
                 self._driver.send(command)
         except NotSent as error:
             back = {"error": error.sentence}
