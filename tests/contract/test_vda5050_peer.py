@@ -1,0 +1,212 @@
+"""The driver vda5050 with a vehicle that we did not write, that of vda-5050-lib, at a mosquitto."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters.mqtt import MqttClient
+from arboleda.adapters.vda5050.driver import Vda5050
+from arboleda.app.config import load
+from arboleda.drivers import FollowPath, MotionState, Report, Stop, StopMode
+from arboleda.drivers.vda5050.settings import Settings
+from arboleda.kinds.declared import Device
+from arboleda.model.facts import Value
+from arboleda.model.plant_model import Robot
+from arboleda.wire.transport import Delivery
+
+from .conftest import Inbox, Mosquitto
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("node")]
+
+LIBRARY = Path(sys.prefix, "npm/node_modules/vda-5050-lib")
+VEHICLE = Path(__file__).with_name("virtual_agv.js")
+TOPICS = "uagv/v2/peer/agv1"
+PLANT = """
+name: hall
+uses: [recipes.py]
+kinds:
+  forks:
+    facts: {loaded: bool, charging: bool, battery: number}
+    verbs:
+      pick:
+        effect: switch
+        with: {station_type: [floor], load_type: [EPAL, none], duration: [0.1, 9]}
+        sets: {loaded: true}
+        takes_s: 1
+        at_most_s: 20
+      noop: {effect: process, with: {duration: [0.1, 9]}, takes_s: 1, at_most_s: 20}
+      dance: {effect: process, takes_s: 1, at_most_s: 20}
+      start_charging:
+        {effect: process, with: {duration: [0.1, 9]}, sets: {charging: true}, takes_s: 1, at_most_s: 20}
+      stop_charging:
+        {effect: process, with: {duration: [0.1, 9]}, sets: {charging: false}, takes_s: 1, at_most_s: 20}
+cells:
+  hall:
+    devices:
+      cart: {kind: mobile, grid: {pitch_mm: 400}}
+      forks: {kind: forks}
+    targets: {home: {cart: {node: 0}}}
+"""
+RECIPES = """
+from arboleda.recipes import recipe
+
+@recipe("home")
+def home(cell):
+    return cell.device("cart").go("home")
+"""
+INSTANT = ("noop", "stop_charging")
+
+
+class Hall:
+    """The driver with a cart and its forks, the vehicle's process, and what is said at the broker."""
+
+    def __init__(self, robots: dict[str, Robot], broker: Mosquitto, node: str) -> None:
+        self._robots, self._broker, self._node = robots, broker, node
+        self.reports = Inbox()
+        self.wire = Inbox()
+        self._spy = MqttClient("spy", broker.address, on_event=self.wire.put, subscriptions=[f"{TOPICS}/#"])
+        self._spy.start()
+        self.wire.wait(lambda inbox: any(inbox.links))
+        where = f"{broker.address.host}:{broker.address.port}"
+        settings = Settings(
+            broker=where, manufacturer="peer", serial="agv1", version="2.0", base=1, instant=INSTANT
+        )
+        self._driver = Vda5050(settings)
+        self._driver.start(list(robots.values()), self.reports.put, time.monotonic)
+        self.vehicle = self.boot()
+
+    def boot(self) -> subprocess.Popen[bytes]:
+        url = f"mqtt://{self._broker.address.host}:{self._broker.address.port}"
+        self.vehicle = subprocess.Popen([self._node, VEHICLE, LIBRARY, url, "agv1"])
+        return self.vehicle
+
+    def close(self) -> None:
+        self._driver.stop()
+        self.vehicle.kill()
+        self.vehicle.wait()
+        self._spy.close()
+
+    def drive(self, id: str, *nodes: int) -> None:
+        self._driver.send(FollowPath(id=id, robot="cart", nodes=nodes))
+
+    def do(self, id: str, verb: str, **values: Value) -> None:
+        forks = self._robots["forks"]
+        assert isinstance(forks, Device)
+        self._driver.send(forks.kind.command(id=id, robot="forks", verb=verb, values=values))
+
+    def stop(self, mode: StopMode) -> None:
+        self._driver.send(Stop(id="", robot="cart", mode=mode))
+
+    def hears(self, robot: str, **said: object) -> Report:
+        """The first report of a robot, from now on, that says all of this."""
+        began = len(self.reports)
+
+        def found(reports: Inbox) -> Report | None:
+            mine = (each for each in reports[began:] if each.robot == robot)
+            return next((each for each in mine if all(getattr(each, key) == said[key] for key in said)), None)
+
+        return self.reports.wait(found)
+
+    def told(self, topic: str) -> list[Any]:
+        """All messages of a topic so far."""
+        sent = [each for each in list(self.wire) if isinstance(each, Delivery) and each.topic.endswith(topic)]
+        return [json.loads(each.payload) for each in sent]
+
+
+@pytest.fixture
+def hall(
+    mosquitto: Callable[..., Mosquitto], require: Callable[[str], str], tmp_path: Path
+) -> Iterator[Hall]:
+    """The vehicle stands at node 0, and is heard."""
+    if not LIBRARY.is_dir():
+        pytest.skip("vda-5050-lib is not installed: make test-tools")
+    for name, text in (("plant.yaml", PLANT), ("recipes.py", RECIPES)):
+        (tmp_path / name).write_text(text, "utf-8")
+    broker = mosquitto()
+    broker.start()
+    hall = Hall(dict(load(tmp_path / "plant.yaml").robots), broker, require("node"))
+    try:
+        hall.hears("cart", state=MotionState.STOPPED, node=0, homed=True)
+        yield hall
+    finally:
+        hall.close()
+
+
+def test_a_way_is_driven_to_its_end_by_updates_on_the_way(hall: Hall) -> None:
+    hall.drive("1-1", 0, 1, 2, 5)
+    hall.hears("cart", accepted="1-1", state=MotionState.MOVING)
+    assert hall.hears("cart", done="1-1").node == 5
+    assert [each["orderUpdateId"] for each in hall.told("/order")] == [0, 1, 2]
+    assert any(state["driving"] and state["orderUpdateId"] for state in hall.told("/state"))
+
+
+def test_an_action_at_a_node_is_done_with_its_fact(hall: Hall) -> None:
+    hall.do("1-1", "pick", station_type="floor", load_type="EPAL", duration=0.1)
+    assert hall.hears("forks", done="1-1").fact("loaded") is True
+
+
+def test_an_action_with_a_value_that_it_does_not_know_is_rejected(hall: Hall) -> None:
+    hall.do("1-1", "pick", station_type="floor", load_type="none", duration=0.1)
+    assert hall.hears("forks", rejected="1-1").refusal == "orderError"
+
+
+def test_an_action_that_it_does_not_have_is_rejected(hall: Hall) -> None:
+    hall.do("1-1", "dance")
+    assert hall.hears("forks", rejected="1-1").refusal == "orderError"
+
+
+def test_an_instant_action_is_done_on_the_way(hall: Hall) -> None:
+    hall.drive("1-1", 0, 1, 2, 5, 8)
+    hall.hears("cart", accepted="1-1")
+    hall.do("1-2", "noop", duration=0.1)
+    assert hall.hears("forks", done="1-2").done == "1-2"
+    assert hall.hears("cart", done="1-1").node == 8
+
+
+def test_it_charges_and_takes_no_order_until_it_does_not(hall: Hall) -> None:
+    hall.do("1-1", "start_charging", duration=0.1)
+    assert hall.hears("forks", done="1-1").fact("charging") is True
+    hall.drive("1-2", 0, 1)
+    assert hall.hears("cart", rejected="1-2").refusal == "orderError"
+    hall.do("1-3", "stop_charging", duration=0.1)
+    assert hall.hears("forks", done="1-3").fact("charging") is False
+    hall.drive("1-4", 0, 1)
+    assert hall.hears("cart", done="1-4").node == 1
+
+
+def test_a_halt_ends_its_order_and_the_next_begins_where_it_stands(hall: Hall) -> None:
+    hall.drive("1-1", 0, 1, 2)
+    hall.hears("cart", accepted="1-1")
+    hall.stop(StopMode.HALT)
+    stood = hall.hears("cart", state=MotionState.STOPPED)
+    assert stood.done is None and stood.node != 2
+    hall.drive("1-2", 0, 3)
+    assert hall.hears("cart", done="1-2").node == 3
+
+
+def test_a_latch_holds_until_it_is_cleared(hall: Hall) -> None:
+    hall.drive("1-1", 0, 1, 2)
+    hall.hears("cart", accepted="1-1")
+    hall.stop(StopMode.LATCH)
+    assert hall.hears("cart", state=MotionState.STOP_LATCHED).done is None
+    hall.stop(StopMode.CLEAR)
+    hall.hears("cart", state=MotionState.STOPPED)
+
+
+def test_a_killed_vehicle_is_lost_by_its_last_will_and_back_without_its_order(hall: Hall) -> None:
+    hall.drive("1-1", 0, 1, 2)
+    hall.hears("cart", accepted="1-1")
+    hall.vehicle.kill()
+    hall.vehicle.wait()
+    assert "the connection of peer/agv1 broke" in str(hall.hears("cart", state=MotionState.NO_LINK).lost)
+    hall.boot()
+    back = hall.hears("cart", state=MotionState.STOPPED)
+    assert (back.node, back.accepted, back.done) == (0, None, None)
