@@ -316,6 +316,14 @@ def test_who_is_ended_while_it_writes_what_it_begins_is_told_by_what_it_began_be
     )
 
 
+def test_recipes_that_were_given_up_did_not_end_python(tmp_path: Path) -> None:
+    told = recipe_trial.broken_off(tmp_path, None)
+    assert told.startswith("the recipes could not be tried: nothing came of it for 60 s; try again")
+    with recipe_trial.watching(tmp_path, 1000.0) as watch:
+        watch(Spot(file="recipes.py", line=9), "building heat")
+    assert recipe_trial.broken_off(tmp_path, None) == "recipes.py:9:1: building heat takes more than 60 s"
+
+
 def test_of_many_tasks_a_sample_is_tried_and_said(tmp_path: Path) -> None:
     many = ", ".join(map(str, range(1, 31)))
     recipes = HEAD + (

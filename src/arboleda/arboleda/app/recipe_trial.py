@@ -25,7 +25,8 @@ from .plant_file.problems import Kept
 from .plant_file.used import Spot, Used, unwatched
 
 LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
-STUCK_S = 30.0  # after which not even the watch in the other process has done its work
+STUCK_S = 60.0  # after which not even the watch in the other process has done its work
+SLOW = f"nothing came of it for {STUCK_S:g} s; try again when this machine has less to do"
 BEGIN = "import sys, json; sys.path[:] = json.loads(sys.argv[1]); from arboleda.app import recipe_trial; "
 START = BEGIN + "recipe_trial.main(sys.argv[2])"
 FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
@@ -139,7 +140,7 @@ def watching(folder: Path, longest_s: float) -> Iterator[Any]:
             faulthandler.cancel_dump_traceback_later()
 
 
-def _run(folder: Path) -> int:
+def _run(folder: Path) -> int | None:
     command = [sys.executable, "-I", "-c", START, json.dumps(sys.path), str(folder)]
     null = subprocess.DEVNULL
     with subprocess.Popen(command, stdin=null, stdout=null, stderr=null) as process:
@@ -149,8 +150,8 @@ def _run(folder: Path) -> int:
             process.kill()
 
 
-def _ended(process: subprocess.Popen[bytes], phase: Path) -> int:
-    """Wait for its end; one that neither ends nor begins anything is ended."""
+def _ended(process: subprocess.Popen[bytes], phase: Path) -> int | None:
+    """Its status; None for one that neither ends nor begins anything for long."""
     before: float | None = None
     while True:
         try:
@@ -158,19 +159,22 @@ def _ended(process: subprocess.Popen[bytes], phase: Path) -> int:
         except subprocess.TimeoutExpired:
             now = phase.stat().st_mtime if phase.exists() else None
             if now == before:
-                return -1
+                return None
             before = now
 
 
-def broken_off(folder: Path, status: int) -> str:
-    """Why the other process told nothing, with the line that it was at."""
+def broken_off(folder: Path, status: int | None) -> str:
+    """Why the other process told nothing, with the line that it was at; None: it was given up."""
     if not (folder / PHASE).exists():
-        return f"the recipes could not be tried: Python ended with status {status}"
+        ended = SLOW if status is None else f"Python ended with status {status}"
+        return f"the recipes could not be tried: {ended}"
     phase = json.loads((folder / PHASE).read_text("utf-8"))
     spot = Spot(file=phase["file"], line=phase["line"])
     stack = (folder / STACK).read_text("utf-8", "replace")
     if not stack:
-        return spot.problem(f"{phase['doing']} ends Python, with status {status}")
+        late = f"takes more than {STUCK_S:g} s"
+        ended = late if status is None else f"ends Python, with status {status}"
+        return spot.problem(f"{phase['doing']} {ended}")
     beside = Path(spot.file).absolute().parent
     for file, line in FRAME.findall(stack):
         if Path(file).parent == beside:  # the innermost comes first
