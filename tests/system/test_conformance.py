@@ -9,11 +9,13 @@ from typing import Any
 import pytest
 
 from arboleda.app.build import Options, build
+from arboleda.app.config import load
 from arboleda.testing import shipped
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(150)]
 
-CHECKS = 24
+CHECKS = 24  # for arms as for devices
+OWN_BOARD = Path(__file__).parents[2] / "examples/own_board/plant.yaml"
 
 
 @pytest.fixture
@@ -62,3 +64,20 @@ def test_a_robot_that_is_no_arm_is_bad_input(arboleda: Callable[..., Any]) -> No
     kit = arboleda("conformance", "--robot", "rm_sis_a", "--yes")
     assert kit.wait() == 2
     assert "there are ra1, ra2, ra3, ra_1, ra_2, ra_3" in " ".join(kit.output.split())
+
+
+def test_the_virtual_board_of_a_declared_device_passes_at_the_top(
+    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path
+) -> None:
+    mosquitto(free_port)
+    options = Options(broker=f"127.0.0.1:{free_port}", state_dir=tmp_path / "boards")
+    boards = build(load(OWN_BOARD), {"devices"}, options)
+    boards.start()
+    try:
+        where = ("--plant", str(OWN_BOARD), "--broker", f"127.0.0.1:{free_port}")
+        kit = arboleda("conformance", "--robot", "valve", *where, "--yes")
+        kit.wait_for("valve_1 reaches the level ids", patience_s=120)
+        assert kit.wait() == 0, kit.output
+        assert kit.output.count("good ") == CHECKS, kit.output
+    finally:
+        boards.stop()

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.conformance.bench import Jostle, Send
 from arboleda.app.conformance.judge import CHECKS, Judge
 from arboleda.kinds.arm import Arm, Joint
 from arboleda.model.commands import StopMode
@@ -18,65 +17,17 @@ from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped
 from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal
-from arboleda.wire.topics import topic
 from arboleda.wire.transport import Delivery
 
+from .conformance_trial import Trial, wrong
+
 PLANT = shipped("sis_a", "sis_c")
-LONGEST_S = 600.0
-
-
-class Trial:
-    """A judge and a board joined by hand, from deadline to deadline."""
-
-    def __init__(self, arm: Arm, board: Board) -> None:
-        self.arm, self.board = arm, board
-        self.now = 1000.0
-        self.judge = Judge(arm, epoch=50, now=self.now)
-        self.kept: dict[str, bytes] = {}
-        board.connect(self._us, True)
-
-    @property
-    def _us(self) -> int:
-        return round(self.now * 1e6)
-
-    def run(self) -> Judge:
-        while not self.judge.over and self.now < 1000.0 + LONGEST_S:
-            for message in self.judge.step(self.now, self._heard()):
-                self._carry_out(message)
-            times = [self.judge.next_deadline, (self.board.next_deadline_us or math.inf) / 1e6]
-            self.now = max(self.now, min(time for time in times if time is not None))
-            self.board.advance(self._us)
-        assert self.judge.over
-        return self.judge
-
-    def _heard(self) -> list[Delivery]:
-        return [Delivery(at=self.now, topic=sent.topic, payload=sent.payload) for sent in self.board.take()]
-
-    def _carry_out(self, message: Send | Jostle) -> None:
-        if isinstance(message, Jostle):
-            self.board.connect(self._us, False)
-            self.board.connect(self._us, True)
-            for where, payload in self.kept.items():
-                self._deliver(where, payload, retain=True)
-            return
-        where = topic(self.arm.mqtt, message.channel)
-        if message.retain:
-            self.kept.pop(where, None)
-            self.kept.update({where: message.payload} if message.payload else {})
-        self._deliver(where, message.payload, retain=False)
-
-    def _deliver(self, where: str, payload: bytes, *, retain: bool) -> None:
-        self.board.receive(self._us, Delivery(at=self.now, topic=where, payload=payload, retain=retain))
 
 
 def trial(kind: Callable[..., Board] = Board, cell: str = "sis_a", **declared: Any) -> Judge:
     arm = replace(PLANT.cell(cell).arm, **declared)
     board = kind(arm, ArmBody(arm, start=arm.reference, pickups=()), boot_id=9, now_us=1_000_000_000)
     return Trial(arm, board).run()
-
-
-def wrong(judge: Judge) -> dict[str, str]:
-    return {finding.check.name: finding.wrong for finding in judge.findings if finding.wrong}
 
 
 @pytest.mark.parametrize("cell", ["sis_a", "sis_c"], ids=["scara", "cr10a"])

@@ -1,1 +1,1 @@
-"""Runs the contract against any arm's board: a pure judge, and its way over MQTT."""
+"""Runs the contract against the board of an arm or a declared device: a pure judge, and its way over MQTT."""

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
-from arboleda.kinds.arm import Arm
 from arboleda.model.errors import PayloadError
-from arboleda.wire import strict
-from arboleda.wire.payloads import MAX_ANGLE_DEG, REFUSALS
+from arboleda.model.plant_model import Evidence
 from arboleda.wire.topics import Channel, parse
 from arboleda.wire.transport import Delivery
-from arboleda.wire.units import to_wire
 
-MOVING, NOT_HOMED = 1, 3  # codes of `estado`
+MOVING, NOT_HOMED, LATCHED = 1, 3, 4  # codes of `estado`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,11 +51,10 @@ class NotTried(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Said:
-    """One telemetry message, angles in degrees; None for what it does not say."""
+    """One telemetry message; None for what it does not say."""
 
     at: float
     state: int
-    q: tuple[float, ...] | None
     number: int | None
     epoch: int | None
     ack: int | None
@@ -65,27 +62,51 @@ class Said:
     refusal: str | None
     refused: int | None
     boot_id: int | None
-    homed: bool | None
-    effector: bool | None
+
+    @property
+    def place(self) -> tuple[Any, ...] | None:
+        """Where it says to be, or how: the same in two reports between which nothing moved."""
+        raise NotImplementedError
 
 
-class Bench:
-    """An arm's board on trial; `seq` is the last number used in `epoch`."""
+SaidT = TypeVar("SaidT", bound=Said)
 
-    def __init__(self, arm: Arm, epoch: int) -> None:
-        self.arm = arm
+
+class Bench(ABC, Generic[SaidT]):
+    """A board on trial, `name` on MQTT; `seq` is the last number used in `epoch`."""
+
+    patience_s = 30.0  # for it to come to rest
+
+    def __init__(self, name: str, epoch: int) -> None:
+        self.name = name
         self.epoch = epoch
         self.seq = 0
         self.now = 0.0
         self.beating = False
-        self.said: list[Said] = []
+        self.said: list[SaidT] = []
         self.damaged: list[str] = []
         self.arrivals = 0  # how often it said that it is there
-        self.step_deg = tuple(to_wire(joint, joint.step) for joint in arm.joints)
 
     @property
-    def last(self) -> Said:
+    def last(self) -> SaidT:
         return self.said[-1]
+
+    @property
+    def spoken(self) -> Evidence:
+        """The level that its reports belong to."""
+        if not self.said or not self.says_where:
+            return Evidence.STATE
+        return Evidence.JOINTS if self.last.boot_id is None else Evidence.IDS
+
+    @property
+    @abstractmethod
+    def says_where(self) -> bool:
+        """Whether its last report says more than that it moves or not."""
+
+    @property
+    @abstractmethod
+    def place(self) -> tuple[Any, ...]:
+        """Where it said last to be, or how; equal while nothing is done."""
 
     def hear(self, delivery: Delivery) -> None:
         """A message from the board."""
@@ -110,53 +131,6 @@ class Bench:
         numbers = {"seq": self.seq if seq is None else seq, "epoca": self.epoch if epoch is None else epoch}
         return Send(channel=channel, payload=json.dumps({**body, **numbers}).encode())
 
-    def goal(self, steps: tuple[int, ...], **numbers: int) -> Send:
-        """A target in motor steps."""
-        degrees = zip(steps, self.step_deg, strict=True)
-        q = {f"q{at + 1}": round(count * step, 4) for at, (count, step) in enumerate(degrees)}
-        return self.send(Channel.JOINTS, **q, **numbers)
-
-    @property
-    def steps(self) -> tuple[int, ...]:
-        """Where it last said to be, in motor steps."""
-        rows = zip(self.last.q or (), self.step_deg, strict=False)
-        return tuple(round(angle / step) for angle, step in rows)
-
-    def away(self, part: float) -> tuple[int, ...]:
-        """A place so far from here on each joint, as a part of its whole way."""
-        rows = zip(self.arm.joints, self.steps or self._middle(), strict=True)
-        return tuple(
-            _away(joint.steps(joint.lower), joint.steps(joint.upper), here, part) for joint, here in rows
-        )
-
-    def at(self, steps: tuple[int, ...]) -> bool:
-        """Whether it said last that it is there."""
-        return self.steps == steps
-
-    def _middle(self) -> tuple[int, ...]:
-        return tuple(joint.steps((joint.lower + joint.upper) / 2) for joint in self.arm.joints)
-
-    def _read(self, delivery: Delivery) -> Said:
-        fields = strict.read(delivery.payload)
-        keys = [f"q{at + 1}_mov" for at in range(len(self.arm.joints))]
-        spoken = any(key in fields for key in keys)
-        return Said(
-            at=delivery.at,
-            state=fields.integer("estado", 4),
-            q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if spoken else None,
-            number=fields.optional("seq"),
-            epoch=fields.optional("epoca_ack"),
-            ack=fields.optional("ack"),
-            done=fields.optional("hecho"),
-            refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,
-            refused=fields.optional("rechazo_seq"),
-            boot_id=fields.optional("arranque"),
-            homed=fields.flag("ref"),
-            effector=fields.flag("efector"),
-        )
-
-
-def _away(lower: int, upper: int, here: int, part: float) -> int:
-    way = max(2, int((upper - lower) * part))
-    there = here + way if upper - here >= here - lower else here - way
-    return min(max(there, lower), upper)
+    @abstractmethod
+    def _read(self, delivery: Delivery) -> SaidT:
+        """PayloadError where it cannot be read."""

@@ -9,9 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address, login
-from arboleda.kinds.arm import Arm
 from arboleda.model.errors import StartError
-from arboleda.model.plant_model import Evidence, PlantModel
+from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 
 from .. import config
 from ..where import PlantFile
@@ -20,11 +19,11 @@ if TYPE_CHECKING:
     from .judge import Finding, Judge
 
 PASSED, FAILED = 0, 1
-HELP = """Run the contract against an arm's board, of whatever kind, and say which level it reaches.
+HELP = """Run the contract against the board of an arm or of a declared kind, and say which level it reaches.
 
-It moves the arm: from one limit to the other and to its reference. Nobody may be near it, no part in its
-effector, and no plant on the broker. A halt in software is not a safety function: have the button that
-removes motor power at hand.
+It moves the arm: from one limit to the other and to its reference. Of a device of a declared kind it tries
+every verb, as often as it has to. Nobody may be near it, no part in its effector or its clamp, and no plant
+on the broker. A halt in software is not a safety function: have the button that removes power at hand.
 
 Exit status: 0 it does all that belongs to the level it speaks at, 1 it does not, 2 bad input."""
 MEANING = {
@@ -32,40 +31,53 @@ MEANING = {
     Evidence.JOINTS: "joints: where it is, too",
     Evidence.IDS: "ids: which command it accepted, refused and finished, too",
 }
+DEVICE_MEANING = {**MEANING, Evidence.JOINTS: "facts: how it is, too"}
 
-Robot = Annotated[str, typer.Option(metavar="NAME", help="The robot's name on MQTT, or in the plant file.")]
+Name = Annotated[str, typer.Option(metavar="NAME", help="The robot's name on MQTT, or in the plant file.")]
 Broker = Annotated[
     str,
     typer.Option(metavar="HOST:PORT", help="The broker that the board is on; login as for `arboleda run`."),
 ]
-Yes = Annotated[bool, typer.Option("--yes", help="Do not ask whether the arm may move.")]
+Yes = Annotated[bool, typer.Option("--yes", help="Do not ask whether it may move.")]
 
 
 def add_to(cli: typer.Typer) -> None:
     """Add the command."""
 
     def conformance(
-        robot: Robot, broker: Broker = f"127.0.0.1:{MQTT_PORT}", plant: PlantFile = None, yes: Yes = False
+        robot: Name, broker: Broker = f"127.0.0.1:{MQTT_PORT}", plant: PlantFile = None, yes: Yes = False
     ) -> None:
-        arm = _arm(config.load(plant), robot)
+        tried = _named(config.load(plant), robot)
         if not yes:
-            typer.confirm(f"{arm.mqtt} will move from limit to limit. Is nobody near it?", abort=True)
-        raise typer.Exit(_try(arm, broker, login()))
+            typer.confirm(f"{tried.mqtt} will {_deeds(tried)}. Is nobody near it?", abort=True)
+        raise typer.Exit(_try(tried, broker, login()))
 
     cli.command("conformance", help=HELP, short_help=HELP.partition("\n")[0])(conformance)
 
 
-def _arm(model: PlantModel, name: str) -> Arm:
-    arms = {robot.mqtt: robot for robot in model.robots.values() if robot.has_joints}
-    arms |= {robot.name: robot for robot in arms.values()}
-    if name not in arms:
+def _named(model: PlantModel, name: str) -> Robot:
+    robots = {robot.mqtt: robot for robot in model.robots.values() if _has_board(robot)}
+    robots |= {robot.name: robot for robot in robots.values()}
+    if name not in robots:
         raise typer.BadParameter(
-            f"'{name}' is not an arm of this plant; there are {', '.join(sorted(arms))}", param_hint="--robot"
+            f"'{name}' is neither an arm nor a device of a declared kind with link mqtt; "
+            f"there are {', '.join(sorted(robots))}",
+            param_hint="--robot",
         )
-    return arms[name]
+    return robots[name]
 
 
-def _try(arm: Arm, broker: str, credentials: Credentials | None) -> int:
+def _has_board(robot: Robot) -> bool:
+    return robot.has_joints or (robot.link is Link.MQTT and bool(robot.verb_names))
+
+
+def _deeds(robot: Robot) -> str:
+    if robot.has_joints:
+        return "move from limit to limit"
+    return f"do all that a {robot.kind_name} can: {', '.join(robot.verb_names)}"
+
+
+def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
     from .trial import Trial  # it takes a while to load, and only this command needs it
 
     console = Console(highlight=False)
@@ -81,9 +93,9 @@ def _try(arm: Arm, broker: str, credentials: Credentials | None) -> int:
             console.print(_line(finding), soft_wrap=True)
         said = len(judge.findings)
 
-    trial = Trial(arm, where, credentials, told)
+    trial = Trial(robot, where, credentials, told)
     trial.run()
-    console.print(_verdict(arm, trial.judge), soft_wrap=True)
+    console.print(_verdict(robot, trial.judge), soft_wrap=True)
     return PASSED if trial.judge.reached is trial.judge.spoken else FAILED
 
 
@@ -96,18 +108,27 @@ def _line(finding: Finding) -> Text:
     return Text(f"good       {name}{(finding.check.steps.__doc__ or '').strip()}")
 
 
-def _verdict(arm: Arm, judge: Judge) -> Text:
-    from .judge import CHECKS, LEVELS
+def _verdict(robot: Robot, judge: Judge) -> Text:
+    from .judge import LEVELS
 
     wrong = [finding.check.name for finding in judge.findings if finding.wrong]
     if judge.reached is None:
-        return Text(f"{arm.mqtt} reaches no level; wrong: {', '.join(wrong)}", style="red")
-    level = f"{arm.mqtt} reaches the level {judge.reached.value} ({MEANING[judge.reached]})"
+        return Text(f"{robot.mqtt} reaches no level; wrong: {', '.join(wrong)}", style="red")
+    meaning, level_name = _level(robot, judge.reached)
+    level = f"{robot.mqtt} reaches the level {level_name} ({meaning})"
     made = sum(finding.untried is None for finding in judge.findings)
-    needed = sum(LEVELS.index(check.level) <= LEVELS.index(judge.spoken) for check in CHECKS)
+    needed = sum(LEVELS.index(check.level) <= LEVELS.index(judge.spoken) for check in judge.checks)
     count = f"{made} of {needed} checks made"
     if not wrong:
         return Text(f"{level}; {count}", style="green")
     return Text(
-        f"{level}, speaks as one of {judge.spoken.value}; {count}; wrong: {', '.join(wrong)}", style="red"
+        f"{level}, speaks as one of {_level(robot, judge.spoken)[1]}; {count}; wrong: {', '.join(wrong)}",
+        style="red",
     )
+
+
+def _level(robot: Robot, level: Evidence) -> tuple[str, str]:
+    """What a level means for it, and its name in the plant file."""
+    if robot.has_joints:
+        return MEANING[level], level.value
+    return DEVICE_MEANING[level], "facts" if level is Evidence.JOINTS else level.value

@@ -7,15 +7,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.kinds.arm import Arm
-from arboleda.model.plant_model import Evidence
+from arboleda.kinds.declared import Device
+from arboleda.model.by_class import nearest
+from arboleda.model.plant_model import Evidence, Robot
 from arboleda.wire.payloads import Beat, encode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
+from . import device_checks as device
+from . import device_number_checks as device_number
 from . import motion_checks as motion
 from . import number_checks as number
+from .arm_bench import ArmBench
+from .arm_ways import ready
 from .bench import Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
-from .ways import ready, settle
+from .device_bench import DeviceBench
+from .ways import settle
 
 BEAT_S = 0.25
 LEVELS = (Evidence.STATE, Evidence.JOINTS, Evidence.IDS)  # each includes those before it
@@ -27,7 +34,7 @@ class Check:
 
     name: str
     level: Evidence
-    steps: Callable[[Bench], Steps]
+    steps: Callable[[Any], Steps]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,12 +73,62 @@ CHECKS = (
     Check(name="homing", level=Evidence.IDS, steps=number.homing),
 )
 
+DEVICE_CHECKS = (
+    Check(name="telemetry", level=Evidence.STATE, steps=motion.telemetry),
+    Check(name="works", level=Evidence.STATE, steps=device.works),
+    Check(name="rhythm", level=Evidence.JOINTS, steps=motion.rhythm),
+    Check(name="facts", level=Evidence.JOINTS, steps=device.facts),
+    Check(name="verbs", level=Evidence.JOINTS, steps=device.verbs),
+    Check(name="halts", level=Evidence.JOINTS, steps=device.halts),
+    Check(name="malformed", level=Evidence.JOINTS, steps=device.malformed),
+    Check(name="unknown", level=Evidence.JOINTS, steps=device.unknown),
+    Check(name="numbers", level=Evidence.IDS, steps=device_number.numbers),
+    Check(name="telling", level=Evidence.IDS, steps=device_number.telling),
+    Check(name="duplicate", level=Evidence.IDS, steps=device_number.duplicate),
+    Check(name="old", level=Evidence.IDS, steps=device_number.old),
+    Check(name="old epoch", level=Evidence.IDS, steps=device_number.old_epoch),
+    Check(name="new epoch", level=Evidence.IDS, steps=device_number.new_epoch),
+    Check(name="stamped", level=Evidence.IDS, steps=device_number.stamped),
+    Check(name="words", level=Evidence.IDS, steps=device_number.words),
+    Check(name="needs", level=Evidence.IDS, steps=device_number.needs),
+    Check(name="busy", level=Evidence.IDS, steps=device_number.busy),
+    Check(name="queries", level=Evidence.IDS, steps=device_number.queries),
+    Check(name="retained", level=Evidence.IDS, steps=device_number.retained),
+    Check(name="halted", level=Evidence.IDS, steps=device_number.halted),
+    Check(name="stop from anybody", level=Evidence.IDS, steps=device_number.stop_from_anybody),
+    Check(name="latch", level=Evidence.IDS, steps=device_number.latch),
+    Check(name="silence", level=Evidence.IDS, steps=device_number.silence),
+)
+
+
+def _no_reference(bench: DeviceBench) -> Steps:
+    """A device has no reference to look for."""
+    yield from ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Course:
+    """How boards of one class of robot are tried; `ready`: what has to be done before a check begins."""
+
+    bench: Callable[[Any, int], Bench[Any]]
+    checks: tuple[Check, ...]
+    ready: Callable[[Any], Steps]
+
+
+COURSES: dict[type[Robot], Course] = {
+    Arm: Course(bench=ArmBench, checks=CHECKS, ready=ready),
+    Device: Course(bench=DeviceBench, checks=DEVICE_CHECKS, ready=_no_reference),
+}
+
 
 class Judge:
     """Events are what the board published; messages are `Send` and `Jostle`. `over` when all is known."""
 
-    def __init__(self, arm: Arm, *, epoch: int, now: float) -> None:
-        self.bench = Bench(arm, epoch)
+    def __init__(self, robot: Robot, *, epoch: int, now: float) -> None:
+        course = nearest(COURSES, type(robot))
+        if course is None:
+            raise TypeError(f"nothing says what the board of {robot.name} has to do")
+        self.bench, self.checks, self._ready = course.bench(robot, epoch), course.checks, course.ready
         self.findings: list[Finding] = []
         self.current: Check | None = None
         self.over = False
@@ -88,10 +145,7 @@ class Judge:
     @property
     def spoken(self) -> Evidence:
         """The level that the board's reports belong to."""
-        said = self.bench.said[-1] if self.bench.said else None
-        if said is None or said.q is None:
-            return Evidence.STATE
-        return Evidence.JOINTS if said.boot_id is None else Evidence.IDS
+        return self.bench.spoken
 
     @property
     def reached(self) -> Evidence | None:
@@ -133,7 +187,7 @@ class Judge:
         return out
 
     def _all(self) -> Generator[Send | Jostle | Wait, Any, None]:
-        for check in CHECKS:
+        for check in self.checks:
             self.current = check
             if LEVELS.index(check.level) > LEVELS.index(self.spoken):
                 return
@@ -157,7 +211,7 @@ class Judge:
     def _settled(self, check: Check) -> Generator[Send | Jostle | Wait, Any, str | None]:
         try:
             yield from settle(self.bench)
-            yield from ready(self.bench)
+            yield from self._ready(self.bench)
         except Wrong as found:
             return f"afterwards {found}"
         return None

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import copysign
+from typing import Any
 
 from arboleda.model.counting import counted
 from arboleda.wire.topics import Channel
 from arboleda.wire.units import to_wire
 
+from .arm_bench import ArmBench
+from .arm_ways import drive, set_off
 from .bench import MOVING, Bench, Send, Steps, Wait
-from .ways import demand, drive, rest, set_off, stop, unmoved
+from .ways import demand, rest, stop, unmoved
 
 LISTEN_S = 2.0
 LONGEST_GAP_S = 1.0  # a plant calls a board stale after 1.5 s
@@ -30,14 +33,14 @@ MALFORMED = (
 )
 
 
-def telemetry(bench: Bench) -> Steps:
+def telemetry(bench: Bench[Any]) -> Steps:
     """Every report is one JSON object with the state, of at most 512 bytes."""
     yield Wait(seconds=LISTEN_S)
-    demand(bool(bench.said), f"nothing on {bench.arm.mqtt}/sensores that can be read in {LISTEN_S:g} s")
+    demand(bool(bench.said), f"nothing on {bench.name}/sensores that can be read in {LISTEN_S:g} s")
     demand(not bench.damaged, "it says " + "; ".join(bench.damaged[:1]))
 
 
-def moves(bench: Bench) -> Steps:
+def moves(bench: ArmBench) -> Steps:
     """A goal makes it report moving, and then standing still."""
     before = len(bench.said)
     yield from drive(bench, bench.away(0.1))
@@ -46,7 +49,7 @@ def moves(bench: Bench) -> Steps:
     )
 
 
-def rhythm(bench: Bench) -> Steps:
+def rhythm(bench: Bench[Any]) -> Steps:
     """It reports at 10 Hz, also while nothing happens."""
     before = len(bench.said)
     yield Wait(seconds=LISTEN_S)
@@ -57,7 +60,7 @@ def rhythm(bench: Bench) -> Steps:
     demand(gap <= LONGEST_GAP_S, f"{gap:.2f} s between two reports; 0.1 s are needed")
 
 
-def reaches(bench: Bench) -> Steps:
+def reaches(bench: ArmBench) -> Steps:
     """It stands on the goal in the end."""
     for part in (0.1, 0.05):
         goal = bench.away(part)
@@ -65,7 +68,7 @@ def reaches(bench: Bench) -> Steps:
         demand(bench.at(goal), f"it stands at {bench.steps} motor steps, not at {goal}")
 
 
-def rounds(bench: Bench) -> Steps:
+def rounds(bench: ArmBench) -> Steps:
     """A goal between two motor steps is rounded, not cut off."""
     goal = bench.away(0.05)
     less = tuple(
@@ -78,7 +81,7 @@ def rounds(bench: Bench) -> Steps:
     demand(bench.at(goal), f"for 0.4 steps less than {goal} it stands at {bench.steps}: it does not round")
 
 
-def halts(bench: Bench) -> Steps:
+def halts(bench: ArmBench) -> Steps:
     """`paro` 2 ends a move: short of its goal, and for good."""
     goal = bench.away(0.4)
     yield from set_off(bench, goal)
@@ -88,7 +91,7 @@ def halts(bench: Bench) -> Steps:
     yield from unmoved(bench, bench.steps, "a halt had ended its move")
 
 
-def malformed(bench: Bench) -> Steps:
+def malformed(bench: ArmBench) -> Steps:
     """Messages that are damaged in any way change nothing."""
     before = bench.steps
     for payload in MALFORMED:
@@ -96,7 +99,7 @@ def malformed(bench: Bench) -> Steps:
         yield from unmoved(bench, before, f"the damaged goal {payload[:40]!r}")
 
 
-def limits(bench: Bench) -> Steps:
+def limits(bench: ArmBench) -> Steps:
     """A goal beyond a limit changes nothing, whatever the other joints' goals are."""
     before = bench.steps
     beyond = round(to_wire(bench.arm.joints[-1], bench.arm.joints[-1].upper) + 5.0, 4)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from arboleda.wire.topics import Channel
 
-from .bench import MOVING, Bench, Jostle, NotTried, Send, Steps, Wait
-from .ways import REST_S, accepted, answer, demand, drive, refused, rest, set_off, stop, unmoved
+from .arm_bench import ArmBench
+from .arm_ways import drive, set_off
+from .bench import MOVING, Jostle, NotTried, Send, Steps, Wait
+from .ways import accepted, answer, demand, refused, rest, stop, unmoved
 
 SILENCE_S = 1.0
 RAMP_S = 1.5  # to come to rest after that, and to be heard
 BACK_S = 10.0
 
 
-def numbers(bench: Bench) -> Steps:
+def numbers(bench: ArmBench) -> Steps:
     """A goal is acknowledged by its number, and done by the same number when it rests on it."""
     goal = bench.away(0.1)
     bench.beating = True
@@ -23,7 +25,7 @@ def numbers(bench: Bench) -> Steps:
     demand(bench.last.ack == bench.seq, "ack has changed without a command")
 
 
-def telling(bench: Bench) -> Steps:
+def telling(bench: ArmBench) -> Steps:
     """Reports are numbered upwards in one boot, and say all that belongs to this level."""
     before = len(bench.said)
     yield Wait(seconds=1.0)
@@ -34,7 +36,7 @@ def telling(bench: Bench) -> Steps:
     demand(bench.last.homed is not None and bench.last.effector is not None, "ref or efector is missing")
 
 
-def duplicate(bench: Bench) -> Steps:
+def duplicate(bench: ArmBench) -> Steps:
     """The last command once more (QoS 1 may deliver twice) is neither refused nor carried out again."""
     goal = bench.goal(bench.away(0.1))
     bench.beating = True
@@ -47,7 +49,7 @@ def duplicate(bench: Bench) -> Steps:
     demand(bench.last.done == number, "the second delivery took its hecho away")
 
 
-def old(bench: Bench) -> Steps:
+def old(bench: ArmBench) -> Steps:
     """A number that is not greater than the last one is refused with viejo."""
     yield from drive(bench, bench.away(0.05))
     here, there = bench.steps, bench.away(0.1)
@@ -55,7 +57,7 @@ def old(bench: Bench) -> Steps:
     yield from refused(bench, bench.goal(here, seq=bench.seq - 1), "viejo", bench.seq - 1)
 
 
-def old_epoch(bench: Bench) -> Steps:
+def old_epoch(bench: ArmBench) -> Steps:
     """A lower epoca is refused with viejo, whatever its seq."""
     yield from accepted(bench, stop(bench, 2))
     number = bench.seq + 100
@@ -64,7 +66,7 @@ def old_epoch(bench: Bench) -> Steps:
     )
 
 
-def new_epoch(bench: Bench) -> Steps:
+def new_epoch(bench: ArmBench) -> Steps:
     """A higher epoca begins numbers of its own, and the old ones disappear."""
     yield from drive(bench, bench.away(0.05))
     bench.epoch, bench.seq = bench.epoch + 1, 0
@@ -72,7 +74,7 @@ def new_epoch(bench: Bench) -> Steps:
     demand(bench.last.done is None, f"hecho {bench.last.done} of the older epoca is still there")
 
 
-def stamped(bench: Bench) -> Steps:
+def stamped(bench: ArmBench) -> Steps:
     """A goal without seq and epoca is refused with formato."""
     before, payload = bench.steps, b'{"efector":0}'
     yield Send(channel=Channel.EFFECTOR, payload=payload)
@@ -81,7 +83,7 @@ def stamped(bench: Bench) -> Steps:
     yield from unmoved(bench, before, "a command without numbers")
 
 
-def retained(bench: Bench) -> Steps:
+def retained(bench: ArmBench) -> Steps:
     """What a broker kept for it is refused with retenido when it comes back."""
     yield from accepted(bench, stop(bench, 2))
     before, goal = bench.steps, bench.goal(bench.away(0.05), seq=bench.seq)
@@ -102,7 +104,7 @@ def retained(bench: Bench) -> Steps:
     yield from unmoved(bench, before, "a retained goal")
 
 
-def words(bench: Bench) -> Steps:
+def words(bench: ArmBench) -> Steps:
     """Damaged commands are refused with formato, goals beyond a limit with limite."""
     yield Send(channel=Channel.STOP, payload=b'{"paro":3}')
     said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
@@ -111,7 +113,7 @@ def words(bench: Bench) -> Steps:
     yield from refused(bench, bench.send(Channel.JOINTS, **{**q, "q1": 5000.0}), "limite")
 
 
-def halted(bench: Bench) -> Steps:
+def halted(bench: ArmBench) -> Steps:
     """A halted move never appears as done."""
     yield from set_off(bench, bench.away(0.4))
     number = bench.seq
@@ -120,7 +122,7 @@ def halted(bench: Bench) -> Steps:
     demand(bench.last.done != number, "it says hecho for a move that paro 2 has ended")
 
 
-def stop_from_anybody(bench: Bench) -> Steps:
+def stop_from_anybody(bench: ArmBench) -> Steps:
     """`paro` 2 is obeyed whatever its numbers are."""
     goal = bench.away(0.4)
     yield from set_off(bench, goal)
@@ -129,7 +131,7 @@ def stop_from_anybody(bench: Bench) -> Steps:
     demand(not bench.at(goal), "it went on to its goal: a halt with old numbers has to be obeyed too")
 
 
-def latch(bench: Bench) -> Steps:
+def latch(bench: ArmBench) -> Steps:
     """`paro` 1 stops and latches; until `paro` 0 neither goals nor effector on; clearing moves nothing."""
     goal = bench.away(0.4)
     yield from set_off(bench, goal)
@@ -144,7 +146,7 @@ def latch(bench: Bench) -> Steps:
     demand(bench.last.state == 0, f"after paro 0 its estado is {bench.last.state}, not 0")
 
 
-def retarget(bench: Bench) -> Steps:
+def retarget(bench: ArmBench) -> Steps:
     """A second goal in the middle of a move replaces the first, which is never done."""
     first = bench.away(0.4)
     here = bench.steps
@@ -157,7 +159,7 @@ def retarget(bench: Bench) -> Steps:
     demand(bench.last.done == bench.seq, "it does not say hecho for the second goal")
 
 
-def silence(bench: Bench) -> Steps:
+def silence(bench: ArmBench) -> Steps:
     """Once it has heard a beat, 1 s without beat or command ends a move."""
     yield from drive(bench, _end(bench, upper=False))
     far = _end(bench, upper=True)
@@ -170,14 +172,14 @@ def silence(bench: Bench) -> Steps:
     demand(bench.last.done != bench.seq, "it says hecho for a move that silence has ended")
 
 
-def effector(bench: Bench) -> Steps:
+def effector(bench: ArmBench) -> Steps:
     """It reports its effector as it was commanded."""
     for wanted in (1, 0):
         yield from accepted(bench, bench.send(Channel.EFFECTOR, efector=wanted))
         demand(bench.last.effector == bool(wanted), f"efector is not {wanted} after the command was accepted")
 
 
-def homing(bench: Bench) -> Steps:
+def homing(bench: ArmBench) -> Steps:
     """Homing: not homed and busy on the way, homed, done and at the reference in the end."""
     bench.beating = True
     yield from accepted(bench, bench.send(Channel.HOME, ref=1))
@@ -185,13 +187,13 @@ def homing(bench: Bench) -> Steps:
     demand(bench.last.homed is False, "it says ref 1 while it looks for its reference")
     yield from answer(bench, bench.goal(bench.steps))
     demand(bench.last.refusal == "ocupado", f"a goal during homing is refused with {bench.last.refusal}")
-    done = yield Wait(seconds=2 * REST_S, until=lambda: bench.last.done == number)
-    demand(done, f"homing has no hecho within {2 * REST_S:g} s")
+    done = yield Wait(seconds=2 * bench.patience_s, until=lambda: bench.last.done == number)
+    demand(done, f"homing has no hecho within {2 * bench.patience_s:g} s")
     demand(bench.last.homed is True and bench.last.state == 0, "homing is done, and it says it is not homed")
     demand(bench.at(tuple(0 for _ in bench.step_deg)), f"after homing it stands at {bench.steps} motor steps")
 
 
-def _end(bench: Bench, *, upper: bool) -> tuple[int, ...]:
+def _end(bench: ArmBench, *, upper: bool) -> tuple[int, ...]:
     """The far end of the joint that takes longest; the others stay."""
     joints = bench.arm.joints
     slowest = max(range(len(joints)), key=lambda at: joints[at].travel_s(joints[at].upper - joints[at].lower))

@@ -10,8 +10,8 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.adapters.broker_login import Address, Credentials
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.kinds.arm import Arm
 from arboleda.model.errors import StartError
+from arboleda.model.plant_model import Robot
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Connection, Delivery, Publication
 
@@ -28,9 +28,13 @@ class Trial:
     """Runs a judge to its end; `told` is called with it after every step, in the loop's thread."""
 
     def __init__(
-        self, arm: Arm, broker: Address, credentials: Credentials | None, told: Callable[[Judge], None]
+        self,
+        robot: Robot,
+        broker: Address,
+        credentials: Credentials | None,
+        told: Callable[[Judge], None],
     ) -> None:
-        self._arm = arm
+        self._name = robot.mqtt
         self._broker = broker
         self._credentials = credentials
         self._told = told
@@ -38,7 +42,7 @@ class Trial:
         self._there = threading.Event()
         self._crashed: BaseException | None = None
         self._places: list[threading.Thread] = []
-        self.judge = Judge(arm, epoch=int(time.time()), now=clock.seconds())
+        self.judge = Judge(robot, epoch=int(time.time()), now=clock.seconds())
         self._loop: Loop[Delivery, Send | Jostle] = Loop(
             "conformance",
             self.judge,
@@ -50,7 +54,7 @@ class Trial:
         self._client = MqttClient(
             f"arboleda_conformance_{uuid4().hex[:8]}",
             broker,
-            subscriptions=[topic(arm.mqtt, channel) for channel in channels],
+            subscriptions=[topic(robot.mqtt, channel) for channel in channels],
             on_event=self._hear,
             credentials=credentials,
         )
@@ -83,7 +87,7 @@ class Trial:
             self._places.append(threading.Thread(target=self._take_place, name="jostle"))
             self._places[-1].start()
             return
-        where = topic(self._arm.mqtt, message.channel)
+        where = topic(self._name, message.channel)
         qos = 0 if message.channel is Channel.BEAT else 1
         self._client.publish(
             Publication(topic=where, payload=message.payload, qos=qos, retain=message.retain)
@@ -93,7 +97,7 @@ class Trial:
         """Connect as the board, and go at once: the broker drops the board, which comes back."""
         taken = threading.Event()
         rival = MqttClient(
-            self._arm.mqtt,
+            self._name,
             self._broker,
             on_event=lambda event: taken.set() if isinstance(event, Connection) else None,
             credentials=self._credentials,
@@ -106,9 +110,7 @@ class Trial:
     def _halt(self) -> None:
         """`paro` 2 is obeyed whatever its numbers are; without a connection the board's own watch is left."""
         try:
-            halt = Publication(
-                topic=topic(self._arm.mqtt, Channel.STOP), payload=b'{"paro":2,"seq":1,"epoca":1}'
-            )
+            halt = Publication(topic=topic(self._name, Channel.STOP), payload=b'{"paro":2,"seq":1,"epoca":1}')
             self._client.publish(halt)
         except NotConnected:
             return

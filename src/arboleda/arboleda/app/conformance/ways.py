@@ -1,4 +1,4 @@
-"""What several checks do: send and wait for an answer, wait for rest, drive somewhere."""
+"""What checks of any board do: send and wait for an answer, wait for rest, stop."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from typing import Any
 
 from arboleda.wire.topics import Channel
 
-from .bench import MOVING, NOT_HOMED, Bench, Send, Steps, Wait, Wrong
+from .bench import MOVING, Bench, Send, Steps, Wait, Wrong
 
 ANSWER_S = 2.0
-REST_S = 30.0
 NOTHING_S = 0.4  # so long a board that does nothing is watched
 
 
@@ -19,19 +18,19 @@ def demand(truth: bool, sentence: str) -> None:
         raise Wrong(sentence)
 
 
-def rest(bench: Bench) -> Steps:
+def rest(bench: Bench[Any]) -> Steps:
     """Wait until two new reports say that it stands still at one place."""
     count = len(bench.said)
 
     def resting() -> bool:
         last = bench.said[max(count, len(bench.said) - 2) :]
-        return len(last) == 2 and all(said.state != MOVING and said.q == last[0].q for said in last)
+        return len(last) == 2 and all(said.state != MOVING and said.place == last[0].place for said in last)
 
-    rested = yield Wait(seconds=REST_S, until=resting)
-    demand(rested, f"it was not seen standing still within {REST_S:g} s")
+    rested = yield Wait(seconds=bench.patience_s, until=resting)
+    demand(rested, f"it was not seen standing still within {bench.patience_s:g} s")
 
 
-def answer(bench: Bench, send: Send, seq: int | None = None) -> Steps:
+def answer(bench: Bench[Any], send: Send, seq: int | None = None) -> Steps:
     """Send it, and wait until the board accepts or refuses its number."""
     yield send
     number, epoch = bench.seq if seq is None else seq, bench.epoch
@@ -44,7 +43,7 @@ def answer(bench: Bench, send: Send, seq: int | None = None) -> Steps:
     yield Wait(seconds=ANSWER_S, until=answered)
 
 
-def accepted(bench: Bench, send: Send) -> Steps:
+def accepted(bench: Bench[Any], send: Send) -> Steps:
     """Send a command that the board has to accept."""
     yield from answer(bench, send)
     demand(
@@ -53,9 +52,9 @@ def accepted(bench: Bench, send: Send) -> Steps:
     )
 
 
-def refused(bench: Bench, send: Send, word: str, seq: int | None = None) -> Steps:
+def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None) -> Steps:
     """Send a command that the board has to refuse with this word, and without moving."""
-    before = bench.steps
+    before = bench.place
     yield from answer(bench, send, seq)
     number = bench.seq if seq is None else seq
     said = bench.last
@@ -66,39 +65,18 @@ def refused(bench: Bench, send: Send, word: str, seq: int | None = None) -> Step
     yield from unmoved(bench, before, send.payload.decode())
 
 
-def unmoved(bench: Bench, before: tuple[int, ...], after: str) -> Steps:
-    """Watch that the arm stays where it was."""
-    moved = yield Wait(seconds=NOTHING_S, until=lambda: bench.steps != before or bench.last.state == MOVING)
+def unmoved(bench: Bench[Any], before: tuple[Any, ...], after: str) -> Steps:
+    """Watch that it stays as it was."""
+    moved = yield Wait(seconds=NOTHING_S, until=lambda: bench.place != before or bench.last.state == MOVING)
     demand(not moved, f"it moves after {after}")
 
 
-def drive(bench: Bench, steps: tuple[int, ...]) -> Steps:
-    """Drive somewhere, and wait until it rests."""
-    bench.beating = True
-    yield bench.goal(steps)
-    yield Wait(seconds=1.0, until=lambda: bench.last.state == MOVING or bench.at(steps))
-    yield from rest(bench)
-    bench.beating = False
-
-
-def set_off(bench: Bench, steps: tuple[int, ...]) -> Steps:
-    """Begin a long way, beating, and wait until it is well under way."""
-    before = bench.steps
-    bench.beating = True
-    yield bench.goal(steps)
-    moving = yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
-    demand(moving, "it does not begin to move")
-    yield Wait(seconds=0.3, until=lambda: False)
-    changed = yield Wait(seconds=ANSWER_S, until=lambda: bench.steps != before or bench.last.q is None)
-    demand(changed, "its joints do not change while it moves")
-
-
-def stop(bench: Bench, mode: int, **numbers: int) -> Send:
+def stop(bench: Bench[Any], mode: int, **numbers: int) -> Send:
     """`paro`: 1 stop and latch, 2 halt, 0 clear."""
     return bench.send(Channel.STOP, paro=mode, **numbers)
 
 
-def settle(bench: Bench) -> Steps:
+def settle(bench: Bench[Any]) -> Steps:
     """After a check, whatever came of it: halted, cleared, still."""
     bench.beating = False
     for mode in (2, 0):
@@ -107,17 +85,7 @@ def settle(bench: Bench) -> Steps:
     yield from rest(bench)
 
 
-def ready(bench: Bench) -> Steps:
-    """Have a board that can look for its reference do so, if it has to."""
-    if bench.last.state == NOT_HOMED and bench.last.boot_id is not None:
-        bench.beating = True
-        yield bench.send(Channel.HOME, ref=1)
-        homed = yield Wait(seconds=2 * REST_S, until=lambda: bench.last.homed is True)
-        bench.beating = False
-        demand(homed, "it is not homed, and homing does not help")
-
-
-def _answer(bench: Bench) -> str:
+def _answer(bench: Bench[Any]) -> str:
     said: dict[str, Any] = {
         "epoca_ack": bench.last.epoch,
         "ack": bench.last.ack,

@@ -1,0 +1,95 @@
+"""What an arm's board has said so far, and the goals that a check may ask for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.kinds.arm import Arm
+from arboleda.wire import strict
+from arboleda.wire.payloads import MAX_ANGLE_DEG, REFUSALS
+from arboleda.wire.topics import Channel
+from arboleda.wire.transport import Delivery
+from arboleda.wire.units import to_wire
+
+from .bench import Bench, Said, Send
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmSaid(Said):
+    """One telemetry message, angles in degrees; None for what it does not say."""
+
+    q: tuple[float, ...] | None
+    homed: bool | None
+    effector: bool | None
+
+    @property
+    def place(self) -> tuple[float, ...] | None:
+        return self.q
+
+
+class ArmBench(Bench[ArmSaid]):
+    """An arm's board on trial."""
+
+    def __init__(self, arm: Arm, epoch: int) -> None:
+        super().__init__(arm.mqtt, epoch)
+        self.arm = arm
+        self.step_deg = tuple(to_wire(joint, joint.step) for joint in arm.joints)
+
+    @property
+    def says_where(self) -> bool:
+        return self.last.q is not None
+
+    @property
+    def place(self) -> tuple[int, ...]:
+        return self.steps
+
+    def goal(self, steps: tuple[int, ...], **numbers: int) -> Send:
+        """A target in motor steps."""
+        degrees = zip(steps, self.step_deg, strict=True)
+        q = {f"q{at + 1}": round(count * step, 4) for at, (count, step) in enumerate(degrees)}
+        return self.send(Channel.JOINTS, **q, **numbers)
+
+    @property
+    def steps(self) -> tuple[int, ...]:
+        """Where it last said to be, in motor steps."""
+        rows = zip(self.last.q or (), self.step_deg, strict=False)
+        return tuple(round(angle / step) for angle, step in rows)
+
+    def away(self, part: float) -> tuple[int, ...]:
+        """A place so far from here on each joint, as a part of its whole way."""
+        rows = zip(self.arm.joints, self.steps or self._middle(), strict=True)
+        return tuple(
+            _away(joint.steps(joint.lower), joint.steps(joint.upper), here, part) for joint, here in rows
+        )
+
+    def at(self, steps: tuple[int, ...]) -> bool:
+        """Whether it said last that it is there."""
+        return self.steps == steps
+
+    def _middle(self) -> tuple[int, ...]:
+        return tuple(joint.steps((joint.lower + joint.upper) / 2) for joint in self.arm.joints)
+
+    def _read(self, delivery: Delivery) -> ArmSaid:
+        fields = strict.read(delivery.payload)
+        keys = [f"q{at + 1}_mov" for at in range(len(self.arm.joints))]
+        spoken = any(key in fields for key in keys)
+        return ArmSaid(
+            at=delivery.at,
+            state=fields.integer("estado", 4),
+            q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if spoken else None,
+            number=fields.optional("seq"),
+            epoch=fields.optional("epoca_ack"),
+            ack=fields.optional("ack"),
+            done=fields.optional("hecho"),
+            refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,
+            refused=fields.optional("rechazo_seq"),
+            boot_id=fields.optional("arranque"),
+            homed=fields.flag("ref"),
+            effector=fields.flag("efector"),
+        )
+
+
+def _away(lower: int, upper: int, here: int, part: float) -> int:
+    way = max(2, int((upper - lower) * part))
+    there = here + way if upper - here >= here - lower else here - way
+    return min(max(there, lower), upper)

@@ -1,0 +1,138 @@
+"""What the board of a declared kind has said so far, and the orders that a check may ask for."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import islice, product
+
+from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, Told
+from arboleda.model.facts import Facts, Value
+from arboleda.model.plant_model import MotionState
+from arboleda.wire.payloads import DEVICE, Telemetry, decode
+from arboleda.wire.topics import Channel
+from arboleda.wire.transport import Delivery
+
+from .bench import Bench, Said, Send
+
+WORK = frozenset({Effect.MOTION, Effect.PROCESS})
+MOST_VALUES = 12  # so many combinations of values of one verb are tried
+MOST_STATES = 2000  # so many ways for the facts to be are looked at on the search for a way
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeviceSaid(Said):
+    """One telemetry message; `place` has the facts that are no measured numbers."""
+
+    facts: Facts | None
+    firm: tuple[tuple[str, Value], ...]
+    answer: Value | None
+    answered: int | None
+    failures: tuple[tuple[int, str], ...]
+
+    @property
+    def place(self) -> tuple[tuple[str, Value], ...]:
+        return self.firm
+
+
+class DeviceBench(Bench[DeviceSaid]):
+    """A declared device's board on trial; `facts` are the last that it said of each."""
+
+    def __init__(self, device: Device, epoch: int) -> None:
+        super().__init__(device.mqtt, epoch)
+        self.kind = device.kind
+        self.facts: dict[str, Value] = {}
+        self.patience_s = 2.0 + max((verb.at_most_s for verb in self.kind.verbs.values()), default=0.0)
+
+    @property
+    def says_where(self) -> bool:
+        return self.last.facts is not None
+
+    @property
+    def place(self) -> tuple[tuple[str, Value], ...]:
+        return self.last.firm if self.said else ()
+
+    def order(self, told: Told, **numbers: int) -> Send:
+        """The order of a verb with its values."""
+        values = {"valores": dict(told.values)} if told.values else {}
+        return self.send(Channel.ORDER, verbo=told.verb, **values, **numbers)
+
+    def holds(self, facts: Facts) -> bool:
+        """Whether it said last that all of these are so."""
+        return all(self.facts.get(name) == value for name, value in facts)
+
+    def way(self, wanted: Callable[[Told], bool]) -> list[Told] | None:
+        """The shortest row of orders that ends in one that is wanted, as the kind declares what each sets
+        and needs; one that changes a fact rather than one that changes none. None: there is no way."""
+        changing = self._search(lambda told, facts: wanted(told) and not _so(facts, told.sets))
+        return changing or self._search(lambda told, facts: wanted(told))
+
+    def _search(self, wanted: Callable[[Told, dict[str, Value]], bool]) -> list[Told] | None:
+        first = self.facts or {name: type.first for name, type in self.kind.facts.items()}
+        seen, ahead = {_frozen(first)}, deque([(first, list[Told]())])
+        while ahead and len(seen) < MOST_STATES:
+            facts, row = ahead.popleft()
+            for told in self._possible(facts):
+                if wanted(told, facts):
+                    return [*row, told]
+                after = facts | dict(told.sets)
+                if _frozen(after) not in seen:
+                    seen.add(_frozen(after))
+                    ahead.append((after, [*row, told]))
+        return None
+
+    def _possible(self, facts: dict[str, Value]) -> Iterator[Told]:
+        return (
+            told
+            for verb in self.kind.verbs.values()
+            for told in commands(self.kind, verb)
+            if _so(facts, told.needs)
+        )
+
+    def _read(self, delivery: Delivery) -> DeviceSaid:
+        said = decode(Channel.TELEMETRY, delivery.payload, axes=DEVICE)
+        assert isinstance(said, Telemetry)
+        self.facts |= dict(said.facts or ())
+        return DeviceSaid(
+            at=delivery.at,
+            state=MotionState(said.state).value,
+            number=said.seq,
+            epoch=said.ack_epoch,
+            ack=said.ack,
+            done=said.done,
+            refusal=said.refusal,
+            refused=said.refused_seq,
+            boot_id=said.boot_id,
+            facts=said.facts,
+            firm=tuple((name, value) for name, value in self.facts.items() if self._is_firm(name)),
+            answer=said.answer,
+            answered=said.answered_seq,
+            failures=said.failures or (),
+        )
+
+    def _is_firm(self, name: str) -> bool:
+        type = self.kind.facts.get(name)
+        return type is None or type.type is not float or bool(type.words)
+
+
+def commands(kind: DeviceKind, verb: DeviceVerb) -> Iterator[Told]:
+    """A verb with samples of its values."""
+    names = [name for name, _ in verb.parameters]
+    for values in islice(product(*(type.samples for _, type in verb.parameters)), MOST_VALUES):
+        told = kind.command(id="", robot="", verb=verb.name, values=dict(zip(names, values, strict=True)))
+        assert isinstance(told, Told)
+        yield told
+
+
+def is_work(told: Told) -> bool:
+    """Whether it is a motion or a process."""
+    return told.told.effect in WORK
+
+
+def _so(facts: dict[str, Value], wanted: Facts) -> bool:
+    return all(facts.get(name) == value for name, value in wanted)
+
+
+def _frozen(facts: dict[str, Value]) -> frozenset[tuple[str, Value]]:
+    return frozenset(facts.items())

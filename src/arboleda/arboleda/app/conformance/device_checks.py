@@ -1,0 +1,93 @@
+"""What the board of a declared kind has to do at every level: report its facts, do its verbs, halt, leave
+bad orders alone."""
+
+from __future__ import annotations
+
+from arboleda.kinds.declared import Effect, UseError
+from arboleda.wire.topics import Channel
+
+from .bench import MOVING, NotTried, Send, Steps, Wait
+from .device_bench import DeviceBench, is_work
+from .device_ways import at_rest, carry_out, lasting, lead_to
+from .ways import ANSWER_S, accepted, demand, rest, stop, unmoved
+
+HALT_S = 1.5
+
+MALFORMED = (
+    b"",
+    b"{",
+    b"[1]",
+    b'{"valores":{}}',
+    b'{"verbo":7}',
+    b'{"verbo":"\\u00e9"}',
+    b'{"verbo":%(verb)b,"valores":[1]}',
+    b'{"verbo":%(verb)b,"valores":{"a":null}}',
+    b'{"verbo":%(verb)b,"verbo":%(verb)b}',
+    b'{"verbo":%(verb)b}' + b" " * 500,
+)
+
+
+def works(bench: DeviceBench) -> Steps:
+    """A motion or a process makes it report moving, and then standing still."""
+    told = yield from lead_to(bench, is_work, "motion and no process")
+    before = len(bench.said)
+    bench.beating = True
+    yield bench.order(told)
+    yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
+    yield from rest(bench)
+    moved = any(said.state == MOVING for said in bench.said[before:])
+    demand(moved, f"{told.verb} did not make it report moving (1)")
+
+
+def facts(bench: DeviceBench) -> Steps:
+    """It reports every fact of its kind, each with a value that this can be."""
+    yield Wait(seconds=0.3)
+    missing = [name for name in bench.kind.facts if name not in bench.facts]
+    demand(not missing, f"datos has not said {', '.join(missing)}")
+    for name, value in bench.facts.items():
+        try:
+            bench.kind.check_fact(name, value)
+        except UseError as error:
+            demand(False, str(error))
+
+
+def verbs(bench: DeviceBench) -> Steps:
+    """It carries out each of its verbs, and says within the declared time what that sets."""
+    for verb in bench.kind.verbs.values():
+        if verb.effect is Effect.QUERY:
+            continue
+        told = yield from lead_to(
+            bench, lambda told, name=verb.name: told.verb == name, f"way to {verb.name}"
+        )  # type: ignore[misc]
+        yield from carry_out(bench, told)
+
+
+def halts(bench: DeviceBench) -> Steps:
+    """`paro` 2 ends what a stop ends, and for good."""
+    told = yield from lasting(bench)
+    yield stop(bench, 2)
+    yield from at_rest(bench, HALT_S, "paro 2")
+    if told.sets and bench.holds(told.sets) and bench.last.boot_id is None:
+        raise NotTried(f"{told.verb} was over when paro 2 came")
+    yield from unmoved(bench, bench.place, "a halt had ended its work")
+
+
+def malformed(bench: DeviceBench) -> Steps:
+    """Orders that are damaged in any way change nothing."""
+    before = bench.place
+    verb = f'"{next(iter(bench.kind.verbs))}"'.encode()
+    for payload in MALFORMED:
+        damaged = payload.replace(b"%(verb)b", verb)
+        yield Send(channel=Channel.ORDER, payload=damaged)
+        yield from unmoved(bench, before, f"the damaged order {damaged[:40]!r}")
+
+
+def unknown(bench: DeviceBench) -> Steps:
+    """A verb that its kind does not have, or a value beside those of a verb, changes nothing."""
+    before = bench.place
+    verb = next(iter(bench.kind.verbs))
+    for body in ({"verbo": "no-such-verb"}, {"verbo": verb, "valores": {"no-such-value": 1}}):
+        yield bench.send(Channel.ORDER, **body)
+        yield from unmoved(bench, before, f"the order {body}")
+    if bench.last.boot_id is not None:
+        yield from accepted(bench, stop(bench, 2))

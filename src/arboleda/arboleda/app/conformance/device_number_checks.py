@@ -1,0 +1,220 @@
+"""What only boards of declared kinds with command numbers can do: prove what became of each order."""
+
+from __future__ import annotations
+
+from arboleda.kinds.declared import Effect, Told
+from arboleda.wire.topics import Channel
+
+from .bench import LATCHED, MOVING, Jostle, NotTried, Send, Steps, Wait
+from .device_bench import DeviceBench, commands, is_work
+from .device_ways import LEAST_S, at_rest, carry_out, lasting, lead_to, named
+from .number_checks import BACK_S, SILENCE_S
+from .ways import ANSWER_S, accepted, answer, demand, refused, stop, unmoved
+
+HALT_S = 1.5
+
+
+def numbers(bench: DeviceBench) -> Steps:
+    """Work is acknowledged by its number, and done by the same number once it has ended."""
+    told = yield from lead_to(bench, is_work, "motion and no process")
+    bench.beating = True
+    yield from accepted(bench, bench.order(told))
+    number = bench.seq
+    done = yield Wait(seconds=told.at_most_s + ANSWER_S, until=lambda: bench.last.done == number)
+    demand(done, f"{named(told)} has no hecho within {told.at_most_s:g} s")
+    demand(bench.holds(told.sets), f"it says hecho for {named(told)}, and what that sets is not so")
+    demand(bench.last.ack == number, "ack has changed without a command")
+
+
+def telling(bench: DeviceBench) -> Steps:
+    """Reports are numbered upwards in one boot, which `arranque` names."""
+    before = len(bench.said)
+    yield Wait(seconds=1.0)
+    fresh = bench.said[before:]
+    rising = [said.number for said in fresh if said.number is not None]
+    demand(rising == sorted(set(rising)) and len(rising) == len(fresh), "seq of its reports does not rise")
+    demand(len({said.boot_id for said in fresh}) == 1, "arranque changes without a reboot")
+
+
+def duplicate(bench: DeviceBench) -> Steps:
+    """One of the last eight orders once more (QoS 1 may deliver twice) is neither refused nor done again."""
+    told = yield from lead_to(bench, is_work, "motion and no process")
+    yield from carry_out(bench, told)
+    copy, number = bench.order(told, seq=bench.seq), bench.seq
+    for _ in range(3):
+        yield from accepted(bench, stop(bench, 2))
+    before = bench.place
+    yield copy
+    yield from unmoved(bench, before, "the same order came twice")
+    demand(bench.last.refused != number, f"it refuses the second delivery with {bench.last.refusal}")
+    demand(bench.last.done == number, "the second delivery took its hecho away")
+
+
+def old(bench: DeviceBench) -> Steps:
+    """A number below the last one that it never accepted is refused with viejo."""
+    bench.seq += 1
+    missed = bench.seq
+    yield from accepted(bench, stop(bench, 2))
+    told = yield from lead_to(bench, _any, "verb")
+    bench.seq = max(bench.seq, missed)
+    yield from refused(bench, bench.order(told, seq=missed), "viejo", missed)
+
+
+def old_epoch(bench: DeviceBench) -> Steps:
+    """A lower epoca is refused with viejo, whatever its seq."""
+    yield from accepted(bench, stop(bench, 2))
+    told = yield from lead_to(bench, _any, "verb")
+    number = bench.seq + 100
+    yield from refused(bench, bench.order(told, seq=number, epoch=bench.epoch - 1), "viejo", number)
+
+
+def new_epoch(bench: DeviceBench) -> Steps:
+    """A higher epoca begins numbers of its own, and the old ones disappear."""
+    told = yield from lead_to(bench, is_work, "motion and no process")
+    yield from carry_out(bench, told)
+    bench.epoch, bench.seq = bench.epoch + 1, 0
+    yield from accepted(bench, stop(bench, 2))
+    demand(bench.last.done is None, f"hecho {bench.last.done} of the older epoca is still there")
+
+
+def stamped(bench: DeviceBench) -> Steps:
+    """An order without seq and epoca is refused with formato."""
+    before, told = bench.place, (yield from lead_to(bench, _any, "verb"))
+    yield from accepted(bench, stop(bench, 2))
+    before = bench.place
+    order = bench.order(told, seq=0)
+    bare = order.payload.partition(b', "seq"')[0] + b"}"
+    yield Send(channel=order.channel, payload=bare)
+    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(said, f"{bare.decode()} without numbers is not refused with formato")
+    yield from unmoved(bench, before, "an order without numbers")
+
+
+def words(bench: DeviceBench) -> Steps:
+    """Damaged commands, unknown verbs and unknown values are refused with formato."""
+    yield Send(channel=Channel.STOP, payload=b'{"paro":3}')
+    said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
+    demand(said, 'it does not refuse {"paro":3} with formato')
+    yield from refused(bench, bench.send(Channel.ORDER, verbo="no-such-verb"), "formato")
+    for verb in bench.kind.verbs.values():
+        told = next(commands(bench.kind, verb))
+        values = {**dict(told.values), "no-such-value": 1}
+        yield from refused(bench, bench.send(Channel.ORDER, verbo=verb.name, valores=values), "formato")
+
+
+def needs(bench: DeviceBench) -> Steps:
+    """An order whose condition is not so is refused with condicion."""
+    told = next((told for told in _every(bench) if told.needs and not bench.holds(told.needs)), None)
+    if told is None:
+        row = bench.way(lambda told: any(_breaks(told, other) for other in _every(bench)))
+        if row is None:
+            raise NotTried("nothing that its verbs need can be made not so")
+        for step in row:
+            yield from carry_out(bench, step)
+        told = next((told for told in _every(bench) if told.needs and not bench.holds(told.needs)), None)
+        demand(told is not None, "it does not say what its verb has set")
+    yield from refused(bench, bench.order(told), "condicion")
+
+
+def busy(bench: DeviceBench) -> Steps:
+    """A second motion or process is refused with ocupado while one goes on."""
+    yield from lasting(bench)
+    other = next((told for told in _every(bench) if is_work(told) and bench.holds(told.needs)), None)
+    if other is None:
+        raise NotTried("no other work is possible meanwhile")
+    yield from answer(bench, bench.order(other))
+    if bench.last.state != MOVING:
+        raise NotTried("its work was over before it could be seen")
+    demand(
+        bench.last.refusal == "ocupado", f"a second work is refused with {bench.last.refusal}, not ocupado"
+    )
+
+
+def queries(bench: DeviceBench) -> Steps:
+    """Each query is answered by its number, with one of the declared answers."""
+    asked = [told for told in _every(bench) if told.told.effect is Effect.QUERY]
+    if not asked:
+        raise NotTried("its kind has no query")
+    for told in asked:
+        yield from lead_to(bench, lambda each, wanted=told: each == wanted, f"way to {told.verb}")  # type: ignore[misc]
+        yield from carry_out(bench, told)
+        said = bench.last.answer
+        known = not told.told.answers or said in told.told.answers
+        demand(known, f"it answers {named(told)} with {said!r}; its kind has {told.told.answers}")
+
+
+def retained(bench: DeviceBench) -> Steps:
+    """What a broker kept for it is refused with retenido when it comes back."""
+    told = yield from lead_to(bench, _any, "verb")
+    yield from accepted(bench, stop(bench, 2))
+    # the number of the stop: heard while it is connected, the order is a copy and does nothing
+    order, before = bench.order(told, seq=bench.seq), bench.place
+    yield Send(channel=order.channel, payload=order.payload, retain=True)
+    yield Wait(seconds=0.5)
+    arrivals = bench.arrivals
+    yield Jostle()
+    back = yield Wait(seconds=BACK_S, until=lambda: bench.arrivals > arrivals)
+    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "retenido")
+    refusal = bench.last.refusal
+    yield Send(channel=order.channel, payload=b"", retain=True)
+    yield Wait(seconds=0.3)
+    if not back:
+        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
+    demand(refusal == "retenido", f"it came back, heard a retained order and says rechazo {refusal}")
+    yield from unmoved(bench, before, "a retained order")
+
+
+def halted(bench: DeviceBench) -> Steps:
+    """Halted work never appears as done."""
+    told = yield from lasting(bench)
+    number = bench.seq
+    yield from accepted(bench, stop(bench, 2))
+    yield from at_rest(bench, HALT_S, "paro 2")
+    yield Wait(seconds=told.takes_s)
+    demand(bench.last.done != number, f"it says hecho for {named(told)}, which paro 2 has ended")
+
+
+def stop_from_anybody(bench: DeviceBench) -> Steps:
+    """`paro` 2 is obeyed whatever its numbers are."""
+    told = yield from lasting(bench)
+    number = bench.seq
+    yield stop(bench, 2, seq=1, epoch=1)
+    yield from at_rest(bench, HALT_S, "a paro 2 with old numbers")
+    yield Wait(seconds=told.takes_s)
+    demand(bench.last.done != number, "it went on to its end: a halt with old numbers has to be obeyed too")
+
+
+def latch(bench: DeviceBench) -> Steps:
+    """`paro` 1 stops and latches: until `paro` 0 no work begins; clearing moves nothing."""
+    told = yield from lasting(bench)
+    yield from accepted(bench, stop(bench, 1))
+    yield from at_rest(bench, HALT_S, "paro 1")
+    demand(bench.last.state == LATCHED, f"after paro 1 its estado is {bench.last.state}, not {LATCHED}")
+    yield from refused(bench, bench.order(told), "paro")
+    before = bench.place
+    yield from accepted(bench, stop(bench, 0))
+    yield from unmoved(bench, before, "paro 0")
+    demand(bench.last.state == 0, f"after paro 0 its estado is {bench.last.state}, not 0")
+
+
+def silence(bench: DeviceBench) -> Steps:
+    """Once it has heard a beat, 1 s without beat or command ends what halts, in fallos as silencio."""
+    yield from lasting(bench, SILENCE_S + LEAST_S)
+    number = bench.seq
+    bench.beating = False
+    yield from at_rest(bench, SILENCE_S + HALT_S, "the last beat")
+    demand(bench.last.done != number, "it says hecho for work that silence has ended")
+    demand((number, "silencio") in bench.last.failures, f"fallos is {bench.last.failures}, without silencio")
+
+
+def _any(told: Told) -> bool:
+    return told.told.effect is not Effect.QUERY
+
+
+def _every(bench: DeviceBench) -> list[Told]:
+    return [told for verb in bench.kind.verbs.values() for told in commands(bench.kind, verb)]
+
+
+def _breaks(told: Told, other: Told) -> bool:
+    sets = dict(told.sets)
+    return any(sets.get(name, value) != value for name, value in other.needs)

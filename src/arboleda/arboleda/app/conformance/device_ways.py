@@ -1,0 +1,85 @@
+"""What several checks of a declared device do: carry an order out, begin one that lasts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from arboleda.kinds.declared import Effect, Told
+from arboleda.model.commands import OnStop
+
+from .bench import MOVING, NotTried, Steps, Wait
+from .device_bench import DeviceBench, is_work
+from .ways import ANSWER_S, demand
+
+LEAST_S = 0.4  # what takes less cannot be caught in the middle
+
+
+def named(told: Told) -> str:
+    """An order as its recipe writes it."""
+    return f"{told.verb}({', '.join(f'{name}={value}' for name, value in told.values)})"
+
+
+def carry_out(bench: DeviceBench, told: Told) -> Steps:
+    """One order, beating, until the board has proved it."""
+    bench.beating = True
+    yield bench.order(told)
+    yield from outcome(bench, told)
+    bench.beating = False
+
+
+def outcome(bench: DeviceBench, told: Told) -> Steps:
+    """Wait until the last order has come to its end, by what a board of its level can say."""
+    number, before = bench.seq, len(bench.said)
+    if bench.last.boot_id is None:
+        yield Wait(seconds=ANSWER_S, until=lambda: any(said.state == MOVING for said in bench.said[before:]))
+    over = yield Wait(seconds=told.at_most_s + ANSWER_S, until=lambda: _ended(bench, told, number))
+    words = [word for seq, word in bench.last.failures if seq == number]
+    demand(not words, f"it gave {named(told)} up: {words[:1]}")
+    demand(bench.last.refused != number, f"it refused {named(told)} with {bench.last.refusal}")
+    wanted = ", ".join(f"{name} {value}" for name, value in told.sets) or "its end"
+    demand(over, f"{named(told)}: {wanted} was not said within {told.at_most_s:g} s")
+
+
+def lead_to(bench: DeviceBench, wanted: Callable[[Told], bool], what: str) -> Steps:
+    """Carry out what has to come before an order that is wanted; the order is what `yield from` is worth."""
+    row = bench.way(wanted)
+    if row is None:
+        raise NotTried(f"its kind has no {what}")
+    for told in row[:-1]:
+        yield from carry_out(bench, told)
+    return row[-1]
+
+
+def lasting(bench: DeviceBench, least_s: float = LEAST_S) -> Steps:
+    """Begin, beating, a motion or process that lasts and that a stop ends; worth the order."""
+
+    def wanted(told: Told) -> bool:
+        return is_work(told) and told.told.on_stop is OnStop.HALT and told.takes_s >= least_s
+
+    told = yield from lead_to(bench, wanted, f"motion or process of {least_s:g} s and more that a stop ends")
+    bench.beating = True
+    yield bench.order(told)
+    number = bench.seq
+    began = yield Wait(seconds=ANSWER_S, until=lambda: bench.last.state == MOVING)
+    if not began and bench.last.done == number:
+        raise NotTried(f"{named(told)} was over before it could be seen")
+    demand(began, f"it does not report moving (1) after {named(told)}")
+    yield Wait(seconds=0.1)
+    return told
+
+
+def at_rest(bench: DeviceBench, within_s: float, after: str) -> Steps:
+    """It has to be at rest so soon."""
+    rested = yield Wait(seconds=within_s, until=lambda: bench.last.state != MOVING)
+    demand(rested, f"it still reports moving (1) {within_s:g} s after {after}")
+
+
+def _ended(bench: DeviceBench, told: Told, number: int) -> bool:
+    last = bench.last
+    if last.boot_id is None:
+        return last.state != MOVING and bench.holds(told.sets)
+    if number == last.refused or any(seq == number for seq, _ in last.failures):
+        return True
+    if told.told.effect is Effect.QUERY:
+        return last.answered == number
+    return bench.holds(told.sets) and (not is_work(told) or last.done == number)
