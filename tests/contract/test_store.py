@@ -20,7 +20,8 @@ from tests.rights import modes_count
 
 from arboleda.adapters.memory_file import VERSION
 from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of
+from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
@@ -277,6 +278,16 @@ def test_tasks_of_an_older_format_have_no_answers(path):
         assert (old.id, old.answers) == ("a", None)
 
 
+def test_tasks_of_an_older_format_have_no_choice_and_new_ones_have(path):
+    with Store(path) as store:
+        store.task(queued("a"), "storage", 5.0)
+    of_before_choices(path).close()
+    why = LATER(cell="sis_b", seconds=12.5)
+    with Store(path) as store:
+        store.task(replace(queued("b"), choice=why), "storage", 6.0)
+        assert [choice_of(row) for row in store.tasks(TaskQuery())] == [why, None]
+
+
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
         store.task(queued("a"), "storage", 5.0)
@@ -290,9 +301,18 @@ def test_a_file_without_times_of_cells_gets_them(path):
     assert times(path) == ([(10.0, 10.0, 0)], [("sis_a", "held", 11.0, None)])
 
 
+def of_before_choices(path):
+    """The file as a format had it in which no task said why it is done in its cell."""
+    db = sqlite3.connect(path)
+    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
+        db.execute("ALTER TABLE task DROP COLUMN choice")
+    db.execute("PRAGMA user_version = 7")
+    return db
+
+
 def of_before_times(path):
     """The file as a format had it that knew no times of cells."""
-    db = sqlite3.connect(path)
+    db = of_before_choices(path)
     for table in ("down", "run"):
         db.execute(f"DROP TABLE {table}")
     return db

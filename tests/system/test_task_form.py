@@ -79,6 +79,16 @@ def test_another_recipe_asks_for_what_it_needs_and_no_more(page: Any) -> None:
     page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
 
 
+def test_a_task_for_any_cell_says_where_it_went_and_why(page: Any) -> None:
+    page.click("#task-form :text('la que antes la termine')")
+    page.click("#task-form [data-value=palletizing]")
+    assert page.input_value("#task-text") == "sis_a,sis_b,sis_c palletizing"
+    assert "cell=sis_a" not in page.url
+    task = sent(page)
+    page.goto(f"{page.url.partition('?')[0]}?tab=tasks&task={task}")
+    page.wait_for_selector("#task :text('Por qué allí: ')")
+
+
 def test_another_cell_forgets_what_was_chosen(page: Any) -> None:
     page.click("#task-form [data-value=sis_a]")
     page.click("[data-fields=sis_a] [data-path='0B']")

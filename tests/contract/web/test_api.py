@@ -96,6 +96,12 @@ def test_a_wrong_time_of_the_oee_is_refused(web, plant, query, sentence):
     assert plant.oee_queries == []
 
 
+def test_a_form_for_several_cells_names_them_all(web, plant):
+    form = {"any_of": ["sis_b", "sis_a"], "values": {"station": 7, "path": "0b"}, "id": "lot1"}
+    assert web.post("/api/tasks", json=form).status_code == 202
+    assert plant.texts == ["sis_b,sis_a 0B 7 #lot1"]
+
+
 def test_a_form_is_queued_as_the_text_that_it_spells(web, plant):
     form = {"cell": "sis_a", "values": {"station": 7, "path": "0b"}, "id": "lot1"}
     assert web.post("/api/tasks", json=form).status_code == 202
@@ -109,6 +115,7 @@ def test_a_form_is_queued_as_the_text_that_it_spells(web, plant):
         ({"cell": "sis_z"}, "'sis_z' is not a cell of this plant"),
         ({"cell": "sis_a", "recipe": "palet"}, "'palet' is not a recipe of sis_a"),
         ({"cell": "sis_a", "values": {"path": "0B"}}, "storage of sis_a needs a value for station"),
+        ({"any_of": ["sis_a", "sis_z"], "recipe": "palletizing"}, "'sis_z' is not a cell of this plant"),
         ({"cell": "sis_a", "values": {"path": "0B 7", "station": 7}}, "'0B 7' is not a path of sis_a"),
     ],
 )
@@ -156,6 +163,8 @@ def test_a_plant_that_does_not_answer_is_said_to(web, plant, monkeypatch):
         b'{"task": "a"}',
         b'{"cell": "a", "text": "b"}',
         b'{"cell": "a", "values": {"path": null}}',
+        b'{"cell": "a", "any_of": ["a", "b"]}',
+        b'{"recipe": "palletizing"}',
         b'{"cell": "a", "values": {"path": ["0B"]}}',
         b'{"text": "\\ud800"}',
         b"\xff\xfe",

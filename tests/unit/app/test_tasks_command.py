@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import time
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from arboleda.adapters.task_rows import TaskQuery
 from arboleda.app.cli import cli
 from arboleda.app.state import StateDir
 from arboleda.app.tasks_command import moment
+from arboleda.core.choosing import LATER
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Reason, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
@@ -95,6 +97,15 @@ def test_what_was_answered_is_in_the_list_where_anything_was(state: Path) -> Non
     assert row["answers"][1] == {"by": "eye", "asked": "look", "answer": 2}
     (row,) = csv.DictReader(StringIO(said("--csv", "--limit", "1", state=state)))
     assert json.loads(row["answers"])[0]["by"] == "ana"
+
+
+def test_why_a_task_is_done_in_its_cell_is_in_the_list(state: Path) -> None:
+    why = LATER(cell="sis_b", seconds=12.5)
+    with Store(state / "plant.sqlite") as store:
+        store.task(replace(told("d", TaskState.QUEUED), cell="sis_b", choice=why), "storage", NOW)
+    assert "sis_b in 12 s" in " ".join(said("--limit", "1", state=state).split())
+    (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
+    assert row["choice"]["key"] == "choice.later" and row["choice"]["english"] == "sis_b in 12 s"
 
 
 def test_where_nothing_was_kept_it_says_so(tmp_path: Path) -> None:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 import pytest
 
 from arboleda.core.intake import HISTORY, Intake
+from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import TaskState
 from arboleda.model.task import Task
 from arboleda.testing import shipped
+
+
+def best(orders: object) -> NoReturn:
+    raise ArboledaError("there is nothing to choose")
 
 
 @pytest.fixture
@@ -16,7 +23,7 @@ def intake() -> Intake:
 
 
 def remembered(intake: Intake, id: str, *, ended: bool) -> Task:
-    task = intake.task(f"sis_a palletizing #{id}")
+    task = intake.task(f"sis_a palletizing #{id}", best)
     intake.remember(task)
     if ended:
         task.become(TaskState.RUNNING, 1.0)
@@ -35,7 +42,7 @@ def test_the_oldest_task_that_has_ended_is_forgotten_not_one_that_waits(intake: 
 def test_no_task_that_waits_is_forgotten_however_many_do(intake: Intake) -> None:
     for number in range(HISTORY + 2):
         remembered(intake, f"lot{number}", ended=False)
-    last = intake.task(f"sis_a palletizing #lot{HISTORY + 1}")
+    last = intake.task(f"sis_a palletizing #lot{HISTORY + 1}", best)
     assert intake.knows(last) and len(intake.tasks) == HISTORY + 2
 
 

@@ -35,6 +35,15 @@ def test_a_task_is_told_from_its_queue_to_its_end(told: Callable[..., Any]) -> N
     ]
 
 
+def test_why_a_task_is_done_in_its_cell_is_told_once(told: Callable[..., Any]) -> None:
+    rig = told()
+    task = rig.submit("sis_a,sis_b palletizing").task
+    rig.wait(30.0)
+    first, last = told_of(rig, "task")
+    assert first[0] == task and "sis_a is expected to have done it first, in 60 s; sis_b in 60 s" in first[2]
+    assert last == (task, "done", f"sis_a palletizing #{task}")
+
+
 def test_an_operators_act_is_told_once_with_its_cell(told: Callable[..., Any]) -> None:
     rig = told()
     rig.operate(Verb.STOP, "ra1")

@@ -14,6 +14,7 @@ from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, Fact
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Recipe
+from arboleda.model.sentence import NOTHING
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.recipes.errors import RecipeError
 from arboleda.testing.following import advised, follow, works
@@ -322,7 +323,7 @@ def test_what_would_let_a_cell_wait_with_something_in_its_hands_is_refused(
 
     here = Bench(plant(wrong))
     context = here.plant.cells["below"].context
-    order = here.plant.intake.task("below wrong").order
+    order = here.plant.intake.task("below wrong", lambda orders: (orders[0], NOTHING)).order
     if why is None:
         assert wrong.build(order, context)
         return

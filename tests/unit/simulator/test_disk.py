@@ -51,7 +51,8 @@ def test_it_has_what_the_store_has_after_the_same_commits() -> None:
                 disk.commit(message, float(number))
         found = disk.found()
         assert {kind: found.facts.get(kind, {}) for kind in Fact} == remembered(store)
-        assert list(found.tasks.values()) == kept_tasks(store, clock_s=0.0, unix_s=0.0)
+        kept = [replace(task, recipe="") for task in kept_tasks(store, clock_s=0.0, unix_s=0.0)]
+        assert list(found.tasks.values()) == kept
 
 
 def test_a_start_finds_the_open_tasks_and_the_last_that_ended() -> None:

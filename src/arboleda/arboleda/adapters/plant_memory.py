@@ -19,7 +19,7 @@ from arboleda.model.messages import (
     outlives_power,
 )
 
-from .task_rows import TaskQuery, TaskRow, selection, to_row
+from .task_rows import TaskQuery, TaskRow, choice_written, selection, to_row
 
 PRUNED = 20  # ended tasks that are forgotten with one that ends: many more than end meanwhile, and soon done
 Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place of a `?`
@@ -139,9 +139,11 @@ class PlantMemory(ABC):
         """
         state, durable = change.state, outlives_power(change)
         if state is TaskState.QUEUED:
-            row = (change.task, change.text, change.cell, recipe, state.value, unix_s, asked_by)
-            columns = "id, text, cell, recipe, state, accepted_s, asked_by"
-            insert = f"INSERT INTO task ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO NOTHING"
+            words = (change.task, change.text, change.cell, recipe, state.value)
+            row = (*words, unix_s, asked_by, choice_written(change.choice))
+            columns = "id, text, cell, recipe, state, accepted_s, asked_by, choice"
+            values = ", ".join("?" * len(row))
+            insert = f"INSERT INTO task ({columns}) VALUES ({values}) ON CONFLICT (id) DO NOTHING"
             self._write((insert, row), durable=durable)
         elif state is TaskState.RUNNING:
             begin = (

@@ -37,6 +37,7 @@ WHO_AND_HOW_OFTEN = (
     "ALTER TABLE task ADD COLUMN attempts INTEGER NOT NULL DEFAULT 0",
 )
 ANSWERS = ("ALTER TABLE task ADD COLUMN answers TEXT",)
+CHOICE = ("ALTER TABLE task ADD COLUMN choice TEXT",)
 TIMES_OF_CELLS = (
     # from which second to which a cell did no work; `until_s` is null while it lasts
     "CREATE TABLE down (number INTEGER PRIMARY KEY, cell TEXT NOT NULL, state TEXT NOT NULL,"
@@ -54,6 +55,7 @@ SCHEMA = (
     *WHO_AND_HOW_OFTEN,
     *ANSWERS,
     *TIMES_OF_CELLS,
+    *CHOICE,
     f"PRAGMA user_version = {VERSION}",
 )
 SINCE = {
@@ -63,6 +65,7 @@ SINCE = {
     4: WHO_AND_HOW_OFTEN,
     5: ANSWERS,
     6: TIMES_OF_CELLS,
+    7: CHOICE,
 }
 IN_MEMORY = Path(":memory:")
 

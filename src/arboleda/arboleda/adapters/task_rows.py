@@ -36,6 +36,7 @@ class TaskRow:
     task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
     `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
     `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
+    `choice` is JSON of why it is done in its cell, None where it names no other.
     """
 
     number: int
@@ -53,6 +54,7 @@ class TaskRow:
     asked_by: str | None = None
     attempts: int = 0
     answers: str | None = None
+    choice: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,6 +135,20 @@ def sentence_of(row: TaskRow) -> Sentence:
         return retold(row.sentence or "", json.loads(row.said or ""))
     except ValueError:
         return OWN(text=row.sentence or "")
+
+
+def choice_of(row: TaskRow) -> Sentence | None:
+    """Why a task is done in its cell, where several were allowed; None where that is not as written."""
+    try:
+        data = json.loads(row.choice or "null")
+        return None if data is None else retold(str(data["english"]), data)
+    except (KeyError, TypeError, ValueError):
+        return None
+
+
+def choice_written(choice: Sentence | None) -> str | None:
+    """What `choice_of` reads."""
+    return choice and json.dumps({"english": str(choice), **choice.data()}, ensure_ascii=False)
 
 
 def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:

@@ -329,8 +329,10 @@ def submit(
 
 
 def _print_task(row: dict[str, Any]) -> None:
-    sentence = f"  {row['sentence']}" if row["sentence"] else ""
-    print(plain(f"{row['state']}: {row['text']} (id {row['id']}){sentence}", LONGEST), flush=True)
+    choice = row.get("choice") if row["state"] == TaskState.QUEUED.value else ""
+    said = "; ".join(each for each in (choice, row["sentence"]) if each)
+    line = f"{row['state']}: {row['text']} (id {row['id']})" + (f"  {said}" if said else "")
+    print(plain(line, LONGEST), flush=True)
 
 
 @cli.command()
@@ -464,7 +466,7 @@ def _model(plant: Path | None, tasks: list[str]) -> tuple[PlantModel, Recording 
     problems = []
     for task in tasks:
         try:
-            text.parse(task, model)
+            text.alternatives(task, model)
         except TextError as error:
             problems.append(f"'{task}': {error}")
     if problems:

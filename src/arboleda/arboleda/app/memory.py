@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from arboleda.adapters.plant_memory import PlantMemory
-from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, sentence_of
+from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, choice_of, sentence_of
 from arboleda.core.intake import HISTORY
 from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
 from arboleda.model.errors import StartError
@@ -53,6 +53,8 @@ def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
         ended_at=None if row.ended_s is None else row.ended_s + back_s,
         attempts=row.attempts,
         answers=answers_of(row),
+        recipe=row.recipe,
+        choice=choice_of(row),
     )
 
 

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.adapters.task_rows import History, TaskQuery, TaskRow, answers_of, table
+from arboleda.adapters.task_rows import History, TaskQuery, TaskRow, answers_of, choice_of, table
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 
@@ -139,8 +139,13 @@ def _lines(rows: Sequence[TaskRow], *, first: bool) -> None:
 def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
     for row in rows:
         answers = [vars(each) for each in answers_of(row)]
-        said = asdict(row) | {"said": json.loads(row.said) if row.said else None, "answers": answers}
+        parsed = {key: json.loads(text) if text else None for key, text in _json_of(row).items()}
+        said = asdict(row) | parsed | {"answers": answers}
         print(json.dumps(said, ensure_ascii=False), flush=True)
+
+
+def _json_of(row: TaskRow) -> dict[str, str | None]:
+    return {"said": row.said, "choice": row.choice}
 
 
 def _csv(rows: Sequence[TaskRow], *, first: bool) -> None:
@@ -151,4 +156,5 @@ def _said(row: TaskRow) -> tuple[str, ...]:
     at = datetime.fromtimestamp(row.accepted_s).isoformat(sep=" ", timespec="seconds")
     took = "" if None in (row.started_s, row.ended_s) else f"{row.ended_s - row.started_s:.1f} s"
     texts = (plain(each) for each in (row.asked_by or "", row.id, row.text))
-    return at, *texts, row.state, took, plain(row.sentence or ""), plain(heard(map(vars, answers_of(row))))
+    why = row.sentence or str(choice_of(row) or "")
+    return at, *texts, row.state, took, plain(why), plain(heard(map(vars, answers_of(row))))

@@ -66,7 +66,7 @@ class CellRun:
 
     def enqueue(self, task: Task) -> None:
         """Take a task in; QueueFull at the limit."""
-        if len(self.queue) >= self.cell.queue_limit:
+        if self.is_full:
             full = FULL_OF_ONE if len(self.queue) == 1 else FULL
             raise QueueFull(full(cell=self.cell.name, number=len(self.queue)))
         self.queue.append(task)
@@ -84,6 +84,21 @@ class CellRun:
             return self.held_by or STANDS(cell=name, state=self.state.said, next=self._next())
         why = self.trouble.sentence
         return STANDS_BECAUSE(cell=name, state=self.state.said, why=why, next=self._next())
+
+    @property
+    def hindrance(self) -> Sentence | None:
+        """Why a task that came now would not start by itself after those before it; None where it would."""
+        if self.state is not CellState.EXECUTE:
+            return self.waiting_for()
+        for robot in self.cell.reached:
+            if (obstacle := self.context.obstacle_at_work(robot.name)) is not None:
+                return obstacle.sentence
+        return self.why_paused if self.queue_paused else None
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no further task has room in its queue."""
+        return len(self.queue) >= self.cell.queue_limit
 
     @property
     def due(self) -> float | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from arboleda.model.errors import QueueFull, TextError
 from arboleda.model.messages import Failure, KeptTask, Reason, TaskState
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import Phrase
-from arboleda.model.task import Task
+from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.task import Order, Task
 
 from . import text
 
@@ -17,6 +19,8 @@ CUT_OFF = Phrase(
     "task.cut_off",
     "the plant ended while this was at work; nobody knows how far it came, so it is not done again",
 )
+Choose = Callable[[Sequence[Order]], tuple[Order, Sentence]]
+"""Of the orders that a text allows the one that is carried out, and why that one."""
 HISTORY = 1000  # tasks remembered by id, unless more of them wait: only ended ones are forgotten
 
 
@@ -30,16 +34,21 @@ class Intake:
         self.tasks: dict[str, Task] = {}
         self._count = 0
 
-    def task(self, words: str) -> Task:
-        """The new or already known task of a text; TextError or QueueFull says why there is none."""
+    def task(self, words: str, choose: Choose) -> Task:
+        """The new or already known task of a text; TextError or QueueFull says why there is none.
+
+        `choose` is asked where the text of a new one names several cells.
+        """
         if self.closed:
             raise QueueFull(ENDING())
-        order = text.parse(words, self.model)
-        known = self.tasks.get(order.id) if order.id else None
+        orders = text.alternatives(words, self.model)
+        id = orders[0].id
+        known = self.tasks.get(id) if id else None
         if known is None:
             self._count += 1
-            return Task(order.id or f"t-{self.epoch}-{self._count}", order)
-        if known.order.text != order.text:
+            order, choice = choose(orders) if len(orders) > 1 else (orders[0], None)
+            return Task(id or f"t-{self.epoch}-{self._count}", order, choice)
+        if all(known.order.text != order.text for order in orders):
             raise TextError(ID_TAKEN(id=known.id, text=known.order.text))
         return known
 

@@ -47,6 +47,7 @@ from .advice import Advice
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_states import CellState
+from .choosing import PastTimes, Prospect, best, prospect
 from .intake import CUT_OFF, Intake
 from .operator import Operator, OperatorAct, Refused
 
@@ -245,6 +246,7 @@ class Plant:
             reason=task.failure.reason if task.failure else None,
             sentence=task.failure.sentence if task.failure else sentence or NOTHING,
             request=request,
+            choice=task.choice,
         )
         self.dispatcher.outbox.append(change)
         if task.ended_at is not None:
@@ -426,7 +428,7 @@ class Plant:
         try:
             if request.kept is not None:
                 self.intake.recall(request.kept)
-            task = self.intake.task(request.text)
+            task = self.intake.task(request.text, lambda orders: best(self._prospects(orders)))
             if not self.intake.knows(task):
                 self._refuse_trigger(request, task)
                 self.cells[task.order.cell].enqueue(task)
@@ -439,6 +441,11 @@ class Plant:
             self.dispatcher.outbox += [_refused(request, DEFECT()), InternalError(cell="", error=error)]
             return
         self._task_changed(task, request.request)
+
+    def _prospects(self, orders: Iterable[Order]) -> list[Prospect]:
+        """What the cells promise that may carry out one of these orders."""
+        times = PastTimes(self.intake.tasks.values())
+        return [prospect(order, self.cells[order.cell], times, self.now) for order in orders]
 
     def _refuse_trigger(self, request: TaskRequest, task: Task) -> None:
         """Raise QueueFull for a machine's start signal that the cell does not take now."""

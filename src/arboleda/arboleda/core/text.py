@@ -50,7 +50,11 @@ CELL = Phrase("text.cell", "cell")
 CELL_OR_ROBOT = Phrase("text.cell_or_robot", "cell or {robot}")
 RECIPE = Phrase("text.recipe", "recipe")
 THIS_PLANT = Phrase("text.this_plant", "this plant")
+GROUP_FORM = Phrase(
+    "text.group_form", "{word} names several cells; write them with commas and without spaces, e.g. {example}"
+)
 ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
+BETWEEN_CELLS = ","
 
 
 def parse(text: str, plant: PlantModel) -> Order:
@@ -67,6 +71,21 @@ def parse(text: str, plant: PlantModel) -> Order:
     return _order(cell, recipe, read, task_id)
 
 
+def alternatives(text: str, plant: PlantModel) -> tuple[Order, ...]:
+    """The orders of which the plant carries out one: several where the first word names several cells, as
+    `sis_a,sis_b 0B 7`. TextError where one of them could not do it.
+    """
+    words = text.split()
+    if len(text) > LONGEST or not words or BETWEEN_CELLS not in words[0]:
+        return (parse(text, plant),)
+    orders = tuple(parse(" ".join([name, *words[1:]]), plant) for name in _named_cells(words[0], plant))
+    names = [order.cell for order in orders]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise TextError(TWICE(name=twice, form=_form(plant)))
+    return orders
+
+
 def example(cell: Cell, recipe: Recipe) -> Order:
     """One order of a recipe: the first word of each parameter, and the last one of the last."""
     words = {each.name: each.words(cell)[0] for each in recipe.parameters}
@@ -78,7 +97,12 @@ def example(cell: Cell, recipe: Recipe) -> Order:
 def spelled(
     plant: PlantModel, *, cell: str, recipe: str = "", values: Mapping[str, Value] | None = None, id: str = ""
 ) -> str:
-    """The text of a task whose values are named; TextError for what is no task of this plant."""
+    """The text of a task whose values are named; TextError for what is no task of this plant.
+
+    `cell` may name several, as in a text.
+    """
+    if BETWEEN_CELLS in cell:
+        return _spelled_for_several(plant, _named_cells(cell, plant), recipe, values, id)
     there = _cell(cell, plant, robots=False)
     named = _recipe_of(there, recipe, plant)
     given = values or {}
@@ -91,6 +115,26 @@ def spelled(
     number = f"#{id.removeprefix('#')}"
     _split_id([number])
     return f"{text} {number}"
+
+
+def _spelled_for_several(
+    plant: PlantModel, cells: list[str], recipe: str, values: Mapping[str, Value] | None, id: str
+) -> str:
+    """The text for the first, with the names of all of them; each has to be able to do it."""
+    texts = [spelled(plant, cell=cell, recipe=recipe, values=values, id=id) for cell in cells]
+    names = BETWEEN_CELLS.join(text.split()[0] for text in texts)
+    text = " ".join([names, *texts[0].split()[1:]])
+    alternatives(text, plant)
+    return text
+
+
+def _named_cells(word: str, plant: PlantModel) -> list[str]:
+    """The names in a word such as sis_a,sis_b."""
+    names = word.split(BETWEEN_CELLS)
+    if not all(names):
+        example = BETWEEN_CELLS.join(cell.name for cell in plant.cells[:2])
+        raise TextError(GROUP_FORM(word=quoted(word), example=example))
+    return names
 
 
 def compose(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from arboleda.core.text import BETWEEN_CELLS as BETWEEN
+
 from .plant_side import Layout
 from .tags import act_button, tag
 from .wording import Words
@@ -14,12 +16,14 @@ Row = dict[str, Any]
 
 
 def build(layout: Layout, words: Words) -> None:
-    cells = layout["cells"]
+    cells = [*layout["cells"], *_any_of(layout["cells"])]
     with tag("form", id="task-form", classes="box form"):
         tag("h2", words("tasks.new"))
         with _group(words("tasks.cell")):
             for cell in cells:
-                _choice("cell", cell["name"], cell["name"])
+                _choice(
+                    "cell", cell["name"], words("tasks.any_cell") if BETWEEN in cell["name"] else cell["name"]
+                )
         with _group(words("tasks.recipe")):
             for name, there in _recipes(cells).items():
                 _choice("recipe", name, words.of("recipe", name), data_cells=" ".join(there))
@@ -27,6 +31,20 @@ def build(layout: Layout, words: Words) -> None:
             for recipe in cell["recipes"]:
                 _fields(cell, recipe, words)
         _text(_example(cells), words)
+
+
+def _any_of(cells: list[Row]) -> list[Row]:
+    """All cells as one choice, with the recipes that each of them offers with the same parameters."""
+    alike = [recipe for recipe in cells[0]["recipes"] if all(_offers(cell, recipe) for cell in cells)]
+    if len(cells) < 2 or not alike:
+        return []
+    return [{**cells[0], "name": BETWEEN.join(cell["name"] for cell in cells), "recipes": alike}]
+
+
+def _offers(cell: Row, recipe: Row) -> bool:
+    return any(
+        all(each[key] == recipe[key] for key in ("name", "parameters", "default")) for each in cell["recipes"]
+    )
 
 
 def _recipes(cells: list[Row]) -> dict[str, list[str]]:

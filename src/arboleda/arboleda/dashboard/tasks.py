@@ -83,6 +83,7 @@ def _one(layout: Layout, words: Words) -> None:
         live("p", "task.when", classes="hint")
         live("p", "task.cause", classes="trouble")
         heard("task.heard", words)
+        live("p", "task.choice", classes="hint")
         live("p", "task.note", classes="note")
         if layout.get("recorded"):
             way(None, {"at": "task"}, classes="to-record", data_live="task.record")

@@ -70,7 +70,10 @@ class TaskAnswer:
 
 @dataclass(frozen=True, kw_only=True)
 class KeptTask:
-    """What was kept of a task that an earlier start accepted; times in s of this start's clock."""
+    """What was kept of a task that an earlier start accepted; times in s of this start's clock.
+
+    `recipe` is "" where nobody knows; `choice` says why it is done in its cell, where several were allowed.
+    """
 
     id: str
     text: str
@@ -81,6 +84,8 @@ class KeptTask:
     ended_at: float | None = None
     attempts: int = 0
     answers: tuple[TaskAnswer, ...] = ()
+    recipe: str = ""
+    choice: Sentence | None = None
 
 
 class Verb(str, Enum):
@@ -118,7 +123,8 @@ class SystemStart:
 @dataclass(frozen=True, kw_only=True)
 class TaskChanged:
     """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
-    says of a refused one that the same text may be taken later."""
+    says of a refused one that the same text may be taken later. `choice` says why it is done in this cell,
+    where several were allowed."""
 
     task: str
     text: str
@@ -128,6 +134,7 @@ class TaskChanged:
     sentence: Sentence = NOTHING
     request: str | None = None
     for_now: bool = False
+    choice: Sentence | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)

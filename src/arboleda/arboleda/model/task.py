@@ -8,6 +8,7 @@ from typing import Any
 
 from .errors import IllegalTransition
 from .messages import Failure, KeptTask, TaskAnswer, TaskState
+from .sentence import Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,11 +32,15 @@ LEGAL: dict[TaskState, frozenset[TaskState]] = {
 
 
 class Task:
-    """An accepted order on its way through the plant; times in s of the plant's clock."""
+    """An accepted order on its way through the plant; times in s of the plant's clock.
 
-    def __init__(self, id: str, order: Order) -> None:
+    `choice` says why it is done in this cell, of those that were allowed; None where none was to choose.
+    """
+
+    def __init__(self, id: str, order: Order, choice: Sentence | None = None) -> None:
         self.id = id
         self.order = order
+        self.choice = choice
         self.state = TaskState.QUEUED
         self.failure: Failure | None = None
         self.failed_in: str | None = None  # the path of the leaf that named its failure
@@ -48,7 +53,8 @@ class Task:
     @classmethod
     def of(cls, kept: KeptTask, order: Order | None = None) -> Task:
         """The task as it was kept; without an order one that is only looked at."""
-        task = cls(kept.id, order or Order(text=kept.text, cell=kept.cell, recipe=""))
+        looked_at = Order(text=kept.text, cell=kept.cell, recipe=kept.recipe)
+        task = cls(kept.id, order or looked_at, kept.choice)
         task.state, task.failure = kept.state, kept.failure
         task.started_at, task.ended_at, task.is_kept = kept.started_at, kept.ended_at, True
         task.attempts, task.answers = kept.attempts, list(kept.answers)

@@ -230,7 +230,12 @@ READERS: dict[type, dict[str, Reader]] = {
     Undelivered: {"sentence": sentence_from},
     Interference: {"sentence": sentence_from},
     Shutdown: {},
-    KeptTask: {"state": TaskState, "failure": _failure, "answers": _answers},
+    KeptTask: {
+        "state": TaskState,
+        "failure": _failure,
+        "answers": _answers,
+        "choice": sentence_from,
+    },
     Failure: {"reason": Reason, "sentence": sentence_from},
     TaskAnswer: {},
 }

@@ -68,7 +68,7 @@ class Content:
         if said.state is TaskState.QUEUED:
             if row is None:
                 self.tasks[said.task] = KeptTask(
-                    id=said.task, text=said.text, cell=said.cell or "", state=said.state
+                    id=said.task, text=said.text, cell=said.cell or "", state=said.state, choice=said.choice
                 )
         elif row is None:
             return
@@ -85,7 +85,8 @@ class Disk:
 
     What was committed survives a plant that dies. A power cut undoes the last commits that nothing has
     synced: those since the last one that had to be, as that one brings all before it along. How often a step
-    was tried again, and what was answered to a task that has ended, is left out: it is for history alone.
+    was tried again, and what was answered to a task that has ended, is left out: it is for history alone. So
+    is the recipe of a task, without which a next start only expects of a task what that very task took.
     As long as it is `full`, nothing more is committed; `slow` are the seconds that a synced commit takes.
     """
 

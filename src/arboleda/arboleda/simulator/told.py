@@ -90,7 +90,7 @@ def _act(model: PlantModel, data: Any) -> Act:
 
 def _task(model: PlantModel, at: float, text: str) -> Act:
     try:
-        task_text.parse(text, model)
+        task_text.alternatives(text, model)
     except TextError as error:
         raise BadFaults(str(error)) from None
     return Act(at=at, task=text)

@@ -211,6 +211,10 @@ class Context:
             return None
         return self._dispatcher.obstacle(robot, was=was)
 
+    def obstacle_at_work(self, robot: str) -> Failure | None:
+        """The same for a robot of a cell at work: that it moves is none."""
+        return None if self._dispatcher.beliefs[robot].moves else self.obstacle(robot)
+
     def obstacle_besides_stop(self, robot: str) -> Failure | None:
         """The same, were it not stopped."""
         return self._dispatcher.beliefs[robot].obstacle_besides_stop()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Any
 
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
@@ -39,7 +39,8 @@ class Chronicle:
             if act["number"] > self._last_act:
                 self._last_act = act["number"]
                 self._did(unix_s - (snapshot["at"] - act["at"]), act)
-        for cell, kind, subject, what, sentence in (*self._interference(snapshot), *_states(snapshot)):
+        told = (*self._interference(snapshot), *_states(snapshot, self._known))
+        for cell, kind, subject, what, sentence in told:
             if kind == "foreign" or self._known.get((kind, subject)) != what:
                 first = (kind, subject) not in self._known
                 self._known[(kind, subject)] = what
@@ -84,8 +85,11 @@ def _cells(snapshot: Row) -> dict[str, str]:
     return {each["name"]: cell["name"] for cell in snapshot["cells"] for each in cell["devices"]}
 
 
-def _states(snapshot: Row) -> Iterator[Told]:
-    """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence."""
+def _states(snapshot: Row, known: Container[tuple[str, str]]) -> Iterator[Told]:
+    """The state of every cell, task, robot and zone: cell, kind, subject, state, sentence.
+
+    Of a task that is not `known` yet also why it is done in its cell.
+    """
     online = {robot["name"]: robot["online"] for robot in snapshot["robots"]}
     for cell in snapshot["cells"]:
         yield cell["name"], "cell", cell["name"], cell["state"], cell["held_by"] or NOTHING
@@ -94,7 +98,8 @@ def _states(snapshot: Row) -> Iterator[Told]:
         yield of, "robot", name, "online" if online[name] else "offline", NOTHING
     for task in snapshot["tasks"]:
         text = f"{task['text']} #{task['id']}"
-        why = task["sentence"]
+        is_new = ("task", task["id"]) not in known
+        why = task["sentence"] or (is_new and task.get("choice"))
         sentence = TASK_FAILED(task=text, why=why) if why else OWN(text=text)
         yield task["cell"], "task", task["id"], task["state"], sentence
     for zone in snapshot["zones"]:

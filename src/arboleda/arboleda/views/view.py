@@ -147,6 +147,7 @@ def change(changed: TaskChanged) -> dict[str, Any]:
         "state": changed.state.value,
         "reason": changed.reason.value if changed.reason else None,
         "sentence": changed.sentence,
+        **({"choice": changed.choice} if changed.choice else {}),
     }
 
 
@@ -263,6 +264,7 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "started_at": started,
         "ended_at": task.ended_at,
         "answers": [dict(vars(each)) for each in task.answers],
+        "choice": task.choice,
     }
 
 

@@ -9,7 +9,7 @@ from arboleda.model.errors import StartError
 from .server import Impatient
 
 PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts names that are longer, and two plants would be one
-VERSION = 2
+VERSION = 3
 NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
 TABLES = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name))",
@@ -48,6 +48,7 @@ SINCE: dict[int, tuple[str, ...]] = {  # what brings the tables of a format to t
         "CREATE TABLE standby (host TEXT, process BIGINT, seen TIMESTAMPTZ NOT NULL,"
         " PRIMARY KEY (host, process))",
     ),
+    2: ("ALTER TABLE task ADD COLUMN choice TEXT",),
 }
 SUPERSEDED = "AR001"
 

@@ -23,7 +23,7 @@ from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextEr
 from arboleda.model.messages import Verb
 from arboleda.model.outside import plain, quoted
 
-from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, table
+from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table
 from . import limits, listing, login, metrics, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
@@ -163,7 +163,7 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
         """Queue a task, written or as a form; 422 where it is refused, 503 where the queue is full."""
         require(request.scope["arboleda.role"], SUBMIT)
         asked = task_asked(await request.body())
-        text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.model_dump())
+        text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
         task = await in_time(side.submit(text, COMMAND if is_ours else HTTP))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
@@ -232,7 +232,8 @@ def task_asked(body: bytes) -> TaskText | TaskForm:
             return form.model_validate_json(body)
     raise PayloadError(
         'The body must be JSON like {"text": "sis_a 0B 7"} or '
-        '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}, and nothing else.'
+        '{"cell": "sis_a", "values": {"path": "0B", "station": 7}}, for several cells '
+        '{"any_of": ["sis_a", "sis_b"], "values": {...}}, and nothing else.'
     )
 
 
@@ -282,6 +283,6 @@ def _query(model: type[BaseModel]) -> dict[str, Any]:
 
 def _kept(row: TaskRow) -> dict[str, Any]:
     answers = [vars(each) for each in answers_of(row)]
-    data = asdict(row) | {"sentence": row.sentence or "", "answers": answers}
+    data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
     said = json.loads(data.pop("said") or "{}")
     return {**data, **said} if row.sentence else data

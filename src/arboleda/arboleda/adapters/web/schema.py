@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from arboleda.core.cell_states import CellState
+from arboleda.core.text import BETWEEN_CELLS
 from arboleda.model.messages import Verb
 
 from ..oee_rows import OeeQuery
@@ -72,14 +73,28 @@ class TaskText(_Asked):
 
 
 class TaskForm(_Asked):
-    """A task as a form of `/api/recipes` has it."""
+    """A task as a form of `/api/recipes` has it; either for a `cell`, or for `any_of` several."""
 
-    cell: str = Field(examples=["sis_a"])
+    cell: str = Field(default="", examples=["sis_a"])
+    any_of: list[str] = Field(
+        default=[], examples=[["sis_a", "sis_b"]], description="Cells of which the plant chooses one."
+    )
     recipe: str = Field(default="", description="One of the cell's recipes; without it the default one.")
     values: dict[str, bool | int | float | str] = Field(
         default={}, examples=[{"path": "0B", "station": 7}], description="A value for each parameter."
     )
     id: str = Field(default="", description="Of your choice; the same id again asks for the same task.")
+
+    @model_validator(mode="after")
+    def _check_cell(self) -> TaskForm:
+        if bool(self.cell) is bool(self.any_of):
+            raise ValueError("either cell or any_of is needed")
+        return self
+
+    def named(self) -> dict[str, Any]:
+        """What `spelled` takes."""
+        named = self.model_dump(exclude={"any_of"})
+        return named | {"cell": self.cell or BETWEEN_CELLS.join(self.any_of)}
 
 
 class ByHand(_Asked):
@@ -106,6 +121,9 @@ class TaskAnswer(_Told):
     answer: bool | int | float | str
 
 
+CHOICE = "Why it is done in this cell, where several were allowed."
+
+
 class Task(_Told):
     id: str
     text: str
@@ -116,6 +134,7 @@ class Task(_Told):
     key: str | None = Field(default=None, description="What its sentence says, as of a Sentence.")
     values: dict[str, Any] | None = None
     answers: list[TaskAnswer] = Field(default=[], description="Of this task, in the order they came.")
+    choice: str | None = Field(default=None, description=CHOICE)
 
 
 class KeptTask(_Told):

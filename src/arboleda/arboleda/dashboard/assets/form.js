@@ -38,7 +38,7 @@ function clicked({ target }) {
   if (node) walk(name, Number(node));
   show();
   write();
-  if (choice === "cell") place.go({ cell: value });
+  if (choice === "cell" && !value.includes(",")) place.go({ cell: value }); // several cells are no place
 }
 
 function filled({ target }) {

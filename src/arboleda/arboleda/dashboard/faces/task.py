@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arboleda.adapters.task_rows import TaskRow, answers_of, sentence_of
+from arboleda.adapters.task_rows import TaskRow, answers_of, choice_of, sentence_of
 
 from ..tree_memory import EndedTree
 from . import Face, heard
@@ -33,6 +33,7 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         "text/task.state": state,
         "text/task.when": [when, ""],
         "text/task.cause": [cause, state[1]],
+        "text/task.choice": [_choice(moment, task), ""],
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
         "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],
         "text/task.report": [words("report.link"), id] if state[1] == "failed" else ["", ""],
@@ -63,6 +64,7 @@ def _past(moment: Moment, kept: TaskRow) -> Row:
         "started_at": started,
         "ended_at": ended,
         "answers": [vars(each) for each in answers_of(kept)],
+        "choice": choice_of(kept),
     }
 
 
@@ -77,6 +79,12 @@ def _cause(moment: Moment, task: Row, tree: EndedTree | None) -> str:
     if task["state"] == "failed" and tree is not None:
         return failed_in(moment.words, task, tree.rows)
     return why(moment, task)
+
+
+def _choice(moment: Moment, task: Row | None) -> str:
+    """Why it is done in its cell; records of older versions do not say it."""
+    choice = task.get("choice") if task is not None else None
+    return moment.words("task.choice", why=moment.words.say(choice)) if choice else ""
 
 
 def _note(moment: Moment, task: Row | None, tree: EndedTree | None) -> str:
