@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core.cell import CellRun
+from arboleda.core.choosing import best
 from arboleda.core.operator import Operator
 from arboleda.core.plant import Plant
 from arboleda.dispatch import evidence
@@ -61,6 +62,23 @@ TASKS = (
         "first_come_first_served",
         "The task that came last is the next one.",
         edit(CellRun.advance, "self.queue.popleft()", "self.queue.pop()"),
+        weather="none",
+    ),
+    mutant(
+        "tasks_go_to_the_best_cell",
+        "Of the cells that a task may go to it goes to the worst.",
+        edit(best, "min(prospects", "max(prospects"),
+        weather="none",
+        any_of=True,
+    ),
+    mutant(
+        "tasks_stay_in_their_cell",
+        "A task that begins is said to be in the last cell.",
+        edit(
+            Plant._task_changed,
+            "cell=task.order.cell,",
+            "cell=[*self.cells][-1] if task.state is TaskState.RUNNING else task.order.cell,",
+        ),
         weather="none",
     ),
     mutant(

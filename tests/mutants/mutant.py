@@ -56,7 +56,8 @@ class Mutant:
     """`invariant` finds `bug` at one of `seeds`, at a level of faults or with these rates, within `cycles`.
 
     `likely` is the one that is tried first: it found the bug last, where those before it take long.
-    `rest_s`: how long to wait for everything to come to rest, where that is what it does not do.
+    `rest_s`: how long to wait for everything to come to rest, where that is what it does not do. `any_of`:
+    with tasks that several cells can do.
     """
 
     invariant: str
@@ -67,6 +68,7 @@ class Mutant:
     weather: str | Mapping[str, float] = "normal"
     cycles: int = 6
     rest_s: float = 600.0
+    any_of: bool = False
 
     def plant(self, patch: pytest.MonkeyPatch) -> None:
         """Bring the bug in."""

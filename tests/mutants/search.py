@@ -36,7 +36,7 @@ def found_at(mutant: Mutant) -> int | None:
 
 def breaks_unplanted(mutant: Mutant, seed: int) -> bool:
     """Whether its invariant breaks at that seed without the bug, too."""
-    key = (seed, mutant.cycles, mutant.rest_s, str(mutant.weather))
+    key = (seed, mutant.cycles, mutant.rest_s, str(mutant.weather), mutant.any_of)
     if key not in _whole:
         _whole[key] = _broken(mutant, seed, INVARIANTS)
     return _whole[key] is not None and _alone(mutant, seed) == mutant.invariant
@@ -51,6 +51,7 @@ def _broken(mutant: Mutant, seed: int, invariants: Sequence[Invariant]) -> str |
     model = plants()[seed % 2]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(watched, "REST_S", mutant.rest_s)
-        simulation = Simulation(model, seed, mutant.climate(model, seed).faults, invariants=invariants)
+        faults = mutant.climate(model, seed).faults
+        simulation = Simulation(model, seed, faults, invariants=invariants, any_of=mutant.any_of)
         broken = simulation.run(cycles=mutant.cycles).broken
     return broken.invariant if broken else None

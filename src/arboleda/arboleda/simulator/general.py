@@ -25,6 +25,7 @@ from .invariants import bridge, commands, liveness, motion, tasks, verbs, wire
 from .invariants.advice import ADVICE
 from .invariants.beliefs import BELIEFS
 from .invariants.books import BOOKS
+from .invariants.choices import CHOICES
 from .invariants.done import tiny_moves_succeed
 from .invariants.invariant import Invariant, Look, When, invariant
 from .invariants.memory import MEMORY
@@ -346,6 +347,7 @@ EVERYWHERE: tuple[Invariant, ...] = (
     *bridge.BRIDGE,
     *BELIEFS,
     *(each for each in tasks.TASKS if each not in OF_STORAGE),
+    *CHOICES,
     *verbs.VERBS,
     *ADVICE,
     *MEMORY,

@@ -5,8 +5,10 @@ from __future__ import annotations
 from functools import partial
 from itertools import count
 
+from arboleda.core import text as task_text
 from arboleda.core.advice import Advice, Hand
 from arboleda.model.commands import Question
+from arboleda.model.errors import TextError
 from arboleda.model.facts import Value
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Cell, Link
@@ -30,11 +32,14 @@ class Customers:
     They know their own tasks by the tokens of their requests. `cycles` counts the tasks, whoever asked for
     them, that started and ended. Once the plant has died, their tasks have ids of their own: when it is
     back, they ask for the last of them again, whatever they know of them.
+
+    With `any_of` about half of their tasks name several cells, of which the plant chooses one.
     """
 
-    def __init__(self, world: World, seed: int) -> None:
+    def __init__(self, world: World, seed: int, *, any_of: bool = False) -> None:
         self._world = world
         self._dice = Dice(seed, "customers")
+        self._groups = Dice(seed, "groups of cells") if any_of else None
         self._asked: dict[str, Cell] = {}  # by token
         self._waiting: set[str] = set()  # their own tasks that are in a queue
         self._started: set[str] = set()
@@ -133,6 +138,22 @@ class Customers:
             self._world.request_task(text, token)
 
     def _text(self, cell: Cell) -> str:
+        text = self._own_text(cell)
+        if self._groups is None or not self._groups.chance(0.5):
+            return text
+        words = text.partition(" ")[2]
+        others = [other.name for other in self._world.model.cells if other is not cell]
+        named = [name for name in others if self._takes(f"{name} {words}") and self._groups.chance(0.7)]
+        return f"{task_text.BETWEEN_CELLS.join([cell.name, *named])} {words}"
+
+    def _takes(self, text: str) -> bool:
+        try:
+            task_text.parse(text, self._world.model)
+        except TextError:
+            return False
+        return True
+
+    def _own_text(self, cell: Cell) -> str:
         if not only_stores(cell):
             return any_text(cell, self._dice)
         if self._dice.chance(0.2):

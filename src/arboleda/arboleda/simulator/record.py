@@ -34,6 +34,7 @@ from .recorded.acts import Acts
 from .recorded.boards import Boards, KnownBoard
 from .recorded.bridge import Bridges
 from .recorded.cells import LOOK_S, KnownCell
+from .recorded.choices import Choices
 from .recorded.commands import Commands, SentCommand
 from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
@@ -88,6 +89,8 @@ class Record:
         self.asked = Before()
         self.acts = Acts()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
+        self.choices = Choices(self.robots)
+        world.before_asking.append(lambda: self.choices.look(world))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step
         self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)

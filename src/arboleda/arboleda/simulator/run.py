@@ -46,6 +46,7 @@ class Simulation:
 
     `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
     `script` people do what it says, and none are drawn: the run is as long as that, and until its tasks end.
+    With `any_of` customers name several cells for about half of their tasks.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class Simulation:
         recipes: Builders | None = None,
         make_plant: Callable[..., Plant] | None = None,
         script: Script | None = None,
+        any_of: bool = False,
     ) -> None:
         self.watched = Watched(
             model, invariants=invariants, keep=keep, tell=tell, recipes=recipes, make_plant=make_plant
@@ -70,9 +72,12 @@ class Simulation:
         come_apart(self.world, seed)
         answer_anything(self.world, seed)
         self._script = script
-        self._people = self._told(script, seed) if script is not None else Customers(self.world, seed)
-        if script is None:
-            Attendant(self.world, seed)
+        self._people = self._customers(seed, any_of=any_of) if script is None else self._told(script, seed)
+
+    def _customers(self, seed: int, *, any_of: bool) -> Customers:
+        customers = Customers(self.world, seed, any_of=any_of)
+        Attendant(self.world, seed)
+        return customers
 
     def _told(self, script: Script, seed: int) -> Told:
         return Told(self.world, script, lambda: Attendant(self.world, seed))

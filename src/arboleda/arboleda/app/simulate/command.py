@@ -62,6 +62,12 @@ Faults = Annotated[
         help=f"How much goes wrong: {', '.join(LEVELS)}; or a file of faults, or one that --json wrote.",
     ),
 ]
+AnyOf = Annotated[
+    bool,
+    typer.Option(
+        "--any-of", help="Have about half of the tasks name several cells, of which the plant chooses one."
+    ),
+]
 UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
@@ -101,6 +107,7 @@ def simulate(
     seeds: Seeds = None,
     cycles: Cycles = CYCLES,
     faults: Faults = LEVEL,
+    any_of: AnyOf = False,
     until_failure: UntilFailure = False,
     json: Json = None,
     record: Record = None,
@@ -128,6 +135,7 @@ def simulate(
         cycles=cycles,
         faults=faults,
         until_failure=until_failure,
+        any_of=any_of,
     )
     if worker and (not store or alone or until_failure or jobs is not None):
         raise typer.BadParameter(

@@ -38,6 +38,7 @@ class Request:
     cycles: int = CYCLES
     faults: str = LEVEL
     until_failure: bool = False
+    any_of: bool = False
 
     @property
     def first(self) -> int:
@@ -100,6 +101,7 @@ class Request:
             level=self.faults,
             told=self.told.climate if self.told else None,
             seconds=self.told.seconds if self.told else None,
+            any_of=self.any_of,
         )
         try:
             for seed in self._checked:
@@ -140,6 +142,7 @@ class Request:
     def _trace(self, *words: str, drawn: bool = True) -> str:
         plant = ["--plant", str(self.plant)] if self.plant else []
         plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
+        plant += ["--any-of"] if self.any_of else []
         return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
 
 

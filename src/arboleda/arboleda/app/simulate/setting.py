@@ -28,7 +28,8 @@ copyreg.pickle(Broken, lambda broken: (Broken, (broken.invariant, broken.sentenc
 class Setting:
     """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
 
-    A run goes on until `cycles` tasks have ended, or for `seconds` where they are given.
+    A run goes on until `cycles` tasks have ended, or for `seconds` where they are given. With `any_of` about
+    half of the tasks are for several cells.
     """
 
     plants: Plants
@@ -36,6 +37,7 @@ class Setting:
     level: str
     told: Any = None  # what Climate.from_file and script_from take
     seconds: float | None = None
+    any_of: bool = False
 
     def plant(self, seed: int) -> PlantModel:
         """The plant of a seed as it is simulated."""
@@ -73,13 +75,23 @@ class Setting:
 
         model = self.plant(seed)
         script = self.script(model)
-        simulation = Simulation(model, seed, plan, keep=keep, tell=tell, make_plant=make_plant, script=script)
+        simulation = Simulation(
+            model,
+            seed,
+            plan,
+            keep=keep,
+            tell=tell,
+            make_plant=make_plant,
+            script=script,
+            any_of=self.any_of,
+        )
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
         """A seed on such a plant with these faults, for so long."""
         script = self.script(plant.model)
-        return Simulation(plant.model, seed, plan, keep=keep, script=script).run(seconds=seconds)
+        simulation = Simulation(plant.model, seed, plan, keep=keep, script=script, any_of=self.any_of)
+        return simulation.run(seconds=seconds)
 
 
 def rules() -> dict[str, str]:

@@ -6,6 +6,7 @@ from .advice import ADVICE
 from .beliefs import BELIEFS
 from .books import BOOKS
 from .bridge import BRIDGE
+from .choices import CHOICES
 from .commands import COMMANDS
 from .grip import GRIP
 from .invariant import Invariant
@@ -36,6 +37,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *BRIDGE,
     *BELIEFS,
     *TASKS,
+    *CHOICES,
     *TEXTS,
     *WORK,
     *VERBS,

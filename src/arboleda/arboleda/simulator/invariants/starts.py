@@ -44,7 +44,8 @@ def asked_again_is_the_same_task(look: Look) -> Iterator[str]:
 
 def _asks_for(look: Look, request: TaskRequest, said: TaskChanged) -> bool:
     try:
-        return text.parse(request.text, look.world.model).text == said.text
+        allowed = text.alternatives(request.text, look.world.model)
+        return any(order.text == said.text for order in allowed)
     except TextError:
         return False
 

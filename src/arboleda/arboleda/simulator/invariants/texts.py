@@ -24,19 +24,21 @@ def texts_mean_what_they_say(look: Look) -> Iterator[str]:
         return
     changes = [change.said for change in record.tasks.changes if change.before is None or change.answer]
     refused = record.tasks.refused > 0
-    meant = _meant(look.world.model, asked[0].text)
-    if meant is None:
+    meant = _all_meant(look.world.model, asked[0].text)
+    if not meant:
         if not refused:
             yield f"{asked[0].text[:60]!r} means nothing, and was taken"
         yield from _unhelpful(look)
         return
-    cell, words, id = meant
-    before = next(each for each in record.asked.cells if each.name == cell)
+    queued = {each.name: each.queued for each in record.asked.cells}
+    full = [cell for cell, _, _ in meant if queued[cell] >= look.world.model.cell(cell).queue_limit]
+    id = meant[0][2]
     known = id is not None and id in record.asked.ids
-    if not known and refused is not (before.queued >= look.world.model.cell(cell).queue_limit):
+    if not known and refused is not (len(full) == len(meant)):
         word = "refused" if refused else "taken"
-        yield f"{asked[0].text!r} was {word}, {before.queued} tasks wait in {cell}"
-    if not refused and not any(said.text == words and said.cell == cell for said in changes):
+        yield f"{asked[0].text!r} was {word}, so many tasks wait: {queued}"
+    allowed = {(cell, words) for cell, words, _ in meant}
+    if not refused and not any((said.cell, said.text) in allowed for said in changes):
         yield f"{asked[0].text!r} was taken as {[said.text for said in changes]}"
     if id is not None and not refused and not any(said.task == id for said in changes):
         yield f"{asked[0].text!r} has another id: {[said.task for said in changes]}"
@@ -64,6 +66,16 @@ def _list(value: Value) -> tuple[Value, ...]:
 def _is_last_place(model: PlantModel, text: str) -> bool:
     meant = _meant(model, text)
     return meant is not None and text.endswith(f" {len(model.cell(meant[0]).stations) - 1}")
+
+
+def _all_meant(model: PlantModel, text: str) -> list[tuple[str, str, str | None]]:
+    """What a text means in each of the cells that it names with commas; nothing where one cannot do it."""
+    names, space, rest = text.strip().partition(" ")
+    if len(text) > LONGEST:
+        return []
+    meant = [_meant(model, f"{name}{space}{rest}") for name in names.split(",")]
+    found = [each for each in meant if each is not None]
+    return found if len({cell for cell, _, _ in found}) == len(meant) else []
 
 
 def _meant(model: PlantModel, text: str) -> tuple[str, str, str | None] | None:

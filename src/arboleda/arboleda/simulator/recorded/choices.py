@@ -1,0 +1,98 @@
+"""What each cell promised just before somebody asked for a task that several of them can do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from statistics import median
+
+from arboleda.core import text
+from arboleda.core.cell import CellRun
+from arboleda.core.cell_states import CellState
+from arboleda.core.choosing import LAST, UNKNOWN_S
+from arboleda.model.errors import TextError
+from arboleda.model.messages import TaskRequest, TaskState
+from arboleda.model.task import Order, Task
+
+from ..world import World
+from .robots import KnownRobot
+
+WORKS = (CellState.IDLE, CellState.EXECUTE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Promise:
+    """Whether a cell had no room, whether something was in its way, in how many s it would have done it."""
+
+    is_full: bool
+    is_hindered: bool
+    seconds: float
+
+    @property
+    def rank(self) -> tuple[bool, bool, float]:
+        """The lowest is the best."""
+        return self.is_full, self.is_hindered, self.seconds
+
+
+class Choices:
+    """The promises by cell, of a request that came alone; none where the plant had nothing to choose.
+
+    Whether a cell is hindered is judged by what robots said and by its state; nothing is asked of what
+    chooses.
+    """
+
+    def __init__(self, robots: Mapping[str, KnownRobot]) -> None:
+        self._robots = robots
+        self.promises: dict[str, Promise] = {}
+
+    def look(self, world: World) -> None:
+        """Somebody asks: the plant has not heard it yet."""
+        self.promises = {}
+        plant, asked = world.plant, world.moment.asked
+        alone = len(asked) == 1 and not world.moment.heard and world.now < plant.next_deadline
+        if not alone or not isinstance(asked[0], TaskRequest):
+            return
+        try:
+            orders = text.alternatives(asked[0].text, world.model)
+        except TextError:
+            return
+        if len(orders) > 1 and orders[0].id not in plant.intake.tasks:
+            self.promises = {order.cell: self._promise(order, world) for order in orders}
+
+    def _promise(self, order: Order, world: World) -> Promise:
+        run = world.plant.cells[order.cell]
+        past = [task for task in world.plant.intake.tasks.values() if task.state is TaskState.DONE]
+        ahead = [order, *(task.order for task in run.queue)]
+        seconds = sum(_expected(each, past) for each in ahead)
+        if run.task is not None and run.task.started_at is not None:
+            seconds += max(0.0, run.task.started_at + _expected(run.task.order, past) - world.now)
+        return Promise(
+            is_full=len(run.queue) >= run.cell.queue_limit,
+            is_hindered=self._is_hindered(run, world),
+            seconds=seconds,
+        )
+
+    def _is_hindered(self, run: CellRun, world: World) -> bool:
+        if run.state not in WORKS or run.queue_paused or run.not_ready is not None:
+            return True
+        now, epoch = world.plant.now, world.plant.epoch
+        return any(self._robots[robot.name].is_unfit(now, epoch) for robot in run.cell.reached)
+
+
+def _expected(order: Order, past: list[Task]) -> float:
+    """By what is most like it of what was done."""
+    of_recipe = [task for task in past if order.recipe and task.order.recipe == order.recipe]
+    for alike in (
+        [task for task in past if task.order.text == order.text],
+        [task for task in of_recipe if task.order.cell == order.cell],
+        of_recipe,
+        past,
+    ):
+        if alike:
+            return median(_took(task) for task in alike[-LAST:])
+    return UNKNOWN_S
+
+
+def _took(task: Task) -> float:
+    assert task.started_at is not None and task.ended_at is not None
+    return task.ended_at - task.started_at
