@@ -1,4 +1,4 @@
-"""A plant with a Dobot under the faults of its virtual controller; `scripts/dobot-faults` runs more seeds."""
+"""A plant with a Dobot under the faults of its controller; `scripts/driver-faults dobot` runs more seeds."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from arboleda.drivers.dobot import work
 from arboleda.drivers.dobot.frames import Feedback, Mode
 from arboleda.kinds.arm import Arm
 from arboleda.testing.plants import shipped
-from arboleda.virtual.dobot import campaign
+from arboleda.virtual import campaign
+from arboleda.virtual.dobot.campaign import CAUSES, DobotTrial
 from arboleda.virtual.dobot.faults import FAULTS
 
-MODEL = campaign.plant_of(shipped())
+SHIPPED = shipped()
 SEEDS = 12
 
 
 def breaches(seed: int, *names: str) -> list[str]:
-    return campaign.run(MODEL, seed, names or tuple(FAULTS)).breaches
+    return campaign.run(DobotTrial(SHIPPED), seed, names).breaches
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
@@ -43,4 +44,4 @@ def test_an_end_without_its_number_would_be_found(monkeypatch: pytest.MonkeyPatc
 
 
 def test_every_fault_has_the_reasons_that_it_may_give() -> None:
-    assert set(campaign.CAUSES) == set(FAULTS)
+    assert set(CAUSES) == set(FAULTS)

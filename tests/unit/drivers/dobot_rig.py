@@ -37,7 +37,6 @@ class Joined(Pair):
         """Let so much time pass, or less, up to a report."""
         end = self.now + s
         while self.now < end:
-            self.now = min(end, max(self.next_deadline, self.now + 1e-4))
-            self.pass_time()
+            self.pass_time(min(end, max(self.next_deadline, self.now + 1e-4)))
             if until is not None and self.reports and until(self.last):
                 return

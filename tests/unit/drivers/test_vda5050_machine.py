@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
+from arboleda.drivers.vda5050.machine import AGAIN_S
 from arboleda.kinds.mobile import FollowPath
 from arboleda.virtual.vda5050.faults import FAULTS
 
@@ -124,9 +125,8 @@ def test_a_halt_counts_once_the_cancel_is_over(rig: Rig) -> None:
     rig.run(WAY_S)
     assert rig.said["cart"].state is not MotionState.STOPPED
     rig.faults.switch("deaf", on=False)
-    rig.stop(StopMode.HALT)
-    rig.run(0.5)
-    assert (rig.said["cart"].state, rig.said["cart"].done) == (None, None)  # the first one never ended
+    rig.run(AGAIN_S)  # it is said again
+    assert (rig.said["cart"].state, rig.said["cart"].done) == (MotionState.STOPPED, None)
 
 
 def test_a_halted_vehicle_stands_short_of_its_goal(rig: Rig) -> None:

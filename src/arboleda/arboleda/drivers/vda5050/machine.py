@@ -7,6 +7,7 @@ something until it has named that.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,7 @@ from .settings import Settings
 from .state import ENDS_ORDER, FACTS, Said, VehicleState, read
 
 BEAT_S = 0.3
+AGAIN_S = 2.0  # after which a stop is said again that the vehicle does not tell the end of
 NEIGHBOURS = 20  # that a sentence may name
 OURS = "arboleda-"  # what the ids of all orders of plants begin with
 STOPS = {
@@ -34,6 +36,7 @@ STOPS = {
     StopMode.LATCH: ("startPause", "cancelOrder"),
     StopMode.CLEAR: ("stopPause",),
 }
+OPPOSITE = {"startPause": "stopPause", "stopPause": "startPause"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +64,10 @@ class Vehicle:
         self._state: VehicleState | None = None
         self._order: Order | None = None
         self._instants: dict[str, Command] = {}  # what it does beside its order, by the actions
-        self._stops: set[str] = set()  # actions that are not over
+        self._stops: dict[
+            str, list[str]
+        ] = {}  # their types, each with all actions of it, of which none is over
+        self._stops_at = -math.inf  # when the last one was said
         self._count = 0  # of actions
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
         self.next_deadline = 0.0
@@ -71,7 +77,7 @@ class Vehicle:
         if now < self.next_deadline:
             return []
         self._lose_what_is_silent(now)
-        return list(self._reports(now))
+        return [*self._say_stops_again(now), *self._reports(now)]
 
     def connected(self, now: float, *, up: bool) -> list[Message]:
         """The broker is there, or is not."""
@@ -87,7 +93,7 @@ class Vehicle:
         if not self._link.is_online:
             self._forget()
         elif not was_online:
-            return [*self._request("stateRequest"), *self._reports(now)]
+            return [self._request("stateRequest"), *self._reports(now)]
         return list(self._reports(now))
 
     def neighbour(self, vehicle: str) -> None:
@@ -103,9 +109,9 @@ class Vehicle:
         if self._link.has_booted:
             self._forget()
         self._state = state
-        messages = [*self._judge_order(state), *self._left_over(state)]
+        self._stops = {type: ids for type, ids in self._stops.items() if not any(map(state.is_over, ids))}
+        messages = [*self._judge_order(now, state), *self._left_over(now, state)]
         self._judge_instants(state)
-        self._stops = {action for action in self._stops if not state.is_over(action)}
         return [*messages, *self._reports(now)]
 
     # --- what it is told ---
@@ -115,7 +121,7 @@ class Vehicle:
         if (why := self._link.trouble) is not None:
             raise NotSent(why)
         if isinstance(command, Stop):
-            return self._stop(command)
+            return self._stop(now, *STOPS[command.mode])
         if isinstance(command, FollowPath):
             return self._begin(command, self._map.way(self._at, command.nodes))
         if not isinstance(command, Told):
@@ -151,19 +157,24 @@ class Vehicle:
     def _sent(self, order: Order, first: int = 0) -> Publish:
         return Publish(topic="order", body=order.message(self._map.position, self._settings.map, first))
 
-    def _stop(self, command: Stop) -> list[Message]:
-        return self._request(*STOPS[command.mode])
+    def _stop(self, now: float, *types: str) -> list[Message]:
+        """Instant actions that have to be over before the vehicle counts as standing."""
+        message, self._stops_at = self._request(*types), now
+        for action in message.body["actions"]:
+            self._stops.pop(OPPOSITE.get(action["actionType"], ""), None)
+            self._stops.setdefault(action["actionType"], []).append(action["actionId"])
+        if self._order is not None and "cancelOrder" in types:
+            self._order.cancelled = True
+        return [message]
 
-    def _request(self, *types: str) -> list[Message]:
-        """Instant actions of the standard; what is to stop it has to be over before it counts as standing."""
+    def _say_stops_again(self, now: float) -> list[Message]:
+        """A message may be lost, a vehicle deaf for a while: what is to stop it is said until it is over."""
+        due = self._stops and now - self._stops_at >= AGAIN_S and self._link.trouble is None
+        return self._stop(now, *self._stops) if due else []
+
+    def _request(self, *types: str) -> Publish:
         actions = [Action(id=self._new_action(), type=type, blocking="NONE") for type in types]
-        for action in actions:
-            if action.type == "stateRequest":
-                continue
-            self._stops.add(action.id)
-            if action.type == "cancelOrder" and self._order is not None:
-                self._order.cancels.append(action.id)
-        return [Publish(topic="instantActions", body=instant(actions, self._settings.version))]
+        return Publish(topic="instantActions", body=instant(actions, self._settings.version))
 
     def _new_action(self) -> str:
         self._count += 1
@@ -177,22 +188,22 @@ class Vehicle:
 
     # --- what it says ---
 
-    def _judge_order(self, state: VehicleState) -> list[Message]:
+    def _judge_order(self, now: float, state: VehicleState) -> list[Message]:
         order = self._order
         if order is None:
             return []
-        if order.cancels:
-            if not state.driving and any(state.is_over(action) for action in order.cancels):
+        if order.cancelled:
+            if not state.driving and "cancelOrder" not in self._stops:
                 self._order = None
             return []
         if state.order != order.id:
-            return self._judge_strange(order, state)
+            return self._judge_strange(now, order, state)
         if not order.taken:
             order.taken = True
             self._say(order.command, "accepted")
         word = self._end_of(order, state)
         if word is not None:
-            return self._fail(order, word, state)
+            return self._fail(now, order, word, state)
         if self._is_done(order, state):
             found = next((state.actions.get(action.id) for action in order.actions), None)
             self._end(order.command, found.result if found is not None else None)
@@ -201,7 +212,7 @@ class Vehicle:
         first = order.extend(state.node, state.sequence, self._settings.base)
         return [] if first is None else [self._sent(order, first)]
 
-    def _judge_strange(self, order: Order, state: VehicleState) -> list[Message]:
+    def _judge_strange(self, now: float, order: Order, state: VehicleState) -> list[Message]:
         """The vehicle has another order than ours, or none."""
         word = next((each.word for each in state.troubles if order.id in dict(each.about).values()), None)
         if order.taken:
@@ -212,7 +223,7 @@ class Vehicle:
             self._order = None
         elif state.hindrance is not None:
             self._say(order.command, "rejected", state.hindrance)
-            return self._request("cancelOrder")
+            return self._stop(now, "cancelOrder")
         return []
 
     def _end_of(self, order: Order, state: VehicleState) -> str | None:
@@ -249,18 +260,23 @@ class Vehicle:
             and all(state.is_over(action.id) for action in order.actions)
         )
 
-    def _fail(self, order: Order, word: str, state: VehicleState) -> list[Message]:
+    def _fail(self, now: float, order: Order, word: str, state: VehicleState) -> list[Message]:
         """It failed; what the vehicle may still do of it is cancelled."""
         self._say(order.command, "failed", word)
         if state.ahead or state.driving:
-            return self._request("cancelOrder")
+            return self._stop(now, "cancelOrder")
         self._order = None
         return []
 
-    def _left_over(self, state: VehicleState) -> list[Message]:
-        """What it still does of an order of before a silence, or of an earlier start, is nobody's."""
+    def _left_over(self, now: float, state: VehicleState) -> list[Message]:
+        """What it still does of an order of before a silence, or of an earlier start, is nobody's.
+
+        So is what a cancel that failed has left: it is said again, but not with each state.
+        """
         ours = state.order.startswith(OURS) and state.ahead
-        return self._request("cancelOrder") if ours and self._order is None and not self._stops else []
+        if not ours or self._order is not None or now - self._stops_at < AGAIN_S:
+            return []
+        return self._stop(now, "cancelOrder")
 
     def _judge_instants(self, state: VehicleState) -> None:
         for action, command in list(self._instants.items()):
@@ -323,7 +339,7 @@ class Vehicle:
         if state.driving:
             return MotionState.MOVING
         if self._order is not None:
-            return MotionState.MOVING if self._order.taken and not self._order.cancels else None
+            return MotionState.MOVING if self._order.taken and not self._order.cancelled else None
         if self._stops:
             return None
         if state.ahead:
@@ -338,7 +354,7 @@ class Vehicle:
 
     def _forget(self) -> None:
         """Nothing that was open is anybody's; an order that it still has is cancelled when it is back."""
-        self._state, self._order, self._stops = None, None, set()
+        self._state, self._order, self._stops, self._stops_at = None, None, {}, -math.inf
         self._instants.clear()
         for said in self._said.values():
             said.clear()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from arboleda.kinds.declared import Told
@@ -45,7 +45,7 @@ class Order:
     actions: tuple[Action, ...] = ()  # at the last node
     update: int = 0
     taken: bool = False  # the vehicle has said that it has it
-    cancels: list[str] = field(default_factory=list)  # the actions that are to end it
+    cancelled: bool = False
 
     @property
     def last_sequence(self) -> int:

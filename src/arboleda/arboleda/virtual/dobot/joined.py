@@ -55,8 +55,9 @@ class Joined:
         """Say what another client of the dashboard says."""
         self.dobot.step(self.now, [Said(client=-1, text=line)])
 
-    def pass_time(self) -> None:
+    def pass_time(self, now: float) -> None:
         """Have both do what is due by now."""
+        self.now = now
         self._step_dobot()
         self._step_driver()
         self._settle()

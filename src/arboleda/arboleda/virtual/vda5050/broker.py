@@ -18,8 +18,8 @@ from arboleda.drivers.vda5050.settings import MAJOR
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from .machine import Connect, Cut, Heard, Message, Say, VirtualAgv
+from .words import BROKEN
 
-BROKEN = {"2.0": "CONNECTIONBROKEN", "2.1": "CONNECTIONBROKEN", "3.0": "CONNECTION_BROKEN"}
 CONNECT_S = 5.0
 
 

@@ -296,14 +296,14 @@ class VirtualAgv:
     # --- what it says ---
 
     def _speak(self, now: float) -> list[Message]:
-        due = [say for at, say in self._later if at <= now]
-        self._later = [(at, say) for at, say in self._later if at > now]
-        if not self._online:
-            return []
-        if (self._changed or now >= self._state_at) and "hush" not in self._faults:
+        if self._online and (self._changed or now >= self._state_at) and "hush" not in self._faults:
             self._changed, self._state_at = False, now + self._state_s
-            due += self._states(now)
-        return list(due)
+            late_s = LATE_S if "late" in self._faults else 0.0
+            self._later += [(now + late_s, say) for say in self._states(now)]
+        due: list[Message] = []
+        while self._later and self._later[0][0] <= now:  # none overtakes one of before
+            due.append(self._later.pop(0)[1])
+        return due if self._online else []
 
     def _states(self, now: float) -> list[Say]:
         body: Mapping[str, Any] = state_of(self, self._faults, self._version)
@@ -316,9 +316,6 @@ class VirtualAgv:
             body = {**body, "driving": "perhaps", "nodeStates": None}
         serial = "another" if "wrong_serial" in self._faults else None
         say = Say(topic="state", body=body, as_serial=serial, fits=not garbled)
-        if "late" in self._faults:
-            self._later.append((now + LATE_S, say))
-            return []
         return [say, say] if "double" in self._faults else [say]
 
 

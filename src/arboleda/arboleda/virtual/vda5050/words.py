@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .machine import Doing, VirtualAgv
 
+BROKEN = {"2.0": "CONNECTIONBROKEN", "2.1": "CONNECTIONBROKEN", "3.0": "CONNECTION_BROKEN"}
 NODE_KEYS = ("nodeId", "sequenceId", "released")
 EDGE_KEYS = ("edgeId", "sequenceId", "released")
 

@@ -1,0 +1,271 @@
+"""A plant with one driver under the faults of its virtual controller, seed by seed.
+
+The core, the supervisor and the driver are the shipped ones; everything is in one process under a clock that
+is moved from deadline to deadline, a minute in a second. What the plant says of a task is held against what
+the virtual device truly did.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from random import Random
+from typing import Protocol
+
+from arboleda.core.advice import Hand
+from arboleda.core.plant import Plant
+from arboleda.drivers.supervisor import Asked, Begin, Give, Life, Said, Supervisor, Taken
+from arboleda.model.commands import Command
+from arboleda.model.messages import (
+    ENDED,
+    Event,
+    OperatorRequest,
+    Reason,
+    Report,
+    TaskChanged,
+    TaskRequest,
+    TaskState,
+    Undelivered,
+)
+from arboleda.model.plant_model import PlantModel, Robot
+from arboleda.model.sentence import OWN
+
+from .faults import Faults
+
+START_S, EPOCH = 100.0, 7
+TASKS = 4
+LOOKS_S = 1.0  # how often somebody looks what the plant advises
+PATIENCE_S = 240.0  # after the last fault, for the last task
+AFTER_S = 20.0  # so long a fault may be the cause of what fails: the longest deadline of a command is shorter
+
+Hear = Callable[[Report], None]
+Causes = Mapping[str, set[Reason]]
+
+
+class Joined(Protocol):
+    """A driver and its virtual device: what one says the other hears at once."""
+
+    @property
+    def next_deadline(self) -> float: ...
+
+    def ask(self, command: Command) -> str | None:
+        """Command the device; why it could not leave, or None."""
+
+    def pass_time(self, now: float) -> None:
+        """Have both do what is due by now."""
+
+
+class Trial(ABC):
+    """One device of a plant: how it is reached, what it is to do, and what it truly did.
+
+    `causes` are the reasons for which a task may fail while a fault is there, or soon after it; `work` is
+    what must have been seen, in this order, where a task is done.
+    """
+
+    model: PlantModel
+    driver: str
+    causes: Causes
+    work: Sequence[Hashable]
+    between_s = 8.0  # two tasks
+
+    def __init__(self, faults: Mapping[str, str]) -> None:
+        self.faults = Faults(faults)
+
+    @property
+    @abstractmethod
+    def robots(self) -> Sequence[Robot]:
+        """Those behind the driver."""
+
+    @abstractmethod
+    def task(self, number: int) -> str:
+        """The text of a task."""
+
+    @abstractmethod
+    def join(self, hear: Hear, now: float) -> Joined:
+        """A new driver, which says so to `hear` what it hears."""
+
+    @abstractmethod
+    def seen(self) -> Hashable | None:
+        """Where the device truly is, with what; None where that is nowhere of interest."""
+
+    @abstractmethod
+    def moves(self) -> tuple[int, int]:
+        """How many moves the device was told, and how many the driver was given."""
+
+    def bystanders(self, now: float) -> list[Report]:
+        """What others of the cell say, who have no part in this."""
+        return []
+
+    def by_hand(self) -> None:  # noqa: B027 - most devices need nobody
+        """What somebody at the device does, once no fault is there any more."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """A fault that is on for a while."""
+
+    name: str
+    begins: float
+    ends: float
+
+
+@dataclass(kw_only=True)
+class Result:
+    """What came of a seed; `breaches` is empty where all was well."""
+
+    seed: int
+    faults: tuple[Drawn, ...]
+    ended: list[TaskChanged] = field(default_factory=list)
+    breaches: list[str] = field(default_factory=list)
+
+
+def drawn(seed: int, names: Sequence[str], between_s: float) -> tuple[Drawn, ...]:
+    """Two to six faults, each at a random time for a random while."""
+    chance = Random(f"faults/{seed}")
+    begins = [START_S + 3 + chance.random() * TASKS * between_s for _ in range(2 + int(chance.random() * 5))]
+    return tuple(
+        Drawn(name=names[int(chance.random() * len(names))], begins=at, ends=at + 0.1 + chance.random() * 6)
+        for at in sorted(begins)
+    )
+
+
+def run(trial: Trial, seed: int, names: Sequence[str] = ()) -> Result:
+    """One seed, from the start to the end of its last task; `names`: the faults to draw of, all without."""
+    faults = drawn(seed, names or tuple(trial.faults.known), trial.between_s)
+    return World(trial, Result(seed=seed, faults=faults)).run()
+
+
+class World:
+    """The plant, its driver and the device; `result` grows while it runs."""
+
+    def __init__(self, trial: Trial, result: Result) -> None:
+        self.trial, self.result, self.now = trial, result, START_S
+        (self._cell,) = trial.model.cells
+        self._names = {robot.name for robot in trial.robots}
+        self._others = {robot.name for robot in self._cell.robots} - self._names
+        self.plant = Plant(trial.model, epoch=EPOCH, now=self.now)
+        self._supervisor = Supervisor(
+            [(trial.driver, trial.robots)], epoch=EPOCH, stale_after_s=trial.model.timing.stale_after_s
+        )
+        self._driver: Joined | None = None
+        self._inbox: list[Event] = []
+        self._heard: list[Said | Asked | Taken] = []
+        self._seen: list[Hashable] = []  # since a task began
+        self._looked_at = self.now
+
+    def run(self) -> Result:
+        times = [START_S + 1 + number * self.trial.between_s for number in range(TASKS)]
+        over_at = max([times[-1], *(each.ends for each in self.result.faults)]) + PATIENCE_S
+        asked = 0
+        while len(self.result.ended) < TASKS and self.now < over_at:
+            self._pass_time()
+            if asked < TASKS and self.now >= times[asked]:
+                self._inbox.append(TaskRequest(at=self.now, text=self.trial.task(asked)))
+                asked += 1
+        if len(self.result.ended) < TASKS:
+            self.result.breaches.append(f"hang: {TASKS - len(self.result.ended)} tasks have no end")
+        told, given = self.trial.moves()
+        if told > given:
+            self.result.breaches.append(f"{told} moves were said, and only {given} were given")
+        return self.result
+
+    def _pass_time(self) -> None:
+        """Up to the next deadline, and all that follows from it."""
+        due = [
+            self.plant.next_deadline,
+            self._supervisor.next_deadline or math.inf,
+            self._looked_at + LOOKS_S,
+        ]
+        due += [self._driver.next_deadline] if self._driver else []
+        self.now = max(self.now + 1e-4, min(due))
+        self._switch_faults()
+        if self._driver is not None:
+            self._driver.pass_time(self.now)
+        self._look_at_device()
+        self._settle()
+        if self.now >= self._looked_at + LOOKS_S:
+            self._looked_at = self.now
+            self._inbox += self.trial.bystanders(self.now)
+            self._attend()
+
+    def _switch_faults(self) -> None:
+        for name in {each.name for each in self.result.faults}:
+            drawn = (each for each in self.result.faults if each.name == name)
+            self.trial.faults.switch(name, on=any(each.begins <= self.now < each.ends for each in drawn))
+
+    def _settle(self) -> None:
+        while True:
+            heard, self._heard = self._heard, []
+            for message in self._supervisor.step(self.now, heard):
+                if isinstance(message, Report | Undelivered):
+                    self._inbox.append(message)
+                elif isinstance(message, Begin):
+                    self._driver = self.trial.join(partial(self._hear, message.life), self.now)
+                elif isinstance(message, Give):
+                    self._give(message)
+            inbox, self._inbox = self._inbox, []
+            for out in self.plant.step(self.now, inbox):
+                if isinstance(out, Command):
+                    if out.robot in self._names:
+                        self._heard.append(Asked(at=self.now, command=out))
+                elif isinstance(out, TaskChanged):
+                    self._judge(out)
+            if not self._heard and not self._inbox:
+                return
+
+    def _hear(self, life: Life, report: Report) -> None:
+        self._heard.append(Said(at=self.now, life=life, report=report))
+
+    def _give(self, give: Give) -> None:
+        assert self._driver is not None
+        why = self._driver.ask(give.command)
+        error = None if why is None else OWN(text=why)
+        self._heard.append(Taken(at=self.now, life=give.life, command=give.command, error=error))
+
+    def _attend(self) -> None:
+        """Somebody does what is advised."""
+        if self.trial.faults:
+            return
+        for advice in self.plant.advice(self._cell.name):
+            if advice.refusal is not None or advice.scope in self._others:
+                continue
+            if isinstance(advice.do, Hand):
+                self.trial.by_hand()
+            else:
+                request = OperatorRequest(
+                    at=self.now, verb=advice.do, scope=advice.scope, by_hand=advice.by_hand
+                )
+                self._inbox.append(request)
+            return
+
+    # What must hold.
+
+    def _look_at_device(self) -> None:
+        seen = self.trial.seen()
+        if seen is not None and (not self._seen or self._seen[-1] != seen):
+            self._seen.append(seen)
+
+    def _judge(self, change: TaskChanged) -> None:
+        if change.state is TaskState.RUNNING:
+            self._seen = []
+        if change.state not in ENDED:
+            return
+        self.result.ended.append(change)
+        if change.state is TaskState.DONE and not _within(self.trial.work, self._seen):
+            self.result.breaches.append(f"false success: task {change.task}, it was seen at {self._seen}")
+        if change.state is TaskState.FAILED and change.reason not in self._possible():
+            self.result.breaches.append(
+                f"wrong cause: task {change.task} failed: {change.sentence} ({change.reason})"
+            )
+
+    def _possible(self) -> set[Reason]:
+        near = [each.name for each in self.result.faults if each.begins <= self.now <= each.ends + AFTER_S]
+        return set().union(*(self.trial.causes[name] for name in near))
+
+
+def _within(wanted: Sequence[Hashable], seen: Sequence[Hashable]) -> bool:
+    rest = iter(seen)
+    return all(each in rest for each in wanted)

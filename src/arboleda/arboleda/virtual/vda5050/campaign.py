@@ -1,0 +1,90 @@
+"""A plant with a vehicle of VDA 5050 under its faults: what it carries, and what each fault may cause."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from arboleda.drivers.vda5050.settings import Settings
+from arboleda.model.commands import Command, Stop
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import PlantModel, Robot
+
+from ..campaign import Hear, Trial
+from .faults import FAULTS
+from .joined import Joined
+from .machine import VirtualAgv
+
+SILENT_S = 3.0  # the shortest silence that states of each second allow
+NO_LINK = {Reason.LINK_LOST}
+OVER = {Reason.DEVICE_FAULT, Reason.REJECTED}
+CAUSES: dict[str, set[Reason]] = {
+    "vanish": NO_LINK,
+    "power_cycle": {*NO_LINK, Reason.REBOOTED},
+    "hush": NO_LINK,
+    "frozen": NO_LINK,
+    "late": {Reason.STOP_UNCONFIRMED},
+    "double": set(),
+    "garbled": NO_LINK,
+    "wrong_serial": NO_LINK,
+    "no_route": {Reason.REJECTED},
+    "no_update": {Reason.DEVICE_FAULT},
+    "forget": {Reason.DEVICE_FAULT},
+    "short": {Reason.DEVICE_FAULT, Reason.NOT_REACHED},
+    "lie": {Reason.DEVICE_FAULT, Reason.NOT_REACHED},
+    "obstacle": {Reason.DEADLINE},
+    "e_stop": OVER,
+    "manual": OVER,
+    "fatal": OVER,
+    "deaf": {Reason.STOP_UNCONFIRMED},
+    "action_fails": {Reason.DEVICE_FAULT},
+    "action_stalls": {Reason.DEADLINE},
+    "lost": {Reason.NOT_HOMED},
+    "slow": {Reason.DEADLINE},
+}
+
+
+class AgvTrial(Trial):
+    """What stands at one shelf is carried to another: where the vehicle was, and with what on it."""
+
+    driver = "vda5050"
+    causes = CAUSES
+    work = (("6", True), ("8", True), ("8", False), ("0", False))
+    between_s = 14.0
+
+    def __init__(self, example: PlantModel, version: str = "2.1") -> None:
+        super().__init__(FAULTS)
+        self.model = example
+        self._agv = VirtualAgv(self.faults, version=version)
+        names = {"broker": "nowhere", "manufacturer": "arboleda", "serial": "agv1", "version": version}
+        self._settings = Settings(silent_after_s=SILENT_S, **names)  # type: ignore[arg-type]
+        self._driver: Counted | None = None
+
+    @property
+    def robots(self) -> Sequence[Robot]:
+        return tuple(self.model.robots.values())
+
+    def task(self, number: int) -> str:
+        return f"hall fetch left right #{number}"
+
+    def join(self, hear: Hear, now: float) -> Joined:
+        self._driver = Counted(self.robots, self._settings, self._agv, hear, now)
+        return self._driver
+
+    def seen(self) -> tuple[str, bool]:
+        return (self._agv.node, self._agv.loaded)
+
+    def moves(self) -> tuple[int, int]:
+        if self._driver is None:
+            return (0, 0)
+        orders = [said for topic, said in self._driver.told if topic == "order"]
+        return (sum(not said["orderUpdateId"] for said in orders), self._driver.given)
+
+
+class Counted(Joined):
+    """Counts the work that it was given."""
+
+    given = 0
+
+    def ask(self, command: Command) -> str | None:
+        self.given += not isinstance(command, Stop)
+        return super().ask(command)

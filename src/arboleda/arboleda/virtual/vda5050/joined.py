@@ -1,0 +1,111 @@
+"""The driver's machine and a virtual vehicle, joined without a broker, under a clock that is moved by hand.
+
+Messages are bytes on the way, and are held against the standard's schemas on both sides.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from typing import Any
+
+from arboleda.adapters.vda5050.messages import Headers, Unfit, from_bytes, to_bytes
+from arboleda.drivers import NotSent
+from arboleda.drivers.vda5050.machine import Message, Publish, Vehicle
+from arboleda.drivers.vda5050.settings import Settings
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
+
+from .machine import Connect, Cut, Heard, Say, VirtualAgv
+from .machine import Message as Said
+from .words import BROKEN
+
+
+class Joined:
+    """What one says the other hears at once; `hear` gets what the plant would hear of its devices."""
+
+    def __init__(
+        self,
+        devices: Sequence[Robot],
+        settings: Settings,
+        agv: VirtualAgv,
+        hear: Callable[[Report], None],
+        now: float = 0.0,
+    ) -> None:
+        self.agv, self.now = agv, now
+        self.vehicle = Vehicle(devices, settings, mark="m")
+        self.told: list[tuple[str, dict[str, Any]]] = []  # topics and messages
+        self._settings, self._hear = settings, hear
+        self._names = (settings.version, settings.manufacturer, settings.serial)
+        self._to_agv, self._headers = Headers(*self._names), Headers(*self._names)
+        self._connected = False
+        self._waiting: deque[Heard] = deque()
+        self._do(self.vehicle.connected(now, up=True))
+
+    @property
+    def next_deadline(self) -> float:
+        return max(self.now, min(self.agv.next_deadline, self.vehicle.next_deadline))
+
+    def ask(self, command: Command) -> str | None:
+        """Command a device; why it could not leave, or None."""
+        try:
+            self.send(command)
+        except NotSent as error:
+            return str(error)
+        return None
+
+    def send(self, command: Command) -> None:
+        """The same; NotSent where it could not leave."""
+        self._do(self.vehicle.command(self.now, command))
+        self._settle()
+
+    def pass_time(self, now: float) -> None:
+        """Have both do what is due by now."""
+        self.now = now
+        self._step_agv()
+        self._do(self.vehicle.step(now))
+        self._settle()
+
+    def _settle(self) -> None:
+        while self._waiting:
+            self._step_agv(self._waiting.popleft())
+
+    def _step_agv(self, *heard: Heard) -> None:
+        for message in self.agv.step(self.now, heard):
+            self._take(message)
+
+    def _take(self, message: Said) -> None:
+        if isinstance(message, Say):
+            with suppress(Unfit):
+                self._read(message)
+            return
+        self._connected = isinstance(message, Connect)
+        if isinstance(message, Cut):
+            self._waiting.clear()
+        elif message.anew:
+            self._headers = Headers(*self._names)
+        word = "ONLINE" if self._connected else BROKEN[self._settings.version]
+        self._do(self.vehicle.connection(self.now, {"connectionState": word}))
+
+    def _read(self, say: Say) -> None:
+        version = self._settings.version
+        body = {**self._headers(say.topic), **say.body}
+        said = from_bytes(version, say.topic, to_bytes(version, say.topic, body))
+        if say.as_serial is None:
+            self._do(self.vehicle.state(self.now, said))
+
+    def _do(self, messages: Iterable[Message]) -> None:
+        for message in messages:
+            if isinstance(message, Publish):
+                self._publish(message)
+            else:
+                self._hear(message)
+
+    def _publish(self, message: Publish) -> None:
+        version, body = self._settings.version, {**self._to_agv(message.topic), **message.body}
+        said = from_bytes(version, message.topic, to_bytes(version, message.topic, body))
+        self.told.append((message.topic, said))
+        if self._connected:
+            self._waiting.append(Heard(topic=message.topic, said=said))

@@ -1,0 +1,52 @@
+"""A plant with a vehicle of VDA 5050 under its faults; `scripts/driver-faults` runs more seeds."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.drivers.vda5050 import machine
+from arboleda.kinds.mobile import Mobile
+from arboleda.virtual import campaign
+from arboleda.virtual.vda5050.campaign import CAUSES, AgvTrial
+from arboleda.virtual.vda5050.faults import FAULTS
+
+EXAMPLE = load(Path(__file__).parents[2] / "examples/agv/plant.yaml")
+SEEDS = 8
+DEAF_AND_REFUSED = 98  # a cancel that is never begun, while an order is refused its update
+
+
+def breaches(seed: int, *names: str, version: str = "2.1") -> list[str]:
+    return campaign.run(AgvTrial(EXAMPLE, version), seed, names).breaches
+
+
+@pytest.mark.parametrize("version", ["2.0", "2.1", "3.0"])
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_no_false_success_no_hang_and_the_right_cause(seed: int, version: str) -> None:
+    assert breaches(seed, version=version) == []
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_every_fault_by_itself(fault: str) -> None:
+    assert breaches(1, fault) == []
+
+
+def test_a_cancel_that_is_never_begun_is_said_again_until_it_is() -> None:
+    assert breaches(DEAF_AND_REFUSED) == []
+
+
+def test_a_cancel_that_is_said_once_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "AGAIN_S", math.inf)
+    assert any("hang" in each for each in breaches(DEAF_AND_REFUSED))
+
+
+def test_a_vehicle_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Mobile, "stands_at", lambda self, position, goal: True)
+    assert any("false success" in each for seed in range(5) for each in breaches(seed, "lie", "short"))
+
+
+def test_every_fault_has_the_reasons_that_it_may_give() -> None:
+    assert set(CAUSES) == set(FAULTS)
