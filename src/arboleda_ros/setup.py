@@ -15,8 +15,13 @@ setup(
     entry_points={
         "arboleda.drivers": [
             "follow_joint_trajectory = arboleda_ros.joint_trajectory:FollowJointTrajectory",
+            "gripper_command = arboleda_ros.gripper_command:GripperCommand",
         ],
         "arboleda.links": ["ros = arboleda_ros.link:connect"],
+        "arboleda.virtual": [
+            "gripper = arboleda_ros.virtual.gripper:controller",
+            "trajectory = arboleda_ros.virtual.trajectory:controller",
+        ],
         "console_scripts": [
             "orchestrator = arboleda_ros.nodes:orchestrator",
             "mqtt_bridge = arboleda_ros.nodes:mqtt_bridge",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from . import dobot, joint_trajectory, line_tcp, modbus, mqtt, ros, vda5050
+from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, ros, vda5050
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -15,5 +15,7 @@ BENCHES: dict[str, Bench] = {
     "dobot": dobot.BENCH,
     "vda5050": vda5050.BENCH,
 }
-if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, and runs this bench
+if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, and runs these benches
     BENCHES["follow_joint_trajectory"] = joint_trajectory.BENCH
+    BENCHES["gripper_command"] = gripper_command.BENCH
+    BENCHES["gripper_command_parallel"] = gripper_command.PARALLEL_BENCH

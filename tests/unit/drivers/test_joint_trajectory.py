@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 from arboleda.drivers import Home, MotionState, MoveJoints, Report, SetEffector, Stop, StopMode
-from arboleda.drivers.joint_trajectory.machine import (
+from arboleda.drivers.joint_trajectory.machine import machine
+from arboleda.drivers.joint_trajectory.settings import Settings
+from arboleda.drivers.ros_action.events import (
     Answered,
     Asked,
     CancelAll,
@@ -16,14 +18,12 @@ from arboleda.drivers.joint_trajectory.machine import (
     Ended,
     Event,
     Found,
-    JointsSeen,
-    Machine,
     Message,
     SendGoal,
     Status,
     Unsent,
 )
-from arboleda.drivers.joint_trajectory.settings import Settings
+from arboleda.drivers.ros_action.joints import JointsSeen
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 
@@ -41,7 +41,7 @@ class Rig:
     """The machine under a clock that the test moves; joints and servers are seen 20 times a second."""
 
     def __init__(self) -> None:
-        self.machine = Machine([ARM], Settings())
+        self.machine = machine([ARM], Settings())
         self.now = 100.0
         self.servers: tuple[int, ...] = (SERVER,)
         self.q: tuple[float, ...] | None = ZERO
@@ -85,7 +85,7 @@ def rig() -> Rig:
 
 
 def test_a_move_is_one_point_that_keeps_the_speed_limits(rig: Rig) -> None:
-    goal = next(each for each in rig.ask(GO) if isinstance(each, SendGoal))
+    goal = next(each for each in rig.ask(GO) if isinstance(each, SendGoal)).goal
     assert (goal.joints, goal.q) == (NAMES, GOAL)
     for joint, q in zip(ARM.joints, GOAL, strict=True):
         assert 15 / 8 * abs(q) / goal.duration_s <= joint.speed * 0.5 + 1e-9

@@ -5,7 +5,9 @@ from __future__ import annotations
 import typer
 
 from arboleda.virtual.dobot import command as dobot
+from arboleda.virtual.gripper import command as gripper
 from arboleda.virtual.modbus import command as modbus
+from arboleda.virtual.trajectory import command as trajectory
 from arboleda.virtual.vda5050 import command as vda5050
 
 cli = typer.Typer(
@@ -16,3 +18,5 @@ cli = typer.Typer(
 cli.command("dobot", help=dobot.HELP)(dobot.run)
 cli.command("vda5050", help=vda5050.HELP)(vda5050.run)
 cli.command("modbus", help=modbus.HELP)(modbus.run)
+cli.command("trajectory", help=trajectory.HELP)(trajectory.run)
+cli.command(gripper.NAME, help=gripper.HELP)(gripper.run)

@@ -1,0 +1,146 @@
+"""A gripper behind an action of ros2_control: how wide it is, and whether a part is between its fingers.
+
+Controllers end a goal that closes on a part as a success or as a failure, by how they are set. So a part is
+what fingers show that have moved, and rest before the width that they were told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.kinds.declared import Device, Told
+from arboleda.model.commands import Command, Work
+from arboleda.model.plant_model import Robot
+
+from ..ros_action.events import Ended, Seen, Status
+from ..ros_action.joints import Joints
+from ..ros_action.machine import Machine
+from ..ros_action.mover import NoGoal, failure
+from .settings import Settings
+
+STILL = 0.25  # of the tolerance, in the time that it takes to be seen at rest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Width:
+    """How wide the fingers are to be; `from_mm`: how wide they were, `grips`: a part stops them before.
+
+    `compared`: the plant compares what it has led to. It does so for work, not for a switch, of which
+    it hears no end but the fact.
+    """
+
+    joint: str
+    position: float
+    effort: float
+    width_mm: float
+    from_mm: float
+    grips: bool
+    compared: bool
+
+
+class GripperMover:
+    """One gripper, by the joint state of its fingers."""
+
+    replaces = True  # letting go must not wait for a grip that never ends
+
+    def __init__(self, device: Device, settings: Settings) -> None:
+        self.name = device.name
+        self._settings, self._kind = settings, device.kind
+        still = abs(settings.units_per_mm) * settings.tolerance_mm * STILL
+        self._joint = Joints((settings.joint,), settings.joint_states, rest=still)
+        self._told_mm: float | None = None  # the width of the last goal
+        self._gripped: bool | None = None  # None: nobody knows
+        self._held_mm = 0.0  # how wide the part is
+
+    @property
+    def width_mm(self) -> float:
+        assert self._joint.q is not None
+        return self._settings.width(self._joint.q[0])
+
+    def see(self, now: float, seen: Seen) -> bool:
+        if not self._joint.see(now, seen):
+            return False
+        if self._gripped and not self._near(self._held_mm):
+            self._gripped = False  # it slipped out, or the fingers were moved apart
+        return True
+
+    def missing(self, now: float) -> str:
+        return self._joint.missing(now)
+
+    def goals(self, command: Command) -> tuple[Width, ...]:
+        if not isinstance(command, Told):
+            raise NoGoal(f"a gripper has no word for {type(command).__name__}")
+        values, grips = dict(command.values), ("gripped", True) in command.sets
+        width_mm = float(values.get("width_mm", 0.0 if grips else self._settings.width_mm))
+        self._told_mm = width_mm
+        goal = Width(
+            joint=self._settings.joint,
+            position=self._settings.position(width_mm),
+            effort=float(values.get("force_n", 0.0)),
+            width_mm=width_mm,
+            from_mm=math.inf if self._gripped else self.width_mm,
+            grips=grips,
+            compared=isinstance(command, Work),
+        )
+        return (goal,)
+
+    def heard_since(self, at: float) -> bool:
+        return self._joint.heard_at > at
+
+    def is_at(self, goal: Width) -> bool:
+        """Fingers that close on a part are where they rest, and nowhere before."""
+        return not goal.grips and self._near(goal.width_mm)
+
+    def rests(self, now: float, since: float = 0.0) -> bool:
+        return self._joint.rest.holds(now, since)
+
+    def failure(self, end: Ended, goal: Width) -> str:
+        if end.stalled and end.status in (Status.SUCCEEDED, Status.ABORTED):
+            return "" if goal.grips else "stalled"  # what fingers show decides whether they have a part
+        return failure(end, {})
+
+    def objection(self, goal: Width) -> str:
+        if goal.grips:
+            return "" if self._holds(goal) else "nothing_gripped"
+        return "" if goal.compared or self._near(goal.width_mm) else "width_not_reached"
+
+    def settle(self, goal: Width | None) -> None:
+        if goal is None:
+            self._gripped = None
+        elif goal.grips:
+            self._gripped, self._held_mm = self._holds(goal), self.width_mm
+        else:
+            self._gripped = False if self._near(goal.width_mm) else None
+
+    def shows(self, *, busy: bool) -> dict[str, Any]:
+        """Whether it has a part is not said while that may change."""
+        known: dict[str, Any] = {"width_mm": self._shown_mm()}
+        if not busy and self._gripped is not None:
+            known["gripped"] = self._gripped
+        read = ((name, type.read(known[name])) for name, type in self._kind.facts.items() if name in known)
+        return {"facts": tuple((name, value) for name, value in read if value is not None)}
+
+    def _near(self, width_mm: float) -> bool:
+        return abs(self.width_mm - width_mm) <= self._settings.tolerance_mm
+
+    def _holds(self, goal: Width) -> bool:
+        """Whether the fingers have moved, and are wider than they were told, as far as a part may be."""
+        width_mm, tolerance_mm = self.width_mm, self._settings.tolerance_mm
+        between = goal.width_mm + tolerance_mm < width_mm < goal.from_mm - tolerance_mm
+        return between and self._settings.narrowest_mm <= width_mm <= self._settings.widest
+
+    def _shown_mm(self) -> float:
+        """Within the tolerance of what they were told, that is how wide they are."""
+        if self._told_mm is not None and self._near(self._told_mm):
+            return self._told_mm
+        return round(self.width_mm, 1)
+
+
+def machine(devices: Sequence[Robot], settings: Settings) -> Machine:
+    """ValueError where that is anything but one gripper."""
+    if len(devices) != 1 or not isinstance(devices[0], Device):
+        raise ValueError("a gripper controller moves one gripper, a device of a declared kind")
+    return Machine(GripperMover(devices[0], settings), settings.action)

@@ -1,0 +1,62 @@
+"""A goal that a server was sent, and whether what it moves is at rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+SETTLE_S = 0.3  # what has not moved for so long is at rest
+REST = 0.002  # rad or m; less than this is the noise of an encoder
+
+
+@dataclass(kw_only=True)
+class Goal:
+    """What became of a command so far; `stopped`: nobody waits for its end any more, the plant wants it over.
+
+    `parts` are what the server is sent for it, one after the other; at `over_at` the plant has given it up.
+    """
+
+    id: str
+    parts: tuple[Any, ...]
+    sent_at: float
+    over_at: float = math.inf
+    part: int = 0
+    accepted: bool = False
+    stopped: bool = False
+    succeeded_at: float | None = None
+
+    @property
+    def key(self) -> str:
+        """What the part that was sent last is called."""
+        return f"{self.id}.{self.part}" if self.part else self.id
+
+    @property
+    def what(self) -> Any:
+        return self.parts[self.part]
+
+    def advance(self, now: float) -> bool:
+        """Begin the next part; False where there is none."""
+        if self.part + 1 == len(self.parts):
+            return False
+        self.part, self.sent_at, self.accepted, self.succeeded_at = self.part + 1, now, False, None
+        return True
+
+
+class Rest:
+    """Whether values stand still: they stay within `within` of where they were SETTLE_S ago."""
+
+    def __init__(self, within: float = REST) -> None:
+        self._within = within
+        self._anchor: tuple[float, ...] | None = None
+        self._since = 0.0
+
+    def look(self, now: float, values: Sequence[float]) -> None:
+        anchor = self._anchor
+        if anchor is None or any(abs(a - b) > self._within for a, b in zip(anchor, values, strict=True)):
+            self._anchor, self._since = tuple(values), now
+
+    def holds(self, now: float, since: float = 0.0) -> bool:
+        """Whether they have rested for SETTLE_S by now, all of it after `since`."""
+        return self._anchor is not None and now - max(self._since, since) >= SETTLE_S

@@ -1,0 +1,48 @@
+"""Joints among the joint states of ROS 2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .events import Seen
+from .goal import REST, Rest
+
+SILENT_S = 1.0  # joint states come many times a second
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointsSeen(Seen):
+    """A joint state."""
+
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+
+
+class Joints:
+    """Where some joints are, and whether they rest; a state that lacks one, or comes again, is no news."""
+
+    def __init__(self, names: Sequence[str], topic: str, *, rest: float = REST) -> None:
+        self.names = tuple(names)
+        self.q: tuple[float, ...] | None = None
+        self.heard_at = -math.inf
+        self.rest = Rest(rest)
+        self._topic = topic
+        self._stamp: tuple[int, int] | None = None
+
+    def see(self, now: float, seen: Seen) -> bool:
+        if not isinstance(seen, JointsSeen) or len(seen.names) != len(seen.positions):
+            return False
+        at = dict(zip(seen.names, seen.positions, strict=True))
+        q = tuple(at.get(name, math.nan) for name in self.names)
+        if seen.stamp == self._stamp or not all(math.isfinite(value) for value in q):
+            return False
+        self.q, self._stamp, self.heard_at = q, seen.stamp, now
+        self.rest.look(now, q)
+        return True
+
+    def missing(self, now: float) -> str:
+        if now < self.heard_at + SILENT_S:
+            return ""
+        return f"{self._topic} has said nothing new of {', '.join(self.names)} for {SILENT_S:g} s"

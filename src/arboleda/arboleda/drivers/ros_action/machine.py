@@ -1,0 +1,294 @@
+"""What a driver makes of an action server and of what is measured: one device, its goal and its stops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from arboleda.model.commands import Command, Home, Stop, StopMode
+from arboleda.model.messages import Report
+from arboleda.model.outside import plain
+from arboleda.model.plant_model import MotionState
+
+from ..port import lost
+from .events import (
+    Answered,
+    Asked,
+    CancelAll,
+    CancelAnswered,
+    Ended,
+    Event,
+    Found,
+    Message,
+    Seen,
+    SendGoal,
+    Unsent,
+)
+from .goal import Goal
+from .mover import Mover, NoGoal
+
+ANSWER_S = 2.0  # a server answers a goal or a cancel in milliseconds
+SPARE_S = 0.5  # the plant's own deadline comes first
+GONE_S = 1.0  # a server that is started anew is away for a moment, and discovery takes another
+REPORT_S = 0.1  # a report at least so often
+LONGEST_WORD = 120
+
+
+class Machine:
+    """One device behind one action. `step` takes what happened, and says what to do and to report."""
+
+    def __init__(self, mover: Mover, action: str) -> None:
+        self._mover, self._action = mover, action
+        self._out: list[Message] = []
+        self._servers: tuple[int, ...] = ()
+        self._server: int | None = None  # the last one that was there alone
+        self._alone_at = -math.inf  # when that was
+        self._why = ""  # why there is no link, as it was reported
+        self._goal: Goal | None = None
+        self._homing: str | None = None
+        self._cancel_at: float | None = None  # since when a cancel is not answered
+        self._cancelled_at = -math.inf  # when the last one was
+        self._stop_id = ""
+        self._latched = False
+        self._ids: dict[str, str] = {}
+        self._seen = False  # whether anything was measured yet
+        self._news = False
+        self._reported_at = -math.inf
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Message]:
+        """What is to be done; at most one report of the device, after all that happened."""
+        for event in events:
+            self._take(now, event)
+        why = self._missing(now)
+        if why:
+            self._lose(now, why)
+        else:
+            self._pass_time(now)
+            if self._news or now >= self._reported_at + REPORT_S:
+                self._out.append(self._report(now))
+        out, self._out = self._out, []
+        return out
+
+    def _take(self, now: float, event: Event) -> None:
+        if isinstance(event, Asked):
+            self._ask(now, event.command)
+        elif isinstance(event, Found):
+            self._find(now, event.servers)
+        elif isinstance(event, Seen):
+            self._see(now, event)
+        elif isinstance(event, Answered):
+            self._hear_answer(now, event)
+        elif isinstance(event, Ended):
+            self._hear_end(now, event)
+        else:
+            self._hear_cancel(now, event)
+
+    def _pass_time(self, now: float) -> None:
+        goal = self._goal
+        if self._cancel_at is not None and now >= self._cancel_at + ANSWER_S:
+            self._cancel(now)
+        if goal is None:
+            return
+        if not goal.accepted and not goal.stopped and now >= goal.sent_at + ANSWER_S:
+            # It may still be accepted later, and is cancelled then.
+            self._drop(failed=goal.id, failure="goal_not_answered")
+            self._cancel(now)
+        elif not goal.stopped and now >= goal.over_at:
+            # No step of a task waits for it any more, and nobody halts a switch.
+            self._drop(failed=goal.id, failure="not_ended")
+            self._cancel(now)
+        elif goal.succeeded_at is not None:
+            self._believe(now, goal, goal.succeeded_at)
+        elif goal.stopped and self._cancel_at is None:
+            # The server has cancelled all it has, and the device rests: no result is waited for.
+            since = self._cancelled_at + ANSWER_S
+            if now >= since and self._mover.rests(now, self._cancelled_at):
+                self._drop()
+
+    def _believe(self, now: float, goal: Goal, since: float) -> None:
+        """A result is believed where what was measured after it is the goal, or shows rest elsewhere.
+
+        The plant compares positions and facts in any case, and says that the goal was not reached.
+        """
+        if not self._mover.heard_since(since):
+            return
+        there = self._mover.is_at(goal.what)
+        if not there and not self._mover.rests(now, since):
+            return
+        objection = self._mover.objection(goal.what)
+        self._mover.settle(goal.what)
+        if objection:
+            self._end(failed=goal.id, failure=objection)
+        elif there and goal.advance(now):
+            self._send(goal)
+        else:
+            self._end(done=goal.id)
+
+    # The link.
+
+    def _missing(self, now: float) -> str:
+        """Why the device cannot be reached; "" where it can."""
+        if now >= self._alone_at + GONE_S and not self._servers:
+            return f"there is no action server {self._action}"
+        if now >= self._alone_at + GONE_S:
+            return f"there are {len(self._servers)} action servers {self._action}; one is needed"
+        return self._mover.missing(now)
+
+    def _find(self, now: float, servers: tuple[int, ...]) -> None:
+        self._servers = servers
+        if len(servers) != 1:
+            return
+        self._alone_at = now
+        if servers[0] == self._server:
+            return
+        if self._server is not None:  # it was started anew, and knows of no goal
+            self._forget()
+        self._server, self._news = servers[0], True
+
+    def _lose(self, now: float, why: str) -> None:
+        """What is open is nobody's; a goal that the same server goes on with is cancelled once it is back."""
+        if self._goal is not None:
+            self._goal.stopped, self._goal.succeeded_at = True, None
+            self._cancel_at = -math.inf  # at once, where it is back
+        self._homing, self._stop_id = None, ""
+        if why != self._why:
+            self._why = why
+            self._out.append(lost(self._mover.name, at=now, why=why))
+
+    def _forget(self) -> None:
+        self._goal = self._homing = self._cancel_at = None
+        self._stop_id, self._ids = "", {}
+        self._mover.settle(None)
+
+    def _see(self, now: float, seen: Seen) -> None:
+        if not self._mover.see(now, seen):
+            return
+        self._news, self._seen = self._news or not self._seen, True
+        if self._homing is not None:
+            self._tell(done=self._homing)
+            self._homing = None
+
+    # What it is told.
+
+    def _ask(self, now: float, command: Command) -> None:
+        why = self._missing(now)
+        if why:
+            self._out.append(Unsent(why=why))
+        elif isinstance(command, Stop):
+            self._ask_stop(now, command)
+        elif self._homing is not None or (self._goal is not None and not self._mover.replaces):
+            self._reject(command.id, "busy")
+        elif isinstance(command, Home):
+            # Its sensors know where it is: all that is proven is that they are heard.
+            self._homing = command.id
+            self._tell(accepted=command.id)
+        else:
+            self._begin(now, command)
+
+    def _begin(self, now: float, command: Command) -> None:
+        try:
+            parts = self._mover.goals(command)
+        except NoGoal as error:
+            self._out.append(Unsent(why=str(error)))
+            return
+        if self._goal is not None:
+            self._drop(failed=self._goal.id, failure="replaced_by_the_next")
+        over_at = math.inf if command.at_most_s is None else now + command.at_most_s + SPARE_S
+        self._goal = Goal(id=command.id, parts=parts, sent_at=now, over_at=over_at)
+        self._send(self._goal)
+
+    def _send(self, goal: Goal) -> None:
+        self._out.append(SendGoal(id=goal.key, goal=goal.what))
+        self._news = True
+
+    def _ask_stop(self, now: float, command: Stop) -> None:
+        if command.mode is not StopMode.HALT:
+            self._latched = command.mode is StopMode.LATCH
+        self._news = True
+        if command.mode is StopMode.CLEAR:
+            self._tell(accepted=command.id)
+            return
+        self._homing = None
+        if self._goal is not None:
+            self._goal.stopped, self._goal.succeeded_at = True, None
+        self._stop_id = command.id
+        self._cancel(now)
+
+    def _cancel(self, now: float) -> None:
+        self._cancel_at, self._news = now, True
+        self._out.append(CancelAll())
+
+    # What the server says.
+
+    def _hear_answer(self, now: float, answer: Answered) -> None:
+        goal = self._goal
+        if goal is None or answer.id != goal.key:
+            if answer.accepted:  # nobody waits for it any more
+                self._cancel(now)
+        elif not answer.accepted:
+            self._end(**({} if goal.stopped else {"rejected": goal.id, "refusal": "goal_refused"}))
+        else:
+            goal.accepted = True
+            if goal.stopped:  # the cancel may have come before it, and cannot have meant it then
+                self._cancel(now)
+            else:
+                self._tell(accepted=goal.id)
+
+    def _hear_end(self, now: float, end: Ended) -> None:
+        goal = self._goal
+        if goal is None or end.id != goal.key:
+            return
+        failure = self._mover.failure(end, goal.what)
+        if goal.stopped:
+            self._drop()
+        elif failure:
+            self._drop(failed=goal.id, failure=failure)
+        else:
+            goal.succeeded_at = now
+
+    def _hear_cancel(self, now: float, answer: CancelAnswered) -> None:
+        if self._cancel_at is None:
+            return
+        if answer.refused and self._goal is not None:
+            self._reject(self._stop_id, "cancel_refused")
+            self._stop_id = ""
+            return  # asked again once ANSWER_S have gone by
+        self._cancel_at, self._cancelled_at = None, now
+        self._tell(accepted=self._stop_id)
+        self._stop_id = ""
+
+    # What the plant hears.
+
+    def _drop(self, **ids: str) -> None:
+        """A goal is over, and nobody knows how far it has led."""
+        self._mover.settle(None)
+        self._end(**ids)
+
+    def _end(self, *, failure: str = "", **ids: str) -> None:
+        self._goal = None
+        self._tell(**ids, failure=plain(failure, LONGEST_WORD))
+
+    def _tell(self, **ids: str) -> None:
+        self._ids |= {name: id for name, id in ids.items() if id}
+        self._news = True
+
+    def _reject(self, id: str, word: str) -> None:
+        if id:
+            self._tell(rejected=id, refusal=word)
+
+    def _state(self, now: float) -> MotionState:
+        if self._goal is not None or self._cancel_at is not None or not self._mover.rests(now):
+            return MotionState.MOVING
+        return MotionState.STOP_LATCHED if self._latched else MotionState.STOPPED
+
+    def _report(self, now: float) -> Report:
+        self._news, self._reported_at, self._why = False, now, ""
+        said = Report(
+            at=now,
+            robot=self._mover.name,
+            boot_id=self._server,
+            state=self._state(now),
+            homed=self._homing is None,
+            **self._mover.shows(busy=self._goal is not None),
+        )
+        return said.again(now, **self._ids)

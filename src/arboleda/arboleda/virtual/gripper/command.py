@@ -1,0 +1,57 @@
+"""The command `arboleda virtual gripper`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..ros_action.command import JointStates, Lan, Rate, controller
+from ..serving import FaultNames, FaultPort, serve, with_faults
+from .machine import FAULTS
+
+NAME = "gripper"
+HELP = with_faults(
+    "Play a gripper of ros2_control with a part between its fingers: the action GripperCommand, or "
+    "ParallelGripperCommand with --parallel, and joint states. It is a plain action server of rclpy, and "
+    "stands in for ros2_control. Any client of that action can use it.",
+    FAULTS,
+)
+
+
+def run(
+    action: Annotated[str, typer.Option(help="The action's name.")] = "gripper_controller/gripper_cmd",
+    parallel: Annotated[bool, typer.Option("--parallel", help="Serve ParallelGripperCommand.")] = False,
+    joint_states: JointStates = "joint_states",
+    joint: Annotated[str, typer.Option(help="The name of its joint.")] = "finger_joint",
+    opened: Annotated[
+        float, typer.Option("--open", help="Its joint's position when open; closed it is 0.")
+    ] = 0.085,
+    part: Annotated[float, typer.Option(help="Its joint's position when it has the part.")] = 0.04,
+    speed: Annotated[float, typer.Option(help="Of its joint, m/s or rad/s.")] = 0.1,
+    rate: Rate = 50.0,
+    lan: Lan = False,
+    fault: FaultNames = None,
+    fault_port: FaultPort = 4718,
+) -> None:
+    if opened == 0 or not 0 < part / opened < 1 or speed <= 0:
+        why = "the part is between 0 and --open, and the speed is more than 0"
+        raise typer.BadParameter(why, param_hint="--open, --part, --speed")
+    make = controller(NAME)
+    serve(
+        lambda faults: make(
+            faults,
+            action=action,
+            parallel=parallel,
+            joint_states=joint_states,
+            joint=joint,
+            opened=opened,
+            part=part,
+            speed=speed,
+            rate=rate,
+            lan=lan,
+        ),
+        FAULTS,
+        fault,
+        fault_port,
+    )

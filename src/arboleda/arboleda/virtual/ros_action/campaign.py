@@ -1,0 +1,145 @@
+"""A plant whose devices are behind actions, under the faults of their servers: what each fault may cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from arboleda.drivers.ros_action.machine import Machine
+from arboleda.model.commands import Command, Stop
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import Cell, PlantModel, Robot
+
+from ..campaign import Causes, Hear, Trial
+from ..faults import Faults
+from .joined import Joined
+from .machine import Body, VirtualServer
+
+MEASURE_S = 0.05  # less often than by default: a campaign has to see every state, and no more
+NEAR = 1e-3  # m or rad
+NO_LINK = {Reason.LINK_LOST}
+CAUSES: dict[str, set[Reason]] = {
+    "vanish": {Reason.LINK_LOST, Reason.REBOOTED},
+    "double": NO_LINK,
+    "refuse": {Reason.REJECTED},
+    "late_answer": {Reason.DEVICE_FAULT},
+    "no_result": {Reason.DEADLINE},
+    "late_result": set(),
+    "lie": {Reason.NOT_REACHED},
+    "early": set(),
+    "short": {Reason.NOT_REACHED},
+    "stall": {Reason.DEADLINE, Reason.NOT_REACHED},  # the last where a result was early
+    "abort": {Reason.DEVICE_FAULT},
+    "other_client": {Reason.DEVICE_FAULT},
+    "refuse_cancel": {Reason.STOP_UNCONFIRMED},
+    "deaf": {Reason.STOP_UNCONFIRMED},
+    "mute": NO_LINK,
+    "frozen": NO_LINK,
+    "stuck": {Reason.NOT_REACHED, Reason.DEVICE_FAULT},
+    "no_number": NO_LINK,
+    "slow": {Reason.DEADLINE},
+}
+"""Why a task may fail while a fault that every server has is there, or soon after it."""
+
+
+class Own(Collection[str]):
+    """Those of one device among the faults of all, which are called by device and name: `arm.lie`."""
+
+    def __init__(self, all: Faults, device: str) -> None:
+        self._all, self._before = all, f"{device}."
+
+    def __contains__(self, name: object) -> bool:
+        return f"{self._before}{name}" in self._all
+
+    def __iter__(self) -> Iterator[str]:
+        return (name.removeprefix(self._before) for name in self._all if name.startswith(self._before))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """A device: the machine of its driver, what its server moves, and what is read of a goal between them."""
+
+    name: str
+    machine: Callable[[Sequence[Robot], Any], Machine]
+    body: Callable[[Collection[str]], Body]
+    read: Callable[[Any], Any]
+    causes: Causes
+
+
+class ActionTrial(Trial):
+    """Each device has a server of its own; `parts` says which."""
+
+    driver = "actions"
+    between_s = 12.0
+    parts: Sequence[Part]
+
+    def __init__(self, example: PlantModel) -> None:
+        known = {f"{part.name}.{name}": name for part in self.parts for name in part.causes}
+        super().__init__(known)
+        self.model = example
+        self.causes = {f"{each.name}.{name}": why for each in self.parts for name, why in each.causes.items()}
+        self.bodies = {part.name: part.body(Own(self.faults, part.name)) for part in self.parts}
+        self._servers = {
+            name: VirtualServer(body, Own(self.faults, name), measure_s=MEASURE_S)
+            for name, body in self.bodies.items()
+        }
+        self._joined: Together | None = None
+
+    @property
+    def cell(self) -> Cell:
+        (cell,) = self.model.cells
+        return cell
+
+    @property
+    def robots(self) -> Sequence[Robot]:
+        return tuple(self.model.robots[part.name] for part in self.parts)
+
+    def join(self, hear: Hear, now: float) -> Together:
+        made = {}
+        for part, device in zip(self.parts, self.robots, strict=True):
+            assert device.driver is not None
+            driver = part.machine([device], device.driver.settings)
+            made[part.name] = Joined(driver, self._servers[part.name], part.read, hear, now)
+        self._joined = Together(made)
+        return self._joined
+
+    def moves(self) -> tuple[int, int]:
+        return (0, 0) if self._joined is None else (self._joined.goals, self._joined.given)
+
+
+class Together:
+    """Several devices that are reached as one."""
+
+    def __init__(self, joined: Mapping[str, Joined]) -> None:
+        self._joined = joined
+        self.given = 0  # nodes, positions and widths
+
+    @property
+    def goals(self) -> int:
+        return sum(each.goals for each in self._joined.values())
+
+    @property
+    def next_deadline(self) -> float:
+        return min(each.next_deadline for each in self._joined.values())
+
+    def ask(self, command: Command) -> str | None:
+        way = getattr(command, "nodes", (None,))
+        self.given += 0 if isinstance(command, Stop) else len(way)
+        return self._joined[command.robot].ask(command)
+
+    def pass_time(self, now: float) -> None:
+        for each in self._joined.values():
+            each.pass_time(now)
+
+
+def spot(spots: Mapping[str, object], position: Sequence[float]) -> str | None:
+    """Which of these something stands at."""
+    return next((name for name, at in spots.items() if near(position, at)), None)
+
+
+def near(position: Sequence[float], other: object) -> bool:
+    return isinstance(other, tuple) and all(abs(a - b) < NEAR for a, b in zip(position, other, strict=True))

@@ -1,0 +1,117 @@
+"""A driver's machine and a virtual server, joined without ROS 2, under a clock that is moved by hand."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from arboleda.drivers.ros_action.events import (
+    Answered,
+    Asked,
+    CancelAll,
+    CancelAnswered,
+    Ended,
+    Event,
+    Found,
+    Seen,
+    SendGoal,
+    Unsent,
+)
+from arboleda.drivers.ros_action.events import Message as Told
+from arboleda.drivers.ros_action.machine import Machine
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report
+
+from .machine import CancelAsked, CancelDecided, GoalAsked, VirtualServer
+
+LOOK_S = 0.1  # as often as the driver looks which servers there are
+
+
+class Joined:
+    """What one says the other hears at once; `hear` gets what the plant would hear of the device.
+
+    `read` makes of a goal of the driver what the server's body takes, as the message between them does.
+    """
+
+    def __init__(
+        self,
+        driver: Machine,
+        server: VirtualServer,
+        read: Callable[[Any], Any],
+        hear: Callable[[Report], None],
+        now: float,
+    ) -> None:
+        self.now, self.goals = now, 0
+        self._driver, self._server, self._read, self._hear = driver, server, read, hear
+        self._look_at = now
+        self._starts, self._was_off = 1, False
+        self._open: dict[str, bool] = {}  # goals that have no end, and whether they are accepted
+        self._to_driver: deque[Event] = deque()
+
+    @property
+    def next_deadline(self) -> float:
+        return max(self.now, min(self._look_at, self._server.next_deadline))
+
+    def ask(self, command: Command) -> str | None:
+        """Command the device; why it could not leave, or None."""
+        out = self._step_driver(Asked(command=command))
+        self._settle()
+        return next((each.why for each in out if isinstance(each, Unsent)), None)
+
+    def pass_time(self, now: float) -> None:
+        """Have both do what is due by now."""
+        self.now = now
+        if self._server.is_off and not self._was_off:
+            self._starts += 1
+            self._open.clear()
+            self._to_driver.clear()
+        self._was_off = self._server.is_off
+        self._step_server()
+        if self.now >= self._look_at:
+            self._look_at = self.now + LOOK_S
+            self._to_driver.append(Found(servers=self._servers()))
+        self._settle()
+
+    def _servers(self) -> tuple[int, ...]:
+        if self._server.is_off:
+            return ()
+        return (self._starts, 1000 + self._starts) if self._server.is_doubled else (self._starts,)
+
+    def _settle(self) -> None:
+        while self._to_driver:
+            self._step_driver(self._to_driver.popleft())
+
+    def _step_driver(self, *events: Event) -> list[Told]:
+        out = self._driver.step(self.now, events)
+        for message in out:
+            if isinstance(message, Report):
+                self._hear(message)
+            elif isinstance(message, SendGoal) and not self._server.is_off:
+                self.goals += 1
+                self._open[message.id] = False
+                self._step_server(GoalAsked(id=message.id, goal=self._read(message.goal)))
+            elif isinstance(message, CancelAll) and not self._server.is_off:
+                self._cancel()
+        return out
+
+    def _cancel(self) -> None:
+        """As action servers in C++ do: only what is accepted can be cancelled, and no goal is no refusal."""
+        accepted = [id for id, is_accepted in self._open.items() if is_accepted]
+        decided = self._step_server(*(CancelAsked(id=id) for id in accepted))
+        refused = bool(decided) and not any(each.accepted for each in decided)
+        self._to_driver.append(CancelAnswered(refused=refused))
+
+    def _step_server(self, *events: GoalAsked | CancelAsked) -> list[CancelDecided]:
+        decided = []
+        for message in self._server.step(self.now, events):
+            if isinstance(message, CancelDecided):
+                decided.append(message)
+                continue
+            if isinstance(message, Answered) and message.accepted:
+                self._open[message.id] = True
+            elif isinstance(message, Answered | Ended):
+                self._open.pop(message.id, None)
+            if isinstance(message, Answered | Ended | Seen):
+                self._to_driver.append(message)
+        return decided

@@ -1,0 +1,209 @@
+"""A virtual action server: goals, their ends, cancels, and what is measured meanwhile. No ROS 2, no clock."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from arboleda.drivers.ros_action.events import Answered, Ended, Seen, Status
+
+from .ride import Position, Ride
+
+LATE_ANSWER_S, LATE_RESULT_S = 3.0, 1.0
+SHORT = 0.9
+SLOW = 10.0
+MEASURE_S = 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalAsked:
+    """A client sends a goal; what it holds is the body's own."""
+
+    id: str
+    goal: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class CancelAsked:
+    """A client wants a goal to end."""
+
+    id: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CancelDecided:
+    """What is answered to it."""
+
+    id: str
+    accepted: bool
+
+
+Message = Answered | Ended | Seen | CancelDecided
+
+
+class BadGoal(Exception):
+    """A goal that the server refuses."""
+
+
+class Body(Protocol):
+    """What the server moves."""
+
+    position: Position
+    preempted: Status  # how a goal ends that another takes the place of
+
+    def ride(self, now: float, goal: Any, slower: float) -> Ride:
+        """The way to a goal; BadGoal where there is none."""
+
+    def moved(self, now: float, position: Position) -> bool:
+        """It is led there; False where it cannot get there, and its goal ends so."""
+
+    def rests(self, now: float) -> None:
+        """It is led nowhere."""
+
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
+        """The end of a goal by itself."""
+
+    def aborted(self, id: str) -> Ended:
+        """The end of a goal that goes wrong half way."""
+
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+        """What its sensors say."""
+
+
+class VirtualServer:
+    """One action and its body; `faults` is looked at whenever it matters. Times are in s of any clock."""
+
+    def __init__(self, body: Body, faults: Collection[str] = (), *, measure_s: float = MEASURE_S) -> None:
+        self.body, self.faults = body, faults
+        self._measure_s = measure_s
+        self._goal: str | None = None
+        self._ride: Ride | None = None
+        self._late: list[tuple[float, Message]] = []
+        self._measure_at = -math.inf
+        self._said: tuple[tuple[int, int], Position] | None = None  # what was measured last
+        self._off = False
+
+    @property
+    def is_off(self) -> bool:
+        """Whether there is no server now."""
+        return "vanish" in self.faults
+
+    @property
+    def is_doubled(self) -> bool:
+        return "double" in self.faults
+
+    @property
+    def next_deadline(self) -> float:
+        ends = (self._ride.middle_at, self._ride.ends_at) if self._ride is not None else ()
+        ahead = [each for each in ends if each > self._measure_at - self._measure_s]
+        return min([self._measure_at, *ahead, *(at for at, _ in self._late)])
+
+    def step(self, now: float, events: Sequence[GoalAsked | CancelAsked]) -> list[Message]:
+        """Let time pass, take what clients ask, and say what there is to say."""
+        if self.is_off or self._off:
+            self._boot()
+            self._off = self.is_off
+            if self._off:
+                self._measure_at = now + self._measure_s
+                return []
+        out = self._pass_time(now)
+        for event in events:
+            out += self._begin(now, event) if isinstance(event, GoalAsked) else self._cancel(event)
+        out += [message for at, message in self._late if at <= now]
+        self._late = [row for row in self._late if row[0] > now]
+        if self._measure_at <= now:
+            self._measure_at = now + self._measure_s
+            out += self._measure(now)
+        return out
+
+    def _boot(self) -> None:
+        self._goal = self._ride = None
+        self._late.clear()
+
+    # Motion.
+
+    def _pass_time(self, now: float) -> list[Message]:
+        ride = self._ride
+        if ride is None:
+            self.body.rests(now)
+            return []
+        out = self._befall() if now >= ride.middle_at else []
+        if self._ride is None:
+            return out
+        arrived = self.body.moved(now, ride.at(now))
+        if arrived and now < ride.ends_at:
+            return out
+        self._ride = None
+        return out + self._over(now, self.body.end(self._goal or "", ride, arrived=arrived))
+
+    def _befall(self) -> list[Message]:
+        """What happens to it half way."""
+        if "stall" in self.faults:
+            self._ride = None
+        elif "abort" in self.faults:
+            return self._stand(self.body.aborted)
+        elif "other_client" in self.faults:
+            return self._stand(lambda id: Ended(id=id, status=self.body.preempted))
+        return []
+
+    def _stand(self, end: Callable[[str], Ended]) -> list[Message]:
+        self._ride = None
+        id, self._goal = self._goal, None
+        return [] if id is None else [end(id)]
+
+    def _over(self, now: float, end: Ended) -> list[Message]:
+        if self._goal is None or "no_result" in self.faults:
+            return []  # it is gone on with though it ended, or nobody hears of its end
+        self._goal = None
+        if "late_result" in self.faults:
+            self._late.append((now + LATE_RESULT_S, end))
+            return []
+        return [end]
+
+    # What clients ask.
+
+    def _begin(self, now: float, asked: GoalAsked) -> list[Message]:
+        try:
+            if "refuse" in self.faults:
+                raise BadGoal("refused")
+            ride = self.body.ride(now, asked.goal, SLOW if "slow" in self.faults else 1.0)
+        except BadGoal:
+            return [Answered(id=asked.id, accepted=False)]
+        out = self._stand(lambda id: Ended(id=id, status=self.body.preempted))
+        answer = Answered(id=asked.id, accepted=True)
+        if "late_answer" in self.faults:
+            self._late.append((now + LATE_ANSWER_S, answer))
+        else:
+            out.append(answer)
+        self._goal, self._ride = asked.id, ride.cut(SHORT) if "short" in self.faults else ride
+        if "lie" in self.faults or "early" in self.faults:
+            out.append(Ended(id=asked.id, status=Status.SUCCEEDED))
+            self._goal = None
+            self._ride = None if "lie" in self.faults else ride
+        return out
+
+    def _cancel(self, asked: CancelAsked) -> list[Message]:
+        if asked.id != self._goal or "refuse_cancel" in self.faults:
+            return [CancelDecided(id=asked.id, accepted=False)]
+        decided = CancelDecided(id=asked.id, accepted=True)
+        if "deaf" in self.faults:
+            return [decided]
+        self._ride = self._goal = None
+        return [decided, Ended(id=asked.id, status=Status.CANCELED)]
+
+    # What it measures.
+
+    def _measure(self, now: float) -> list[Message]:
+        if "mute" in self.faults:
+            return []
+        stamp = (int(now), int(now % 1 * 1e9))
+        if self._said is None or not {"frozen", "stuck"} & set(self.faults):
+            self._said = (stamp, self.body.position)
+        elif "stuck" in self.faults:
+            self._said = (stamp, self._said[1])
+        position = self._said[1]
+        if "no_number" in self.faults:
+            position = (math.nan,) * len(position)
+        return list(self.body.measured(self._said[0], position))

@@ -1,0 +1,1 @@
+"""A virtual joint trajectory controller: `arboleda virtual trajectory`."""

@@ -1,0 +1,72 @@
+"""An arm that a joint trajectory controller moves: whatever points a trajectory has, in their times."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from arboleda.drivers.ros_action.events import Ended, Seen, Status
+from arboleda.drivers.ros_action.joints import JointsSeen
+
+from ..ros_action.faults import FAULTS as OF_ALL
+from ..ros_action.machine import BadGoal
+from ..ros_action.ride import Position, Ride
+
+PATH_TOLERANCE = -4
+FAULTS = {
+    **OF_ALL,
+    "abort": "a goal is aborted half way: PATH_TOLERANCE_VIOLATED",
+    "no_joint": "the joint states lack the last joint",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Points:
+    """A trajectory: at which time from its start, s, which joints are where."""
+
+    joints: tuple[str, ...]
+    points: tuple[tuple[float, Position], ...]
+
+
+class ArmBody:
+    """It follows its points, each from rest to rest."""
+
+    preempted = Status.CANCELED
+
+    def __init__(self, joints: Sequence[str], faults: Collection[str] = ()) -> None:
+        self.joints = tuple(joints)
+        self.position: Position = (0.0,) * len(self.joints)
+        self._faults = faults
+
+    def ride(self, now: float, goal: Points, slower: float) -> Ride:
+        if sorted(goal.joints) != sorted(self.joints) or not goal.points:
+            raise BadGoal("its joints are others")
+        times = [0.0, *(at for at, _ in goal.points)]
+        numbers = [*times, *(value for _, q in goal.points for value in q)]
+        short = any(len(q) != len(goal.joints) for _, q in goal.points)
+        if short or not all(map(math.isfinite, numbers)) or any(b <= a for a, b in pairwise(times)):
+            raise BadGoal("its points are none")
+        order = [goal.joints.index(name) for name in self.joints]
+        points = ((now + at * slower, tuple(q[index] for index in order)) for at, q in goal.points)
+        return Ride(points=((now, self.position), *points))
+
+    def moved(self, now: float, position: Position) -> bool:
+        self.position = position
+        return True
+
+    def rests(self, now: float) -> None:
+        """It holds its position."""
+
+    def end(self, id: str, ride: Ride, *, arrived: bool) -> Ended:
+        return Ended(id=id, status=Status.SUCCEEDED)
+
+    def aborted(self, id: str) -> Ended:
+        return Ended(id=id, status=Status.ABORTED, error=PATH_TOLERANCE, text="a joint left its path")
+
+    def measured(self, stamp: tuple[int, int], position: Position) -> list[Seen]:
+        names = self.joints
+        if "no_joint" in self._faults:
+            names, position = names[:-1], position[:-1]
+        return [JointsSeen(names=names, positions=position, stamp=stamp)]

@@ -1,0 +1,190 @@
+"""What drivers of actions share: an action client, subscriptions and a timer around their machine.
+
+Plant files are read without rclpy and without the messages: where they are missing, the start says so.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import zlib
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from functools import partial
+from importlib import import_module
+from typing import Any, ClassVar
+
+from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
+from arboleda.drivers.ros_action.events import (
+    Answered,
+    Asked,
+    CancelAll,
+    CancelAnswered,
+    Ended,
+    Event,
+    Found,
+    Message,
+    Seen,
+    SendGoal,
+    Status,
+    Unsent,
+)
+from arboleda.drivers.ros_action.machine import Machine
+from arboleda.model.commands import Command
+from arboleda.model.messages import Report
+from arboleda.model.plant_model import Robot
+
+with suppress(ImportError):
+    # Drivers start in threads of their own, and two threads that import rclpy at once both fail.
+    import rclpy.action  # noqa: F401
+
+    import arboleda_ros.link  # noqa: F401
+
+LOOK_S = 0.1  # between two looks at which servers there are
+REJECTED = 1  # CancelGoal: the server goes on with what it does
+STATUSES = {4: Status.SUCCEEDED, 5: Status.CANCELED, 6: Status.ABORTED}
+"""The ends of a goal in action_msgs/msg/GoalStatus."""
+
+
+class ActionClientDriver:
+    """One device behind one action. All of ROS 2 is done in one thread of its link."""
+
+    package: ClassVar[str]  # of the action's messages
+
+    def __init__(self, settings: Any) -> None:
+        self.settings = settings
+        self._lock = threading.Lock()  # around the machine and what it reports
+        self._link: Any = None
+        self._client: Any = None
+
+    # What each of them has of its own.
+
+    @property
+    def type_name(self) -> str:
+        """The action's name in its package."""
+        raise NotImplementedError
+
+    def machine(self, devices: Sequence[Robot]) -> Machine:
+        """What it makes of answers and measurements."""
+        raise NotImplementedError
+
+    def listen(self, node: Any) -> None:
+        """Subscribe to what shows where the device is, and give it to `see`."""
+        raise NotImplementedError
+
+    def goal(self, action: Any, goal: Any) -> Any:
+        """A goal of the machine as a message."""
+        raise NotImplementedError
+
+    def end(self, result: Any) -> dict[str, Any]:
+        """What the action's result says, as fields of Ended."""
+        raise NotImplementedError
+
+    # What all of them do.
+
+    def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
+        self._hear, self._clock = hear, clock
+        self._machine = self.machine(devices)
+        self._action = action_type(self.package, self.type_name)
+        from .link import connect
+
+        self._link = connect(lan=self.settings.lan)
+        self._join(self._link.node(f"{devices[0].name}_driver"))
+        self._link.start()
+
+    def send(self, command: Command) -> None:
+        for message in self._step(Asked(command=command)):
+            if isinstance(message, Unsent):
+                raise NotSent(message.why)
+
+    def stop(self) -> None:
+        if self._link is not None:
+            self._link.close()
+
+    def see(self, seen: Seen) -> None:
+        """Something was measured; in the thread of ROS 2."""
+        self._step(seen)
+
+    def _join(self, node: Any) -> None:
+        from action_msgs.srv import CancelGoal
+        from rclpy.action import ActionClient
+        from rclpy.clock import Clock as RosClock
+        from rclpy.clock import ClockType
+
+        name = self.settings.action
+        self._node = node
+        self._client = ActionClient(node, self._action, name)
+        self._cancels = node.create_client(CancelGoal, f"{name}/_action/cancel_goal")
+        self.listen(node)
+        node.create_timer(LOOK_S, self._look, clock=RosClock(clock_type=ClockType.STEADY_TIME))
+
+    def _step(self, *events: Event) -> list[Message]:
+        with self._lock:
+            messages = self._machine.step(self._clock(), events)
+            for message in messages:
+                if isinstance(message, Report):
+                    self._hear(message)
+                elif isinstance(message, SendGoal):
+                    self._later(partial(self._send_goal, message))
+                elif isinstance(message, CancelAll):
+                    self._later(self._cancel_all)
+        return messages
+
+    def _later(self, what: Callable[[], None]) -> None:
+        """Have it done in the thread of ROS 2: an action client is not made for several."""
+        self._node.executor.create_task(what)
+
+    # What leaves.
+
+    def _send_goal(self, message: SendGoal) -> None:
+        goal = self.goal(self._action, message.goal)
+        self._client.send_goal_async(goal).add_done_callback(partial(self._answered, message.id))
+
+    def _cancel_all(self) -> None:
+        from action_msgs.srv import CancelGoal
+
+        # A request without an id and a time means all goals, those of other clients among them.
+        self._cancels.call_async(CancelGoal.Request()).add_done_callback(self._cancelled)
+
+    # What comes back, in the thread of ROS 2.
+
+    def _answered(self, id: str, future: Any) -> None:
+        handle = future.result()
+        self._step(Answered(id=id, accepted=handle.accepted))
+        if handle.accepted:
+            handle.get_result_async().add_done_callback(partial(self._ended, id))
+
+    def _ended(self, id: str, future: Any) -> None:
+        said = future.result()
+        status = STATUSES.get(said.status, Status.UNKNOWN)
+        self._step(Ended(id=id, status=status, **self.end(said.result)))
+
+    def _cancelled(self, future: Any) -> None:
+        self._step(CancelAnswered(refused=future.result().return_code == REJECTED))
+
+    def _look(self) -> None:
+        """Each server publishes the states of its goals, by an endpoint of its own."""
+        topic = self._node.resolve_topic_name(f"{self.settings.action}/_action/status")
+        found = self._node.get_publishers_info_by_topic(topic)
+        ready = bool(found) and self._client.server_is_ready()
+        servers = tuple(sorted(zlib.crc32(bytes(each.endpoint_gid)) for each in found)) if ready else ()
+        self._step(Found(servers=servers))
+
+
+def stamp_of(message: Any) -> tuple[int, int]:
+    """When a message with a header says that it was measured."""
+    stamp = message.header.stamp
+    return (stamp.sec, stamp.nanosec)
+
+
+def action_type(package: str, name: str) -> Any:
+    """An action of a package; DriverError, which says what to install, where it is not there."""
+    try:
+        return getattr(import_module(f"{package}.action"), name)
+    except ImportError as error:
+        why = f"the message package {package}, which cannot be imported here ({error})"
+    except AttributeError:
+        why = f"the action {name} of the message package {package}, which is too old here"
+    distro = os.environ.get("ROS_DISTRO", "$ROS_DISTRO")
+    apt = f"ros-{distro}-{package.replace('_', '-')}"
+    raise DriverError(f"it needs {why}: sudo apt install {apt}, and source that ROS 2")

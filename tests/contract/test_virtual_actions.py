@@ -1,0 +1,159 @@
+"""The virtual action servers over ROS 2, and the drivers that reach them."""
+
+from __future__ import annotations
+
+import math
+import queue
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from arboleda.drivers import Driver, MotionState, MoveJoints, Report, Stop, StopMode
+from arboleda.drivers.gripper_command.settings import Settings as GripperSettings
+from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
+from arboleda.kinds.declared import Device
+from arboleda.kinds.gripper import GripperSettings as KindSettings
+from arboleda.kinds.gripper import gripper
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import Evidence, Link, Robot
+from arboleda.testing.plants import shipped
+from arboleda.virtual.faults import Faults
+from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
+from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
+
+pytestmark = pytest.mark.system
+
+PATIENCE_S = 20.0
+ARM = shipped("sis_c").cells[0].arm
+NAMES = tuple(joint.name for joint in ARM.joints)
+GOAL = ARM.quantised(tuple(math.radians(each) for each in (4, 2, -3, 0, 1, 0)))
+JAW = Device(
+    name="jaw",
+    mqtt="jaw",
+    link=Link.DRIVER,
+    evidence=Evidence.IDS,
+    timeout_s=5.0,
+    kind=gripper.of(KindSettings()),
+)
+
+
+class Bench:
+    """A driver that is heard by the test, and the faults of what it reaches."""
+
+    def __init__(self, driver: Driver, device: Robot, faults: Faults) -> None:
+        self.driver, self.faults = driver, faults
+        self._heard: queue.Queue[Report] = queue.Queue()
+        driver.start([device], self._heard.put, time.monotonic)
+
+    def until(self, holds: Callable[[Report], Any]) -> Report:
+        """The next report that does."""
+        while not holds(report := self._heard.get(timeout=PATIENCE_S)):
+            pass
+        return report
+
+    def ready(self) -> Report:
+        return self.until(lambda report: report.state is MotionState.STOPPED)
+
+
+@pytest.fixture
+def arm(ros_domain: int, quick_discovery: None) -> Iterator[Bench]:
+    from arboleda_ros.joint_trajectory import FollowJointTrajectory
+    from arboleda_ros.virtual.trajectory import controller
+
+    faults = Faults(ARM_FAULTS)
+    action = ArmSettings().action
+    virtual = controller(
+        faults, action=action, joint_states="joint_states", joints=NAMES, rate=50.0, lan=False
+    )
+    virtual.start()
+    bench = Bench(FollowJointTrajectory(ArmSettings()), ARM, faults)
+    yield bench
+    bench.driver.stop()
+    virtual.stop()
+
+
+@pytest.fixture(params=[False, True], ids=["single", "parallel"])
+def jaw(request: pytest.FixtureRequest, ros_domain: int, quick_discovery: None) -> Iterator[Bench]:
+    from arboleda_ros.gripper_command import GripperCommand
+    from arboleda_ros.virtual.gripper import controller
+
+    settings = GripperSettings(open=0.085, type="parallel" if request.param else "single")
+    faults = Faults(GRIPPER_FAULTS)
+    virtual = controller(
+        faults,
+        action=settings.action,
+        parallel=request.param,
+        joint_states="joint_states",
+        joint=settings.joint,
+        opened=0.085,
+        part=0.04,
+        speed=0.2,
+        rate=50.0,
+        lan=False,
+    )
+    virtual.start()
+    bench = Bench(GripperCommand(settings), JAW, faults)
+    yield bench
+    bench.driver.stop()
+    virtual.stop()
+
+
+def told(id: str, verb: str, **values: float) -> Command:
+    return JAW.kind.command(id=id, robot="jaw", verb=verb, values=values)
+
+
+def go(id: str) -> MoveJoints:
+    return MoveJoints(id=id, robot=ARM.name, q=GOAL)
+
+
+def test_an_arm_is_moved_in_its_time(arm: Bench) -> None:
+    arm.ready()
+    arm.driver.send(go("1"))
+    assert arm.until(lambda report: report.accepted == "1").state is MotionState.MOVING
+    done = arm.until(lambda report: report.done == "1")
+    assert done.q is not None and ARM.stands_at(done.q, GOAL)
+
+
+def test_a_goal_is_halted_under_way(arm: Bench) -> None:
+    arm.ready()
+    arm.driver.send(go("1"))
+    arm.until(lambda report: report.q is not None and report.q[0] > GOAL[0] / 10)
+    arm.driver.send(Stop(id="2", robot=ARM.name, mode=StopMode.HALT))
+    halted = arm.until(lambda report: report.accepted == "2" and report.state is MotionState.STOPPED)
+    assert halted.q is not None and not ARM.stands_at(halted.q, GOAL) and halted.done is None
+
+
+def test_a_server_that_vanishes_comes_back_as_a_boot(arm: Bench) -> None:
+    boot = arm.ready().boot_id
+    arm.faults.switch("vanish", on=True)
+    assert "no action server" in str(arm.until(lambda report: report.lost).lost)
+    arm.faults.switch("vanish", on=False)
+    assert arm.ready().boot_id != boot
+
+
+def test_a_double_is_found_and_gone_again(arm: Bench) -> None:
+    arm.ready()
+    arm.faults.switch("double", on=True)
+    assert "2 action servers" in str(arm.until(lambda report: report.lost).lost)
+    arm.faults.switch("double", on=False)
+    arm.ready()
+
+
+@pytest.mark.parametrize(
+    ("fault", "failure"), [("abort", "path_tolerance_violated"), ("other_client", "aborted")]
+)
+def test_a_goal_that_ends_half_way_fails_with_its_word(arm: Bench, fault: str, failure: str) -> None:
+    arm.ready()
+    arm.faults.switch(fault, on=True)
+    arm.driver.send(go("1"))
+    assert failure in str(arm.until(lambda report: report.failed == "1").failure)
+
+
+def test_a_part_is_gripped_and_let_go(jaw: Bench) -> None:
+    jaw.ready()
+    jaw.driver.send(told("1", "close", width_mm=5.0, force_n=20.0))
+    assert jaw.until(lambda report: report.fact("gripped")).fact("width_mm") == pytest.approx(40)
+    jaw.driver.send(told("2", "open"))
+    assert jaw.until(lambda report: report.fact("gripped") is False).fact("width_mm") == 85.0

@@ -1,0 +1,57 @@
+"""An arm and a gripper behind actions of ROS 2, under faults; `scripts/driver-faults` runs more seeds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.drivers.gripper_command.machine import GripperMover
+from arboleda.drivers.ros_action import machine
+from arboleda.kinds.arm import Arm
+from arboleda.virtual import campaign
+from arboleda.virtual.gripper.campaign import ARM_CAUSES, GRIPPER_CAUSES, CarryTrial
+from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
+from arboleda.virtual.ros_action.campaign import CAUSES
+from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
+
+EXAMPLE = load(Path(__file__).parents[2] / "examples/ros2_control/plant.yaml")
+SEEDS = 4
+OWN = ("jaw.empty", "jaw.slip", "jaw.jam", "jaw.allow_stalling", "arm.no_joint", "jaw.no_joint")
+
+
+def breaches(seed: int, *names: str) -> list[str]:
+    return campaign.run(CarryTrial(EXAMPLE), seed, names).breaches
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_no_false_success_no_hang_and_the_right_cause(seed: int) -> None:
+    assert breaches(seed) == []
+
+
+@pytest.mark.parametrize("fault", [*(f"arm.{name}" for name in CAUSES), *OWN])
+def test_every_fault_by_itself(fault: str) -> None:
+    assert breaches(1, fault) == []
+
+
+def test_an_arm_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Arm, "stands_at", lambda self, position, goal: True)
+    assert any("false success" in each for seed in range(3) for each in breaches(seed, "arm.lie"))
+
+
+def test_a_grip_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(GripperMover, "objection", lambda self, goal: "")
+    monkeypatch.setattr(
+        GripperMover, "shows", lambda self, *, busy: {"facts": () if busy else (("gripped", True),)}
+    )
+    assert any("false success" in each or "hang" in each for each in breaches(1, "jaw.empty"))
+
+
+def test_a_switch_that_is_never_given_up_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SPARE_S", 1e6)
+    assert any("hang" in each for seed in range(4) for each in breaches(seed, "jaw.stall"))
+
+
+def test_every_fault_has_the_reasons_that_it_may_give() -> None:
+    assert set(ARM_CAUSES) == set(ARM_FAULTS) and set(GRIPPER_CAUSES) == set(GRIPPER_FAULTS)
