@@ -9,28 +9,24 @@ poll, which comes 10 ms after the one before.
 
 from __future__ import annotations
 
-import queue
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from arboleda.adapters.modbus import Modbus
 from arboleda.adapters.modbus_server import ModbusServer
 from arboleda.app.config import load
-from arboleda.drivers import Report, VerbCommand
 from arboleda.drivers.modbus.machine import ModbusDevice
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ArboledaError
 
-from .result import Aim, Figure, Result, percentile
+from .plc_driver import PATIENCE_S, Driven, figures
+from .result import Result
 from .scene import Scene
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor/plant.yaml"
-AIM = Aim(most=1.5)
 POLL_S = 0.01
-PATIENCE_S = 5.0
 NUMBER, ACCEPTED, DONE, SPEED = 3, 3, 4, 11
 
 
@@ -48,6 +44,11 @@ class Echo:
             self.inputs[ACCEPTED] = self.inputs[DONE] = values[NUMBER - address]
         return None
 
+    def change(self) -> int:
+        """Another speed; which one."""
+        self.inputs[SPEED] = (self.inputs[SPEED] + 1) % 60000
+        return self.inputs[SPEED]
+
 
 def run(scene: Scene) -> Result:
     try:
@@ -63,70 +64,16 @@ def run(scene: Scene) -> Result:
     port = server.start()
     rest = {"alive": None, "heartbeat": None, "boot": None}
     settings = replace(belt.driver.settings, port=port, poll_s=POLL_S, **rest)
-    ours, floor = Driven(belt, settings), Bare(belt, settings)
+    ours, floor = Driven(belt, Modbus(settings)), Bare(belt, settings)
     try:
-        rows = [
-            ("an order until it is done", "ms", ours.order, floor.order),
-            ("a changed fact until it is known", "ms", *(_changed(memory, each) for each in (ours, floor))),
-        ]
-        figures = []
-        for name, unit, one, other in rows:
-            scene.say(name)
-            pairs = [(one(), other()) for _ in range(times)]
-            figures += [_figure(f"{name}, p{percent}", unit, pairs, percent) for percent in (50, 99)]
+        found = figures(scene, times, (ours, floor), memory.change)
     finally:
         ours.close()
         floor.close()
         server.stop()
     where = "over one server of pymodbus in this process"
     note = f"{times} of each in turns, {where}; polls {POLL_S * 1000:g} ms apart"
-    return Result(figures=figures, notes=(note,))
-
-
-def _figure(name: str, unit: str, pairs: list[tuple[float, float]], percent: int) -> Figure:
-    ours, floor = (percentile([1000 * pair[at] for pair in pairs], percent) for at in range(2))
-    return Figure(name=name, unit=unit, ours=ours, floor=floor, aim=AIM if percent == 50 else None)
-
-
-def _changed(memory: Echo, client: Driven | Bare) -> Callable[[], float]:
-    def once() -> float:
-        memory.inputs[SPEED] = (memory.inputs[SPEED] + 1) % 60000
-        began = time.perf_counter()
-        client.until_speed(memory.inputs[SPEED])
-        return time.perf_counter() - began
-
-    return once
-
-
-class Driven:
-    """The driver, as a plant uses it."""
-
-    def __init__(self, belt: Device, settings: Settings) -> None:
-        self._belt, self._number = belt, 0
-        self._said: queue.Queue[Report] = queue.Queue()
-        self._driver = Modbus(settings)
-        self._driver.start([belt], self._said.put, time.monotonic)
-        self._until(lambda report: report.state is not None)
-
-    def order(self) -> float:
-        self._number += 1
-        id = f"c{self._number}"
-        command = self._belt.kind.command(id=id, robot=self._belt.name, verb="load", values={})
-        assert isinstance(command, VerbCommand)
-        began = time.perf_counter()
-        self._driver.send(command)
-        self._until(lambda report: report.done == id)
-        return time.perf_counter() - began
-
-    def until_speed(self, speed: int) -> None:
-        self._until(lambda report: report.fact("mm_s") == speed)
-
-    def close(self) -> None:
-        self._driver.stop()
-
-    def _until(self, fits: Callable[[Report], bool]) -> None:
-        while not fits(self._said.get(timeout=PATIENCE_S)):
-            pass
+    return Result(figures=found, notes=(note,))
 
 
 class Bare:

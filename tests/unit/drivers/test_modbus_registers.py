@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers.modbus.registers import Register, Unreadable, Write
+from arboleda.drivers.modbus.registers import Register, Write
+from arboleda.drivers.plc.shown import Unreadable
 from arboleda.drivers.port import DriverError
 
 ONE_OF = "needs exactly one of coil, discrete, holding, input with its address, has "

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, lost
 from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
-from arboleda.drivers.modbus.registers import Unreadable
 from arboleda.drivers.modbus.settings import Settings
+from arboleda.drivers.plc.shown import Unreadable
 from arboleda.drivers.port import DriverError
 
 if TYPE_CHECKING:
@@ -182,13 +182,12 @@ class Modbus:
         line = self._line
         if line is None or not self._up:
             raise NotSent(f"{self._settings.peer} is not connected")
-        at = self._clock()
         with line.turn():
             try:
                 for put in self._device.order(command):
                     line.write(self._settings.unit, put)
             except Refused as error:
-                self._refuse(at, command, error)
+                self._refuse(command, error)
         self._wake.set()
 
     def stop(self) -> None:
@@ -200,9 +199,10 @@ class Modbus:
             LINES.give_back(self._settings)
             self._line = None
 
-    def _refuse(self, at: float, command: Command, error: Refused) -> None:
+    def _refuse(self, command: Command, error: Refused) -> None:
+        """Said as of now: as of the command it would be older than a poll that came between."""
         if command.id:
-            self._hear(Report(at=at, robot=self._name, rejected=command.id, refusal=error.word))
+            self._hear(Report(at=self._clock(), robot=self._name, rejected=command.id, refusal=error.word))
 
     def _poll(self) -> None:
         assert self._line is not None

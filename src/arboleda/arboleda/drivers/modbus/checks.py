@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
+from arboleda.kinds.declared import Device, DeviceVerb, FactType
 from arboleda.model.outside import among
-from arboleda.model.plant_model import Evidence, Robot
+from arboleda.model.plant_model import Robot
 
-from ..plc.shown import STATES
+from ..plc import checks
+from ..plc.checks import Place, Problem
 from .machine import readings
 from .registers import Register, Write
-from .settings import Settings
-
-Place = tuple[str | int, ...]
-Problem = tuple[Place, str]
+from .settings import Settings, Verb
 
 
 def problems(settings: Settings, device: Robot) -> Iterator[Problem]:
@@ -30,31 +28,27 @@ def problems(settings: Settings, device: Robot) -> Iterator[Problem]:
 
 
 def _facts(settings: Settings, device: Device) -> Iterator[Problem]:
-    facts = device.kind.facts
+    known = device.kind.facts
+    yield from checks.facts(settings.facts, device, "say where the PLC shows it")
     for name, register in settings.facts.items():
-        if name not in facts:
-            yield ("facts", name), f"a {device.kind.name} has no fact {name}; {among(name, facts)}"
-        else:
-            yield from _fits(("facts", name), register, facts[name])
-    for name in facts:
-        if name not in settings.facts:
-            yield ("facts",), f"{name} of a {device.kind.name} is missing: say where the PLC shows it"
+        if name in known:
+            yield from _fits(("facts", name), register, known[name])
 
 
 def _verbs(settings: Settings, device: Device) -> Iterator[Problem]:
-    verbs = device.kind.verbs
+    known = device.kind.verbs
+    yield from checks.verbs(settings.verbs, device, "say what is written for it")
     for name, verb in settings.verbs.items():
-        if name not in verbs:
-            yield ("verbs", name), f"a {device.kind.name} has no verb {name}; {among(name, verbs)}"
-            continue
-        for at, write in enumerate(verb.write):
-            yield from _written(("verbs", name, "write", at, "value"), write, verbs[name])
-        yield from _answers(("verbs", name), verb.answer, verbs[name])
-        if not verb.write:
-            yield ("verbs", name), f"nothing is written for {name}, so the PLC cannot know what is asked"
-    for name in verbs:
-        if name not in settings.verbs:
-            yield ("verbs",), f"{name} of a {device.kind.name} is missing: say what is written for it"
+        if name in known:
+            yield from _verb(("verbs", name), verb, known[name])
+
+
+def _verb(place: Place, mapped: Verb, verb: DeviceVerb) -> Iterator[Problem]:
+    for at, write in enumerate(mapped.write):
+        yield from _written((*place, "write", at, "value"), write, verb)
+    yield from _answers(place, mapped.answer, verb)
+    if not mapped.write:
+        yield place, f"nothing is written for {verb.name}, so the PLC cannot know what is asked"
 
 
 def _written(place: Place, write: Write, verb: DeviceVerb) -> Iterator[Problem]:
@@ -68,15 +62,10 @@ def _written(place: Place, write: Write, verb: DeviceVerb) -> Iterator[Problem]:
 
 
 def _answers(place: Place, answer: Register | None, verb: DeviceVerb) -> Iterator[Problem]:
-    if verb.effect is not Effect.QUERY:
-        if answer is not None:
-            yield (*place, "answer"), f"{verb.name} is no query and has no answer"
-    elif answer is None:
-        yield place, f"{verb.name} is a query: say where the PLC shows its answer, answer: {{input: 20}}"
-    else:
-        first = verb.answers[0]
-        of = FactType(type=type(first), words=verb.answers, first=first)
-        yield from _fits((*place, "answer"), answer, of)
+    hint = "say where the PLC shows its answer, answer: {input: 20}"
+    yield from checks.answer(place, verb, hint, mapped=answer is not None)
+    if answer is not None and verb.answers:
+        yield from _fits((*place, "answer"), answer, checks.answers(verb))
 
 
 def _fits(place: Place, register: Register, fact: FactType) -> Iterator[Problem]:
@@ -104,31 +93,18 @@ def _fits(place: Place, register: Register, fact: FactType) -> Iterator[Problem]
 
 def _ways(settings: Settings, device: Device) -> Iterator[Problem]:
     """What the effects and the evidence of a device ask of its PLC."""
-    if device.evidence is Evidence.IDS and settings.sequence is None:
-        yield (), "evidence: ids needs sequence, numbers that the PLC echoes; without, say evidence: facts"
-    written = None if settings.sequence is None else settings.sequence.write
-    if written is not None and (written.table, written.type) != ("holding", "uint16"):
+    sequence, state = settings.sequence, settings.state
+    yield from checks.proof(device, "the PLC", sequence=sequence is not None)
+    if sequence is not None and (sequence.write.table, sequence.write.type) != ("holding", "uint16"):
         yield ("sequence", "write"), "must be a holding register of type uint16"
-    if settings.state is None and device.works:
-        form = "state: {input: 0, words: {stopped: 0, moving: 1}}"
-        yield (), f"state is missing: without it nobody knows whether the device moves; {form}"
-    if settings.state is not None:
-        yield from _states(settings.state)
-    if device.works and device.has_stop and not settings.halt:
-        yield (), "halt is missing: say what is written to end a motion, or say stop: none of the device"
+    form, hint = "state: {input: 0, words: {stopped: 0, moving: 1}}", "what is written to end"
+    yield from checks.ways(device, form, hint, state=state is not None, halt=bool(settings.halt))
+    if state is not None:
+        yield from checks.states(state.words)
     for key in ("halt", "latch", "clear"):
         for at, write in enumerate(getattr(settings, key)):
             if write.parameter is not None:
                 yield (key, at, "value"), f"{key} has no parameters; write a number, true or false"
-
-
-def _states(state: Register) -> Iterator[Problem]:
-    for word in state.words:
-        if word not in STATES:
-            yield ("state", "words", word), f"there is no state {word}; {among(word, STATES)}"
-    missing = [word for word in ("stopped", "moving") if word not in state.words]
-    if missing:
-        yield ("state",), f"has no number for {' and '.join(missing)}: words: {{stopped: 0, moving: 1}}"
 
 
 def _overlaps(settings: Settings) -> Iterator[Problem]:

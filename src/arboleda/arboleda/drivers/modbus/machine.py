@@ -15,10 +15,11 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 
+from ..plc.alive import Alive
 from ..plc.numbers import Numbers
 from ..plc.shown import Question, Shown, report
 from ..port import DriverError, NotSent
-from .registers import Register, Unreadable, Write
+from .registers import Register, Write
 from .settings import Settings
 
 MOST = {"coil": 2000, "discrete": 2000, "holding": 125, "input": 125}  # of one request, by the standard
@@ -55,7 +56,7 @@ class ModbusDevice:
         self._numbers = Numbers()
         self._written = 0  # the number that stands where it is written: a PLC notices only another one
         self._asked: tuple[int, Register, type[Value]] | None = None
-        self._alive: tuple[int | float, float] | None = None
+        self._alive = Alive(settings.alive_s)
         read = [register for _, register in readings(settings)]
         written = [settings.sequence.write] if settings.sequence is not None else []
         self.blocks = blocks(read)
@@ -68,7 +69,8 @@ class ModbusDevice:
         if sequence is not None:
             self._written = int(sequence.write.number(taken(sequence.write, raw)))
             self._numbers.see({*self._echo(raw).values(), self._written})
-        self._asked = self._alive = None
+        self._asked = None
+        self._alive.begin()
 
     def order(self, command: Command) -> tuple[Put, ...]:
         """What is written for a command, in this order; NotSent where the mapping has no word for it."""
@@ -89,7 +91,9 @@ class ModbusDevice:
 
     def report(self, at: float, raw: Raw) -> Report:
         """What was read as the plant has it; Unreadable where the mapping gives it no meaning."""
-        self._check_alive(at, raw)
+        if self._settings.alive is not None:
+            alive = self._settings.alive
+            self._alive.see(at, str(alive), alive.number(taken(alive, raw)))
         kinds, settings = self._device.kind.facts, self._settings
         state = settings.state
         echo, words = self._echo(raw), self._words(raw)
@@ -140,18 +144,6 @@ class ModbusDevice:
             return None
         number, register, of = self._asked
         return Question(number=number, answer=register.read(taken(register, raw), of))
-
-    def _check_alive(self, at: float, raw: Raw) -> None:
-        """A PLC whose program stands still goes on to answer, with values of then."""
-        alive, settings = self._settings.alive, self._settings
-        if alive is None:
-            return
-        number = alive.number(taken(alive, raw))
-        if self._alive is None or self._alive[0] != number:
-            self._alive = (number, at)
-        elif at - self._alive[1] > settings.alive_s:
-            what = f"{alive} is {number} for {settings.alive_s:g} s"
-            raise Unreadable(f"the program of the PLC stands still: {what}")
 
 
 def readings(settings: Settings) -> Iterator[tuple[tuple[str, ...], Register]]:

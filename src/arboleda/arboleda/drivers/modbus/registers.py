@@ -12,6 +12,8 @@ from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 
+from ..plc.shown import Unreadable
+
 Order = Literal["big", "little"]
 Form = Literal["uint16", "int16", "uint32", "int32", "float32", "uint64", "int64", "float64"]
 TABLES = ("coil", "discrete", "holding", "input")
@@ -20,10 +22,6 @@ FORMATS = {"uint16": "H", "int16": "h", "uint32": "I", "int32": "i", "float32": 
 FORMATS |= {"uint64": "Q", "int64": "q", "float64": "d"}
 LAST = 65535
 ValueType = type[Value]
-
-
-class Unreadable(DriverError):
-    """What a PLC shows has no meaning in the mapping."""
 
 
 @dataclass(frozen=True, kw_only=True)

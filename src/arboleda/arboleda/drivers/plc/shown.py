@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Facts, Value
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
@@ -17,6 +18,10 @@ STATES = {
     "latched": MotionState.STOP_LATCHED,
 }
 UNNAMED = "no reason given"
+
+
+class Unreadable(DriverError):
+    """What a PLC shows has no meaning in the mapping."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,82 @@
+"""What the benchmarks of drivers of PLCs share: the belt of the example, and a driver as a plant uses it."""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from arboleda.drivers import Report, VerbCommand
+from arboleda.drivers.port import Driver
+from arboleda.kinds.declared import Device
+
+from .result import Aim, Figure, percentile
+from .scene import Scene
+
+AIM = Aim(most=1.5)
+PATIENCE_S = 5.0
+
+
+class Client(Protocol):
+    """Somebody who orders, and who hears of the speed of the belt."""
+
+    def order(self) -> float:
+        """How long an order took until it was known as done, s."""
+
+    def until_speed(self, speed: int) -> None: ...
+
+
+class Driven:
+    """The driver, as a plant uses it."""
+
+    def __init__(self, belt: Device, driver: Driver) -> None:
+        self._belt, self._driver, self._number = belt, driver, 0
+        self._said: queue.Queue[Report] = queue.Queue()
+        self._driver.start([belt], self._said.put, time.monotonic)
+        self._until(lambda report: report.fact("mm_s") is not None)
+
+    def order(self) -> float:
+        self._number += 1
+        id = f"c{self._number}"
+        command = self._belt.kind.command(id=id, robot=self._belt.name, verb="load", values={})
+        assert isinstance(command, VerbCommand)
+        began = time.perf_counter()
+        self._driver.send(command)
+        self._until(lambda report: report.done == id)
+        return time.perf_counter() - began
+
+    def until_speed(self, speed: int) -> None:
+        self._until(lambda report: report.fact("mm_s") == speed)
+
+    def close(self) -> None:
+        self._driver.stop()
+
+    def _until(self, fits: Callable[[Report], bool]) -> None:
+        while not fits(self._said.get(timeout=PATIENCE_S)):
+            pass
+
+
+def figures(scene: Scene, times: int, clients: Sequence[Client], change: Callable[[], int]) -> list[Figure]:
+    """Ours and the floor in turns: orders, and changes of the speed, which `change` makes and names."""
+    found = []
+    for name, measure in (
+        ("an order until it is done", lambda each: each.order()),
+        ("a changed fact until it is known", lambda each: _known(each, change)),
+    ):
+        scene.say(name)
+        pairs = [[1000 * measure(each) for each in clients] for _ in range(times)]
+        found += [_figure(f"{name}, p{percent}", pairs, percent) for percent in (50, 99)]
+    return found
+
+
+def _figure(name: str, pairs: Sequence[Sequence[float]], percent: int) -> Figure:
+    ours, floor = (percentile([pair[at] for pair in pairs], percent) for at in range(2))
+    return Figure(name=name, unit="ms", ours=ours, floor=floor, aim=AIM if percent == 50 else None)
+
+
+def _known(client: Client, change: Callable[[], int]) -> float:
+    speed = change()
+    began = time.perf_counter()
+    client.until_speed(speed)
+    return time.perf_counter() - began
