@@ -25,6 +25,7 @@ NAMES = (
     "step",
     "kept",
     "modbus_driver",
+    "opcua_driver",
     "simulate",
     "dobot",
 )

@@ -32,6 +32,7 @@ setup(
         "arboleda.drivers": [
             "dobot = arboleda.adapters.dobot:Dobot",
             "modbus = arboleda.adapters.modbus:Modbus",
+            "opcua = arboleda.adapters.opcua:OpcUa",
             "vda5050 = arboleda.adapters.vda5050.driver:Vda5050",
         ],
         "pytest11": ["arboleda = arboleda.testing.plugin"],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, ros, vda5050
+from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, opcua, ros, vda5050
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -12,6 +12,7 @@ BENCHES: dict[str, Bench] = {
     "ros": ros.BENCH,
     "line_tcp": line_tcp.BENCH,
     "modbus": modbus.BENCH,
+    "opcua": opcua.BENCH,
     "dobot": dobot.BENCH,
     "vda5050": vda5050.BENCH,
 }

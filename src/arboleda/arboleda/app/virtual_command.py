@@ -7,6 +7,7 @@ import typer
 from arboleda.virtual.dobot import command as dobot
 from arboleda.virtual.gripper import command as gripper
 from arboleda.virtual.modbus import command as modbus
+from arboleda.virtual.opcua import command as opcua
 from arboleda.virtual.trajectory import command as trajectory
 from arboleda.virtual.vda5050 import command as vda5050
 
@@ -18,5 +19,6 @@ cli = typer.Typer(
 cli.command("dobot", help=dobot.HELP)(dobot.run)
 cli.command("vda5050", help=vda5050.HELP)(vda5050.run)
 cli.command("modbus", help=modbus.HELP)(modbus.run)
+cli.command("opcua", help=opcua.HELP)(opcua.run)
 cli.command("trajectory", help=trajectory.HELP)(trajectory.run)
 cli.command(gripper.NAME, help=gripper.HELP)(gripper.run)

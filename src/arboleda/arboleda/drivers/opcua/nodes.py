@@ -1,0 +1,149 @@
+"""One variable, one argument, one method of a server, and values as they stand there."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Literal
+
+from arboleda.drivers.port import DriverError
+from arboleda.kinds.declared import FactType
+from arboleda.model.facts import Value
+from arboleda.model.outside import quoted
+
+from ..plc.shown import Unreadable
+
+NODE = re.compile(r"(ns=\d+;)?(i=\d+|s=.+|g=[0-9a-fA-F-]{36}|b=.+)")
+Form = Literal[
+    "bool",
+    "sbyte",
+    "byte",
+    "int16",
+    "uint16",
+    "int32",
+    "uint32",
+    "int64",
+    "uint64",
+    "float",
+    "double",
+    "string",
+]
+BITS = {"sbyte": 8, "int16": 16, "int32": 32, "int64": 64}
+UNSIGNED_BITS = {"byte": 8, "uint16": 16, "uint32": 32, "uint64": 64}
+LIMITS = {name: (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for name, bits in BITS.items()}
+LIMITS |= {name: (0, 2**bits - 1) for name, bits in UNSIGNED_BITS.items()}
+FORMS: dict[type, tuple[str, ...]] = {
+    bool: ("bool",),
+    int: tuple(LIMITS),
+    float: ("float", "double"),
+    str: ("string",),
+}
+
+
+def check_node(node: str) -> None:
+    """DriverError where that is no id of a node."""
+    if not NODE.fullmatch(node):
+        raise DriverError(f"{quoted(node)} is no node; write it as ns=2;s=Belt.State or ns=2;i=1001")
+
+
+def check_words(words: dict[str, int]) -> None:
+    """DriverError where a number would be two words."""
+    if len(set(words.values())) < len(words):
+        raise DriverError("two words have the same number")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variable:
+    """A variable of the server; `words` are its numbers, where those stand for words."""
+
+    node: str
+    words: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_node(self.node)
+        check_words(self.words)
+
+    def word(self, shown: object) -> object:
+        """What is shown there, as a word where it has words; Unreadable for a number that is none."""
+        if not self.words:
+            return shown
+        found = next((word for word, held in self.words.items() if is_whole(shown) and held == shown), None)
+        if found is None:
+            known = ", ".join(self.words)
+            raise Unreadable(f"{self.node} is {quoted(shown)}, for which there is no word ({known})")
+        return found
+
+    def read(self, shown: object, of: FactType) -> Value:
+        """What is shown there as a value of that type; Unreadable where it is none."""
+        word = self.word(shown)
+        finite = not isinstance(word, float) or math.isfinite(word)
+        found = of.read(word) if finite else None
+        if found is None:
+            raise Unreadable(f"{self.node} is {quoted(shown)}; allowed: {of.allowed()}")
+        return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Argument:
+    """What a method is given: a value, or `$name` for the parameter of the verb, as this type of OPC UA."""
+
+    value: bool | int | float | str
+    type: Form
+    words: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_words(self.words)
+        if self.words and self.type not in LIMITS:
+            raise DriverError(f"words are numbers, and the type is {self.type}; allowed: {', '.join(LIMITS)}")
+        for word, number in self.words.items():
+            if not self.fits(number):
+                raise DriverError(f"{word}: {number} is no {self.type}")
+        if self.parameter is None:
+            self.given(self.value)
+
+    @property
+    def parameter(self) -> str | None:
+        value = self.value
+        return value[1:] if isinstance(value, str) and value.startswith("$") else None
+
+    def fits(self, value: Value) -> bool:
+        """Whether a value is of the type of the argument, and within its limits."""
+        if self.type in LIMITS:
+            low, high = LIMITS[self.type]
+            return is_whole(value) and low <= float(value) <= high
+        if self.type in FORMS[float]:
+            return isinstance(value, int | float) and not isinstance(value, bool)
+        return isinstance(value, bool if self.type == "bool" else str)
+
+    def given(self, value: Value) -> Value:
+        """A value as it is given; DriverError where it does not fit."""
+        number = self.words.get(value, value) if isinstance(value, str) else value
+        if not self.fits(number):
+            raise DriverError(f"{quoted(value)} is no {self.type}")
+        return float(number) if self.type in FORMS[float] else number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A method, the object that it belongs to, and what it is given, in this order."""
+
+    call: str
+    on: str
+    given: tuple[Argument, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_node(self.call)
+        check_node(self.on)
+
+
+def is_whole(value: object) -> bool:
+    """Whether that is a whole number; true and false are none."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def number(node: str, shown: object) -> int:
+    """A whole number of 0 or more that a node shows; Unreadable for anything else."""
+    if not isinstance(shown, int) or isinstance(shown, bool) or shown < 0:
+        raise Unreadable(f"{node} is {quoted(shown)}; allowed: a whole number from 0")
+    return shown

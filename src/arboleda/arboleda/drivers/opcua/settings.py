@@ -1,0 +1,86 @@
+"""What a plant file says of a device behind OPC UA."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from arboleda.drivers.port import DriverError
+from arboleda.model.plant_model import Robot
+
+from .nodes import Method, Variable, check_node
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verb(Method):
+    """The method of a verb; where the answer of a question is found."""
+
+    answer: Variable | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sequence:
+    """Each method of a verb takes the number of its command last; these variables echo it."""
+
+    accepted: str
+    done: str
+    type: Literal["uint16", "int32", "uint32", "int64", "uint64"] = "uint16"
+    rejected: str | None = None
+    reason: Variable | None = None
+    failed: str | None = None
+    failure: Variable | None = None
+
+    def __post_init__(self) -> None:
+        for node in (self.accepted, self.done, self.rejected, self.failed):
+            if node is not None:
+                check_node(node)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """The connection, and the mapping of one device; secrets are in the environment, under `secrets`."""
+
+    url: str
+    security: Literal["none", "sign", "sign_and_encrypt"] = "sign_and_encrypt"
+    secrets: str = "ARBOLEDA_OPCUA"
+    user: str | None = None
+    password: str | None = None
+    publish_s: float = 0.05
+    timeout_s: float = 0.5
+    state: Variable | None = None
+    boot: str | None = None
+    alive: str | None = None
+    alive_s: float = 1.0
+    heartbeat: str | None = None
+    facts: dict[str, Variable] = field(default_factory=dict)
+    verbs: dict[str, Verb] = field(default_factory=dict)
+    sequence: Sequence | None = None
+    halt: Method | None = None
+    latch: Method | None = None
+    clear: Method | None = None
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"[A-Z][A-Z0-9_]*", self.secrets):
+            raise DriverError("secrets is how names in the environment begin: capitals, digits and _")
+        if "@" in self.url or self.user is not None or self.password is not None:
+            names = f"{self.secrets}_USER and {self.secrets}_PASSWORD"
+            raise DriverError(f"user and password are never in a plant file; set {names} in the environment")
+        if not re.fullmatch(r"opc\.tcp://[^\s/:]+:\d{1,5}(/\S*)?", self.url):
+            raise DriverError(f"url is {self.url}; write opc.tcp://10.0.0.30:4840")
+        if not 0.01 <= self.publish_s <= 0.5:
+            raise DriverError(f"publish_s is {self.publish_s:g}; allowed: 0.01 to 0.5")
+        if not 0.05 <= self.timeout_s <= 5:
+            raise DriverError(f"timeout_s is {self.timeout_s:g}; allowed: 0.05 to 5")
+        if not self.alive_s > 0:
+            raise DriverError(f"alive_s is {self.alive_s:g}; allowed: more than 0")
+        for node in (self.boot, self.alive, self.heartbeat):
+            if node is not None:
+                check_node(node)
+
+    def problems(self, device: Robot) -> Iterator[tuple[tuple[str | int, ...], str]]:
+        """What of it does not fit a device, with the keys that lead there."""
+        from .checks import problems
+
+        return problems(self, device)

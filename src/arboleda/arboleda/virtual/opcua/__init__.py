@@ -1,0 +1,1 @@
+"""The belt behind OPC UA: `arboleda virtual opcua`."""

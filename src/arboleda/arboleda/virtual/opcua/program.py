@@ -1,0 +1,76 @@
+"""The variables and methods of the belt: what its program shows by name, and what goes wrong on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+
+from arboleda.adapters.opcua_server import Bad
+
+from ..plc import machine as belt
+from ..plc.machine import ADVANCE, GATE, LOAD, SCAN, Belt
+
+FAULTS = {
+    "mute": "requests are not answered, and connections stay",
+    "refuses_calls": "every method returns BadUserAccessDenied",
+    "bad_status": "the place of the part has the status BadSensorFailure",
+    "null": "the place of the part is null",
+    "text": "the place of the part is text where a number should be",
+    **belt.FAULTS,
+}
+PLACES = ("part_at", "gate", "mm_s", "seen")
+ECHO = ("boot", "alive", "state", "reason", "failure", "accepted", "rejected", "failed", "done")
+VERBS = {"Load": LOAD, "Advance": ADVANCE, "Gate": GATE, "Scan": SCAN}
+ARGUMENTS = {"Load": 0, "Advance": 2, "Gate": 1, "Scan": 0}
+SPOILT: dict[str, object] = {
+    "bad_status": Bad(status="BadSensorFailure"),
+    "null": None,
+    "text": "exit",
+    "nonsense": 77,
+}
+
+
+class BeltProgram:
+    """What a server of OPC UA serves; it passes the time of the program whenever it is asked."""
+
+    variables: Mapping[str, str] = dict.fromkeys((*PLACES, *ECHO), "uint16")
+    methods: Mapping[str, Sequence[str]] = {
+        **{verb: ["uint16"] * (arguments + 1) for verb, arguments in ARGUMENTS.items()},
+        **dict.fromkeys(("Halt", "Latch", "Clear"), ()),
+    }
+
+    def __init__(self, faults: Collection[str], clock: Callable[[], float]) -> None:
+        self._faults, self._clock = faults, clock
+        self._belt = Belt(faults=faults)
+        self._beaten = False
+
+    def show(self) -> Mapping[str, object]:
+        self._belt.scan(self._clock())
+        values: dict[str, object] = {name: getattr(self._belt.shown, name) for name in self.variables}
+        for fault, value in SPOILT.items():
+            if fault in self._faults:
+                values["part_at"] = value
+        return values
+
+    def call(self, method: str, given: Sequence[object]) -> str | None:
+        if "refuses_calls" in self._faults:
+            return "BadUserAccessDenied"
+        now, numbers = self._clock(), [each for each in given if isinstance(each, int)]
+        if len(numbers) != len(given) or len(given) != len(self.methods[method]):
+            return "BadInvalidArgument"
+        if method in VERBS:
+            to, speed = [*numbers[:-1], 0, 0][:2]
+            self._belt.order(now, numbers[-1], VERBS[method], to, speed)
+        elif method == "Halt":
+            self._belt.halt(now)
+        else:
+            self._belt.latch(now, on=method == "Latch")
+        return None
+
+    def beat(self, value: object) -> None:
+        """0 until somebody writes: who never did is not missed."""
+        self._beaten = self._beaten or value != 0
+        if self._beaten and isinstance(value, int):
+            self._belt.beat(self._clock(), value)
+
+    def is_mute(self) -> bool:
+        return "mute" in self._faults

@@ -1,0 +1,39 @@
+"""A short run of scripts/fuzz-opcua, and that it finds what it is for."""
+
+from __future__ import annotations
+
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-opcua"
+RUNS = 2000
+
+
+@pytest.fixture
+def fuzz() -> Any:
+    loader = SourceFileLoader("fuzz_opcua", str(SCRIPT))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def test_an_answer_with_mistakes_becomes_no_report(fuzz: Any) -> None:
+    seen = fuzz.run(RUNS, 1)
+    assert sum(seen.values()) == RUNS
+    assert all(seen[what] > RUNS / 50 for what in ("read", "unreadable", "undecodable")), seen
+
+
+def test_a_wrong_answer_that_was_read_would_be_found(fuzz: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    device = SimpleNamespace(nodes=("ns=2;s=done",), report=lambda at, read: "a report")
+    monkeypatch.setattr(fuzz, "OpcUaDevice", lambda *_: device)
+    with pytest.raises(AssertionError, match="became a report"):
+        fuzz.run(RUNS, 1)
