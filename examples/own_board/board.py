@@ -22,6 +22,7 @@ from typing import Any
 
 SILENCE_S, PERIOD_S = 1.0, 0.1
 UINT32 = 2**32 - 1
+AHEAD_S, HORIZON = 366 * 86_400, 4_102_444_800  # no plant starts a year after the last one, or after 2100
 NAME = re.compile(r"[A-Za-z0-9_.-]{1,32}", re.ASCII)
 TEXT = re.compile(r"[ !#-\[\]-~]{0,32}", re.ASCII)
 Out = Callable[[str, bytes], None]  # channel, payload
@@ -46,7 +47,8 @@ class Board:
         self._out = out
         self._boot, self._number, self._now = boot, 0, now
         self._facts = dict(FACTS)
-        self._epoch: int | None = None
+        self._epoch: int | None = None  # of the numbers in `_ids`
+        self._least: int | None = None  # the oldest that still counts: of the newest beat or command
         self._recent: deque[int] = deque(maxlen=8)  # the last accepted; one of them again is a copy
         self._ids: dict[str, Any] = {}  # ack, hecho, rechazo, respuesta, fallos: all of this epoch
         self._work: tuple[dict[str, Any], float] | None = None  # an order, and when it is over
@@ -97,14 +99,22 @@ class Board:
         self._said_at, self._number = self._now, self._number + 1
         state = 1 if self._work is not None else 4 if self._latched else 0
         said = {"estado": state, "seq": self._number, "arranque": self._boot}
-        numbers = {} if self._epoch is None else {"epoca_ack": self._epoch, **self._ids}
+        numbers = self._ids if self._epoch is None else {"epoca_ack": self._epoch, **self._ids}
+        if self._least != self._epoch:
+            numbers = {**numbers, "epoca_min": self._least}
         self._out(
             "sensores", json.dumps({**said, **numbers, "datos": self._facts}, separators=(",", ":")).encode()
         )
 
     def _hear_beat(self, epoch: int) -> None:
-        if self._epoch is None or epoch >= self._epoch:
-            self._beaten, self._alive_at = True, self._now
+        ahead = HORIZON if self._least is None else min(self._least + AHEAD_S, HORIZON)
+        if epoch > ahead:
+            self._refuse("formato", None, epoch)
+            return
+        self._least = max(epoch, self._least or 0)
+        if epoch == self._least:
+            self._beaten = True
+            self._alive_at = self._now if self._epoch in (None, epoch) else self._alive_at
 
     def _obey(self, channel: str, said: dict[str, Any]) -> None:
         if said.get("paro") in (1, 2):  # whatever its number: a stop is never too late
@@ -130,8 +140,10 @@ class Board:
         """The word for a number that is not above the last one; a newer epoch begins to count anew."""
         if seq is None or epoch is None:
             return "formato"
+        if self._least is not None and epoch < self._least:
+            return "viejo"
         if self._epoch is None or epoch > self._epoch:
-            self._epoch, self._ids = epoch, {}
+            self._epoch, self._least, self._ids = epoch, epoch, {}
             self._recent.clear()
             return None
         return "viejo" if (epoch, seq) <= (self._epoch, self._ids.get("ack", -1)) else None

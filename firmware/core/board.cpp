@@ -134,10 +134,15 @@ void Board::check_way() {
     }
 }
 
+// A beat of the newest epoch counts; it keeps alive what was begun under that epoch.
 void Board::hear(const Message& beat) {
-    if (!receipts_.epoch().known || beat.epoch.value >= receipts_.epoch().value) {
+    const bool numbered = config_.level == Level::kIds;
+    const MaybeNumber epoch = receipts_.epoch();
+    if (numbered && !receipts_.hear(beat.epoch.value)) {
+        refuse(Refusal::kFormat, beat);
+    } else if (!numbered || beat.epoch.value == receipts_.least().value) {
         beaten_ = true;
-        alive_us_ = now_us_;
+        alive_us_ = !epoch.known || epoch.value == beat.epoch.value ? now_us_ : alive_us_;
     }
 }
 

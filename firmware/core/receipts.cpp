@@ -5,6 +5,8 @@ namespace arboleda {
 namespace {
 
 constexpr uint32_t kUnknownSeq = 0;  // senders count from 1
+constexpr uint64_t kAheadS = 366 * 86400;   // clocks of two machines differ by no more
+constexpr uint64_t kHorizon = 4102444800;   // the year 2100: no plant of this protocol starts later
 constexpr const char* kWords[] = {"", "viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"};
 
 bool same(MaybeNumber one, MaybeNumber other) {
@@ -15,6 +17,19 @@ bool same(MaybeNumber one, MaybeNumber other) {
 
 const char* refusal_word(Refusal refusal) { return kWords[static_cast<uint8_t>(refusal)]; }
 
+// The numbers stay until a command comes: a plant that has just begun reads in them what became of the last.
+bool Receipts::hear(uint32_t epoch) {
+    if (least_.known && epoch <= least_.value) {
+        return true;
+    }
+    const uint64_t ahead = least_.known ? least_.value + kAheadS : kHorizon;
+    if (epoch > ahead || epoch > kHorizon) {
+        return false;
+    }
+    least_ = {true, epoch};
+    return true;
+}
+
 bool Receipts::repeats(const Message& goal) const {
     return goal.seq.known && same(goal.epoch, epoch_) && same(goal.seq, accepted_);
 }
@@ -23,9 +38,12 @@ Refusal Receipts::objection(const Message& goal) {
     if (!goal.seq.known || !goal.epoch.known) {
         return Refusal::kFormat;
     }
+    if (least_.known && goal.epoch.value < least_.value) {
+        return Refusal::kOld;
+    }
     if (!epoch_.known || goal.epoch.value > epoch_.value) {
         *this = Receipts();
-        epoch_ = goal.epoch;
+        epoch_ = least_ = goal.epoch;
         return Refusal::kNone;
     }
     const bool newer = !accepted_.known || goal.seq.value > accepted_.value;

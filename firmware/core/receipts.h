@@ -13,6 +13,7 @@ const char* refusal_word(Refusal refusal);
 // All numbers count only for `epoch`.
 class Receipts {
 public:
+    bool hear(uint32_t epoch);  // a beat: older commands count no more; false where no plant can have that epoch
     bool repeats(const Message& goal) const;   // the last accepted command once more: QoS 1 delivers twice
     Refusal objection(const Message& goal);    // a fresh command makes its epoch the current one
     void accept(const Message& goal) { accepted_ = goal.seq; }
@@ -20,6 +21,7 @@ public:
     void refuse(Refusal refusal, MaybeNumber seq, MaybeNumber epoch);
 
     MaybeNumber epoch() const { return epoch_; }
+    MaybeNumber least() const { return least_; }  // the oldest epoch that still counts
     MaybeNumber accepted() const { return accepted_; }
     MaybeNumber finished() const { return finished_; }
     Refusal refusal() const { return refusal_; }
@@ -27,6 +29,7 @@ public:
 
 private:
     MaybeNumber epoch_;
+    MaybeNumber least_;
     MaybeNumber accepted_;
     MaybeNumber finished_;
     Refusal refusal_ = Refusal::kNone;

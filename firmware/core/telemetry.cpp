@@ -16,6 +16,9 @@ void maybe(Writer& writer, const char* key, MaybeNumber number) {
 
 void receipts(Writer& writer, const Receipts& receipts) {
     maybe(writer, "epoca_ack", receipts.epoch());
+    if (receipts.least().known && !(receipts.epoch().known && receipts.epoch().value == receipts.least().value)) {
+        writer.integer("epoca_min", receipts.least().value);
+    }
     maybe(writer, "ack", receipts.accepted());
     maybe(writer, "hecho", receipts.finished());
     if (receipts.refusal() != Refusal::kNone) {

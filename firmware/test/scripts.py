@@ -8,6 +8,7 @@ from random import Random
 
 CHANNELS = ("juntas", "efector", "paro", "referencia", "latido")
 RETARGET_US = 100_000  # the core lets a moving arm's target change so often
+AHEAD_S, UINT32 = 366 * 86_400, 2**32 - 1
 PLACES = ((2333, 11, 0), (0, 0, 0))
 
 
@@ -107,7 +108,10 @@ class Author:
         self._seq += 1 if fate < 0.85 else self.chance.randint(-2, 2)
         self._seq = max(self._seq, 0)
         if channel == "latido":
-            return {"epoca": self._epoch}
+            ahead = self.chance.choices(
+                (0, 1, AHEAD_S, AHEAD_S + 1, UINT32 - self._epoch), (60, 10, 1, 3, 3)
+            )[0]
+            return {"epoca": self._epoch + ahead}
         if not self.setting.ids and fate > 0.3:
             return {}
         return {"seq": self._seq, "epoca": self._epoch} if fate < 0.97 else {"seq": self._seq}

@@ -97,6 +97,12 @@ WIRE = (
         weather={"foreign_retained": 20.0, "reboot": 10.0},
     ),
     mutant(
+        "nothing_of_an_old_epoch_has_effect",
+        "A board says that another bridge has beaten, and obeys the one before.",
+        edit(Receipts.objection, "goal.epoch < self.least", "goal.epoch < self.least < 0"),
+        weather={"foreign_old": 30.0, "bridge_restart": 15.0},
+    ),
+    mutant(
         "wire_targets_legal",
         "Joint targets go out as they are, not as motor steps.",
         edit(forms._wire_joints, "arm.quantised(command.q)", "command.q"),

@@ -16,7 +16,7 @@ from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped
-from arboleda.wire.payloads import EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal
+from arboleda.wire.payloads import Beat, EffectorGoal, Goal, HomeGoal, JointsGoal, StopGoal
 from arboleda.wire.transport import Delivery
 
 from .conformance_trial import Trial, wrong
@@ -104,6 +104,26 @@ class Deaf(Board):
         pass
 
 
+class Unfenced(Board):
+    """Hears that somebody else commands now, and says so, but obeys who commanded before."""
+
+    def _obey(self, goal: Goal) -> None:
+        overtaken = goal.epoch == self._receipts.epoch != self._receipts.least
+        if overtaken and goal.seq > (self._receipts.accepted or 0):
+            self._accept(goal)
+        else:
+            super()._obey(goal)
+
+
+class Gullible(Board):
+    """Believes a beat of any epoch."""
+
+    def _hear(self, beat: Beat) -> None:
+        self._receipts.hear(beat.epoch)
+        self._receipts.least = beat.epoch
+        super()._hear(beat)
+
+
 class Unlatched(Board):
     """Stops, and forgets that it should stay so."""
 
@@ -165,7 +185,9 @@ BAD = [
     pytest.param(Forgetful, {"old", "old epoch"}, Evidence.JOINTS, id="obeys old numbers"),
     pytest.param(truncating, {"rounds"}, Evidence.STATE, id="cuts off"),
     pytest.param(Eager, {"retained"}, Evidence.JOINTS, id="obeys retained"),
-    pytest.param(Deaf, {"silence"}, Evidence.JOINTS, id="deaf to beats"),
+    pytest.param(Unfenced, {"beaten off"}, Evidence.JOINTS, id="obeys who was superseded"),
+    pytest.param(Gullible, {"far future"}, Evidence.JOINTS, id="believes any beat"),
+    pytest.param(Deaf, {"silence", "beaten off", "far future"}, Evidence.JOINTS, id="deaf to beats"),
     pytest.param(Unlatched, {"latch"}, Evidence.JOINTS, id="no latch"),
     pytest.param(Boastful, {"halted", "silence"}, Evidence.JOINTS, id="done when halted"),
     pytest.param(Believing, {"malformed"}, Evidence.STATE, id="half a goal"),

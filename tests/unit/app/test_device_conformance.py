@@ -155,7 +155,9 @@ BAD = [
     pytest.param({"kind": Forgetful}, {"old", "old epoch"}, Evidence.JOINTS, id="obeys old numbers"),
     pytest.param({"kind": OneCopy}, {"duplicate"}, Evidence.JOINTS, id="knows one copy"),
     pytest.param({"kind": Eager}, {"retained"}, Evidence.JOINTS, id="obeys retained"),
-    pytest.param({"kind": Deaf}, {"silence"}, Evidence.JOINTS, id="deaf to beats"),
+    pytest.param(
+        {"kind": Deaf}, {"silence", "beaten off", "far future"}, Evidence.JOINTS, id="deaf to beats"
+    ),
     pytest.param({"kind": Unlatched}, {"latch"}, Evidence.JOINTS, id="no latch"),
     pytest.param(
         {"kind": Boastful}, {"halted", "stop from anybody", "silence"}, Evidence.JOINTS, id="done when halted"

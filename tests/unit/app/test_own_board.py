@@ -152,6 +152,14 @@ SCRIPT: list[tuple[str, dict[str, Any]] | float] = [
     0.5,
     ("orden", {"verbo": "fly", "seq": 1, "epoca": 11}),  # refused, and yet the newer one
     2.0,
+    ("latido", {"epoca": 12}),
+    0.2,
+    ("orden", {"verbo": "level", "seq": 2, "epoca": 11}),  # viejo: another one beats
+    ("latido", {"epoca": 11}),
+    ("latido", {"epoca": 12 + 366 * 86_400 + 1}),  # formato: no plant can have started then
+    ("orden", {"verbo": "level", "seq": 3, "epoca": 11}),  # viejo
+    ("orden", {"verbo": "level", "seq": 1, "epoca": 12}),
+    1.0,
 ]
 
 

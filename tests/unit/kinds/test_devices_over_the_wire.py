@@ -310,7 +310,7 @@ MANY = {f"temperature_of_zone_{number}": FactType(type=float, first=0.0) for num
 FITS: dict[str, tuple[DeviceKind, str]] = {
     "too much to say at once": (
         DeviceKind(name="oven", facts=MANY, verbs={}),
-        "all that a oven can say at once: the message would have 568 bytes; at most 512 are allowed",
+        "all that a oven can say at once: the message would have 591 bytes; at most 512 are allowed",
     ),
     "name with a space": (
         DeviceKind(name="oven", facts={"the lid": FactType(type=bool, first=False)}, verbs={}),

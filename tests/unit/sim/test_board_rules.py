@@ -269,13 +269,68 @@ def test_one_second_without_a_beat_while_moving_ramps_to_a_stop(bench):
     assert 60 < said.q[0] < 100
 
 
-@pytest.mark.parametrize("epoch", [EPOCH, EPOCH + 1])
-def test_beats_keep_a_move_going(bench, epoch):
+def test_beats_keep_a_move_going(bench):
     move(bench, 1, q=(150.0, 0.0, 0.0))
     for _ in range(4):
-        beat(bench, epoch=epoch)
+        beat(bench)
         bench.run(0.9)
     assert bench.last(BOARD).done == 1
+
+
+def test_beats_of_the_next_bridge_do_not_keep_a_move_of_the_last_going(bench):
+    beat(bench)
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    for _ in range(4):
+        beat(bench, epoch=EPOCH + 1)
+        bench.run(0.9)
+    said = bench.last(BOARD)
+    assert (said.state, said.done) == (MotionState.STOPPED, None)
+
+
+def test_a_beat_is_enough_to_refuse_whoever_commanded_before(bench):
+    move(bench, 7)
+    bench.run(5)
+    beat(bench, epoch=EPOCH + 1)
+    bench.run(0.1)
+    said = bench.last(BOARD)
+    assert (said.ack_epoch, said.ack, said.done, said.least_epoch) == (EPOCH, 7, 7, EPOCH + 1)
+    move(bench, 8, q=(0.0, 0.0, 0.0))
+    assert refusal(bench) == ("viejo", 8)
+    assert bench.last(BOARD).state is MotionState.STOPPED
+    effector(bench, 1, on=True, epoch=EPOCH + 1)
+    said = bench.last(BOARD)
+    assert (said.ack_epoch, said.ack, said.least_epoch, said.refusal) == (EPOCH + 1, 1, None, None)
+
+
+def test_a_board_that_has_heard_no_command_is_fenced_by_a_beat_too(bench):
+    beat(bench)
+    move(bench, 1, epoch=EPOCH - 1)
+    assert refusal(bench) == ("viejo", 1)
+
+
+def test_a_stop_of_whoever_commanded_before_is_obeyed(bench):
+    move(bench, 1, q=(150.0, 0.0, 0.0))
+    beat(bench, epoch=EPOCH + 1)
+    stop(bench, 2)
+    bench.run(2)
+    assert bench.last(BOARD).state is MotionState.STOPPED
+    assert bench.last(BOARD).done is None
+
+
+@pytest.mark.parametrize("epoch", [EPOCH + 366 * 86_400 + 1, 2**32 - 1])
+def test_a_beat_of_the_far_future_fences_nobody_off(bench, epoch):
+    move(bench, 1)
+    beat(bench, epoch=epoch)
+    assert refusal(bench) == ("formato", 0)
+    effector(bench, 2, on=True)
+    assert bench.last(BOARD).ack == 2
+
+
+@pytest.mark.parametrize(("epoch", "least"), [(4_102_444_800, 4_102_444_800), (4_102_444_801, None)])
+def test_before_any_command_a_beat_may_be_of_this_century(bench, epoch, least):
+    beat(bench, epoch=epoch)
+    bench.run(0.1)
+    assert bench.last(BOARD).least_epoch == least
 
 
 def test_beats_of_an_older_epoch_do_not_count(bench):

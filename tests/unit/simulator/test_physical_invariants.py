@@ -209,6 +209,7 @@ def obeyed_a_stranger(patch: Patch) -> Watch:
 
 def beyond_its_limits(patch: Patch) -> Watch:
     patch.setattr(ArmBody, "admits", lambda self, goal: True)
+    patch.setattr("arboleda.sim.board.SILENCE_US", 60_000_000)  # of the stranger that is about to speak
     watch = Watch()
     watch.say(Channel.JOINTS, JointsGoal, q=(170.0, 0.0, 0.0))
     watch.wait(5.0)

@@ -563,6 +563,24 @@ def test_executed_numbers_rise(monkeypatch, bites):
     bites(watch)
 
 
+def test_nothing_of_an_old_epoch_has_effect(monkeypatch, bites):
+    objection = Receipts.objection
+
+    def forget(self: Receipts, goal: Any) -> str | None:
+        self.least = self.epoch
+        return objection(self, goal)
+
+    monkeypatch.setattr(Receipts, "objection", forget)
+    watch = Watch()
+    watch.task(wait_s=15)
+    last = watch.world.obeyed["ra_1"]
+    watch.world.publish(Publication(topic="ra_1/latido", payload=b'{"epoca":%d}' % (last.epoch + 1)))
+    payload = b'{"efector":1,"seq":%d,"epoca":%d}' % (last.seq + 1, last.epoch)
+    watch.world.publish(Publication(topic="ra_1/efector", payload=payload))
+    watch.wait(0.5)
+    bites(watch)
+
+
 def test_no_repeat_has_effect(monkeypatch, bites):
     receive = Board.receive
 

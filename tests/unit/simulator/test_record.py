@@ -315,9 +315,9 @@ def test_what_a_board_carries_out_is_compared_with_what_reached_it(world, record
     world.watchers.append(lambda: executed.extend(record.boards.executed if world.moment.executed else ()))
     world.request_task(TASK)
     world.advance(20)
-    numbers = [(before, (goal.epoch, goal.seq)) for board, goal, before, _ in executed if board == "ra_1"]
+    numbers = [(before, (goal.epoch, goal.seq)) for board, goal, before, *_ in executed if board == "ra_1"]
     assert [before for before, _ in numbers] == [None, *(now for _, now in numbers[:-1])]
-    assert all(delivered for *_, delivered in executed)
+    assert all(each.delivered for each in executed)
     assert record.boards.by_name["ra_1"].inbox == []
 
 

@@ -280,8 +280,9 @@ def test_a_restarted_plant_goes_on_only_with_a_task_of_which_it_knows_where_it_s
 @pytest.mark.parametrize(("stalled_s", "at_home"), [(0.2, False), (30.0, True)])
 @pytest.mark.parametrize("board", [ARM, MOBILE])
 def test_who_came_home_before_its_board_hears_a_stop_is_homed(
-    board: str, stalled_s: float, at_home: bool
+    monkeypatch, board: str, stalled_s: float, at_home: bool
 ) -> None:
+    monkeypatch.setattr("arboleda.sim.board.SILENCE_US", 60_000_000)  # the stranger that homes it never beats
     stage = Stage(slowed(shipped(), 4))
     world = stage.world
     stage.ask("sis_a 0B 7", 6.0)

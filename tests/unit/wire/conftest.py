@@ -76,6 +76,7 @@ class Bench:
             node=None if arm else 0,
             seq=0 if ids else None,
             boot_id=1 if ids else None,
+            least_epoch=EPOCH if ids else None,
             homed=True if ids else None,
         )
 

@@ -1,11 +1,15 @@
-"""The bridge's epoca: above everything a board has heard, raised once when a board says `viejo`."""
+"""The bridge's epoca: above all that a board has heard, raised once when it says `viejo`, and beaten."""
 
 from __future__ import annotations
 
+import pytest
+
 from arboleda.kinds.arm import SetEffector
-from arboleda.wire.payloads import EffectorGoal
+from arboleda.model.plant_model import Evidence
+from arboleda.wire.payloads import Beat, EffectorGoal
 
 EPOCH = 1_000
+FENCE = ("ra_1/latido", Beat(epoch=EPOCH))
 
 
 def grip(number: int) -> SetEffector:
@@ -66,3 +70,55 @@ def test_viejo_for_a_number_that_the_board_has_not_reached_is_a_strangers(linked
     linked.order(grip(2))
     (report,) = reports(linked.tell(ack_epoch=EPOCH, ack=1, refusal="viejo", refused_seq=2))
     assert report.rejected is None
+
+
+def test_a_plant_that_beats_has_each_board_refuse_whoever_commanded_before(bench, sent) -> None:
+    bench.connect()
+    bench.tell(ack_epoch=EPOCH - 5, ack=7, least_epoch=None)
+    assert sent(bench.heartbeat()) == [FENCE]
+    assert sent(bench.heartbeat()) == [FENCE]  # a beat may be lost
+    bench.tell(least_epoch=EPOCH)
+    assert sent(bench.heartbeat()) == []
+
+
+@pytest.mark.parametrize("said", [{}, {"ack_epoch": EPOCH - 5, "ack": 7}], ids=["never told", "told before"])
+def test_a_board_that_booted_is_told_anew_who_commands_it(linked, sent, said: dict) -> None:
+    assert sent(linked.heartbeat()) == []
+    linked.tell(boot_id=2, seq=0, least_epoch=None, **said)
+    assert sent(linked.heartbeat()) == [FENCE]
+
+
+def test_a_command_that_was_taken_tells_a_board_who_commands_it(bench, sent) -> None:
+    bench.connect()
+    bench.tell(least_epoch=None)
+    bench.order(grip(1))
+    bench.tell(ack_epoch=EPOCH, ack=1)
+    assert sent(bench.heartbeat()) == []
+
+
+def test_without_a_plant_nobody_is_fenced_off(bench) -> None:
+    bench.connect()
+    bench.tell(least_epoch=None)
+    assert bench.wait(1.0) == []
+
+
+@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE], ids=lambda level: level.value)
+def test_boards_that_know_no_numbers_are_not_beaten_for_them(make_linked, sent, evidence) -> None:
+    assert sent(make_linked(evidence=evidence).heartbeat()) == []
+
+
+def test_a_bridge_that_starts_begins_above_what_has_beaten(bench, sent) -> None:
+    bench.connect()
+    bench.tell(least_epoch=EPOCH + 5)
+    assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 6))]
+
+
+def test_a_bridge_that_was_superseded_hears_it_and_does_not_rise_above_the_next(
+    linked, sent, reports
+) -> None:
+    linked.order(grip(1))
+    linked.tell(ack_epoch=EPOCH, ack=1)
+    linked.order(grip(2))
+    (report,) = reports(linked.tell(least_epoch=EPOCH + 9, refusal="viejo", refused_seq=2))
+    assert (report.rejected, report.refusal, report.epoch) == ("7-2", "viejo", EPOCH)
+    assert sent(linked.order(grip(3))) == [("ra_1/efector", EffectorGoal(on=True, seq=3, epoch=EPOCH))]

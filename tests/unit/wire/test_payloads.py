@@ -51,7 +51,7 @@ def telemetry(q: st.SearchStrategy, node: st.SearchStrategy, *flags: str) -> st.
             "state": st.sampled_from([state for state in MotionState if state is not MotionState.NO_LINK]),
             "q": q,
             "node": node,
-            **{name: maybe(UINT) for name in ("seq", "ack_epoch", "ack", "done", "boot_id")},
+            **{name: maybe(UINT) for name in ("seq", "ack_epoch", "least_epoch", "ack", "done", "boot_id")},
             **{name: maybe(st.booleans()) for name in ("homed", *flags)},
         }
     )

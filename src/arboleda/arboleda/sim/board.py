@@ -83,6 +83,11 @@ class Board:
         return MotionState.STOPPED if self.homed else MotionState.NOT_HOMED
 
     @property
+    def least_epoch(self) -> int | None:
+        """The oldest epoch whose commands it takes; None: any."""
+        return self._receipts.least
+
+    @property
     def next_deadline_us(self) -> int | None:
         due_us = self._uplink.due_us
         if self.body.next_change_us is not None:
@@ -163,9 +168,13 @@ class Board:
             self._obey(message)
 
     def _hear(self, beat: Beat) -> None:
-        if self._receipts.epoch is None or beat.epoch >= self._receipts.epoch:
+        """A beat of the newest epoch counts; it keeps alive what was begun under that epoch."""
+        receipts = self._receipts
+        if self._numbered and not receipts.hear(beat.epoch):
+            self._refuse("formato", None, beat.epoch)
+        elif not self._numbered or beat.epoch == receipts.least:
             self._beaten = True
-            self._alive_us = self._now_us
+            self._alive_us = self._now_us if receipts.epoch in (None, beat.epoch) else self._alive_us
 
     def _obey(self, goal: Goal) -> None:
         if isinstance(goal, StopGoal) and goal.mode is not StopMode.CLEAR:
@@ -312,6 +321,7 @@ class Board:
             piece=told.piece,
             seq=0,
             ack_epoch=receipts.epoch,
+            least_epoch=receipts.least if receipts.least != receipts.epoch else None,
             ack=receipts.accepted,
             done=receipts.finished,
             refusal=receipts.refusal,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 from arboleda.model.facts import Value
+from arboleda.wire import epochs
 from arboleda.wire.payloads import FAILURES_KEPT, Goal
 
 UNKNOWN_SEQ = 0  # senders count from 1
@@ -14,7 +15,8 @@ class Receipts:
     """The numbers of the last accepted, finished and refused command, of the last answer and of the last few
     failures; all count only for `epoch`.
 
-    `told` is all of it. `known` is how many accepted commands it knows again, should one come twice.
+    `least` is the oldest epoch that still counts: that of the newest beat or command. `told` is all of it.
+    `known` is how many accepted commands it knows again, should one come twice.
     """
 
     def __init__(self, *, known: int = 1) -> None:
@@ -23,7 +25,7 @@ class Receipts:
 
     def _enter(self, epoch: int | None) -> None:
         """Forget all numbers: those of one epoch mean nothing in the next."""
-        self.epoch = epoch
+        self.epoch = self.least = epoch
         self.accepted: int | None = None
         self.finished: int | None = None
         self.refusal: str | None = None
@@ -37,6 +39,7 @@ class Receipts:
         given_up = self.failures
         self.told = (
             self.epoch,
+            self.least,
             self.accepted,
             self.finished,
             self.refusal,
@@ -44,6 +47,20 @@ class Receipts:
             self.answer,
             given_up,
         )
+
+    def hear(self, epoch: int) -> bool:
+        """A beat: what is older counts for nothing from now on; False where no plant can have that epoch.
+
+        The numbers stay until a command comes: a plant that has just begun reads in them what became of the
+        last one.
+        """
+        if self.least is not None and epoch <= self.least:
+            return True
+        if not epochs.can_follow(epoch, self.least):
+            return False
+        self.least = epoch
+        self._note()
+        return True
 
     def repeats(self, goal: Goal) -> bool:
         """Whether this is an accepted command once more (QoS 1 may deliver twice)."""
@@ -53,6 +70,8 @@ class Receipts:
         """The refusal its numbers deserve; a fresh command makes its epoch the current one."""
         if goal.seq is None or goal.epoch is None:
             return "formato"
+        if self.least is not None and goal.epoch < self.least:
+            return "viejo"
         if self.epoch is None or goal.epoch > self.epoch:
             self._enter(goal.epoch)
             return None

@@ -137,6 +137,11 @@ class Board:
         """`latido`: who commands this board is alive."""
         return _beat(self.robot.mqtt, self.labels.epoch)
 
+    def fence(self) -> list[Message]:
+        """A beat for a board that would still take commands of who commanded before this bridge."""
+        numbered = self.robot.evidence is Evidence.IDS
+        return [self.beat()] if numbered and self.link.up and not self.labels.fenced else []
+
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
         """A message from the board; what breaks the contract is counted and changes nothing."""
         ending = self._motion is not None and self._motion.ending

@@ -249,7 +249,11 @@ class Bridge:
         self._plant_beats = True
         self._plant_heard_at = at
         news = [report for board in self._boards.values() for report in board.hear_plant(at, heartbeat.epoch)]
-        return [*news, *self._beat_all()]
+        return [*news, *self._beat_all(), *self._fence_all()]
+
+    def _fence_all(self) -> list[Message]:
+        """Until each board says that it takes nothing older: what came before may still be on the wire."""
+        return [beat for board in self._boards.values() if not board.in_motion for beat in board.fence()]
 
     def _beat_all(self) -> list[Message]:
         return [board.beat() for board in self._boards.values() if board.in_motion]

@@ -6,6 +6,11 @@ AHEAD_S = 366 * 86_400  # clocks of two machines differ by no more where both ha
 HORIZON = 4_102_444_800  # the year 2100: no plant of this protocol starts later, whatever any clock says
 
 
+def can_follow(epoch: int, known: int | None) -> bool:
+    """Whether a board without a clock believes a beat of `epoch`; `known` is the newest it has heard."""
+    return epoch <= (HORIZON if known is None else min(known + AHEAD_S, HORIZON))
+
+
 def objection(epoch: int, unix_s: int | None) -> str | None:
     """Why no plant can have started at `epoch`, by a clock that says `unix_s`; None where one can.
 

@@ -71,6 +71,7 @@ def _telemetry(kind: DeviceKind) -> Telemetry:
         state=MotionState.STOP_LATCHED,
         seq=UINT32,
         ack_epoch=UINT32,
+        least_epoch=UINT32,
         ack=UINT32,
         done=UINT32,
         refusal=max(DEVICE_REFUSALS, key=len),

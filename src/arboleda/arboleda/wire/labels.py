@@ -47,6 +47,7 @@ class Labels:
         self.objection: tuple[Issued, str] | None = None
         self.foreign: tuple[int, int] | None = None
         self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
+        self._least = -1  # the oldest epoch whose commands count for the board, as it said last
         self._seq = 0
         self._issued: OrderedDict[int, Issued] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
@@ -54,6 +55,11 @@ class Labels:
         self._raised = False
         self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
         self._heard_failures: tuple[tuple[int, str], ...] = ()
+
+    @property
+    def fenced(self) -> bool:
+        """Whether the board has said that it takes nothing older than what comes from here."""
+        return self._least >= self.epoch
 
     def repeated(self, command_id: str) -> bool:
         """Whether this id came before; it counts as known from now on. Unlabelled ones never repeat."""
@@ -80,11 +86,14 @@ class Labels:
         self.accepted = self.done = self.rejected = self.answered = self.failed = None
         self._heard_refusal = None
         self._heard_failures = ()
+        self._least = -1
 
     def hear(self, said: Telemetry) -> frozenset[int]:
         """Take over what telemetry says about our commands; the seqs that it reports ended."""
-        if not self._spoken and said.ack_epoch is not None and said.ack_epoch >= self.epoch:
-            self._raise_above(said.ack_epoch)
+        acknowledged = -1 if said.ack_epoch is None else said.ack_epoch
+        self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
+        if not self._spoken and (acknowledged >= self.epoch or self._least > self.epoch):
+            self._raise_above(self._least)
         self.foreign = self._strange(said)
         refused = self._refused(said)
         ours = said.ack_epoch == self.epoch
@@ -145,6 +154,8 @@ class Labels:
             return False
         if said.refusal != "viejo":
             return said.ack_epoch == self.epoch
+        if self._least > self.epoch:
+            return True
         if said.ack_epoch != self.epoch:
             return said.ack_epoch is not None and said.ack_epoch > self.epoch
         # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way

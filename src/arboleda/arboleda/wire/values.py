@@ -78,7 +78,8 @@ class Telemetry:
     """`sensores`: `q` of an arm, `node` of a mobile or `facts` of a device; the rest None where the board
     does not say it.
 
-    `seq` counts telemetry since boot; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`, as are
+    `seq` counts telemetry since boot; `least_epoch`, said where it is above `ack_epoch`, is the oldest epoch
+    whose commands count; `ack`, `done` and `refused_seq` are command seqs of `ack_epoch`, as are
     `answered_seq`, the last query that a device answered, and those of `failures`, the last few commands that
     it gave up, oldest first.
     """
@@ -100,6 +101,7 @@ class Telemetry:
     answer: Value | None = None
     answered_seq: int | None = None
     failures: tuple[tuple[int, str], ...] | None = None
+    least_epoch: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

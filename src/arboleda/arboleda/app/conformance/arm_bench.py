@@ -79,6 +79,7 @@ class ArmBench(Bench[ArmSaid]):
             q=tuple(fields.number(key, MAX_ANGLE_DEG) for key in keys) if spoken else None,
             number=fields.optional("seq"),
             epoch=fields.optional("epoca_ack"),
+            least_epoch=fields.optional("epoca_min"),
             ack=fields.optional("ack"),
             done=fields.optional("hecho"),
             refusal=fields.word("rechazo", REFUSALS) if "rechazo" in fields else None,

@@ -57,6 +57,7 @@ class Said:
     state: int
     number: int | None
     epoch: int | None
+    least_epoch: int | None
     ack: int | None
     done: int | None
     refusal: str | None
@@ -117,8 +118,9 @@ class Bench(ABC, Generic[SaidT]):
             return
         try:
             self.said.append(self._read(delivery))
-            if not self.seq and (self.last.epoch or 0) >= self.epoch:
-                self.epoch = (self.last.epoch or 0) + 1
+            heard = max(self.last.epoch or 0, self.last.least_epoch or 0)
+            if not self.seq and heard >= self.epoch:
+                self.epoch = heard + 1
         except PayloadError as error:
             self.damaged.append(f"{error}: {delivery.payload[:80]!r}")
 

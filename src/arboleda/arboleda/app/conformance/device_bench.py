@@ -99,6 +99,7 @@ class DeviceBench(Bench[DeviceSaid]):
             state=MotionState(said.state).value,
             number=said.seq,
             epoch=said.ack_epoch,
+            least_epoch=said.least_epoch,
             ack=said.ack,
             done=said.done,
             refusal=said.refusal,

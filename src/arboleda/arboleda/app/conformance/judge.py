@@ -14,6 +14,7 @@ from arboleda.wire.payloads import Beat, encode
 from arboleda.wire.topics import Channel
 from arboleda.wire.transport import Delivery
 
+from . import beat_checks as beat
 from . import device_checks as device
 from . import device_number_checks as device_number
 from . import motion_checks as motion
@@ -61,6 +62,7 @@ CHECKS = (
     Check(name="old", level=Evidence.IDS, steps=number.old),
     Check(name="old epoch", level=Evidence.IDS, steps=number.old_epoch),
     Check(name="new epoch", level=Evidence.IDS, steps=number.new_epoch),
+    Check(name="beaten off", level=Evidence.IDS, steps=beat.beaten_off),
     Check(name="stamped", level=Evidence.IDS, steps=number.stamped),
     Check(name="words", level=Evidence.IDS, steps=number.words),
     Check(name="retained", level=Evidence.IDS, steps=number.retained),
@@ -71,6 +73,7 @@ CHECKS = (
     Check(name="silence", level=Evidence.IDS, steps=number.silence),
     Check(name="effector", level=Evidence.IDS, steps=number.effector),
     Check(name="homing", level=Evidence.IDS, steps=number.homing),
+    Check(name="far future", level=Evidence.IDS, steps=beat.far_future),  # last: who fails it obeys nobody
 )
 
 DEVICE_CHECKS = (
@@ -88,6 +91,7 @@ DEVICE_CHECKS = (
     Check(name="old", level=Evidence.IDS, steps=device_number.old),
     Check(name="old epoch", level=Evidence.IDS, steps=device_number.old_epoch),
     Check(name="new epoch", level=Evidence.IDS, steps=device_number.new_epoch),
+    Check(name="beaten off", level=Evidence.IDS, steps=beat.beaten_off),
     Check(name="stamped", level=Evidence.IDS, steps=device_number.stamped),
     Check(name="words", level=Evidence.IDS, steps=device_number.words),
     Check(name="needs", level=Evidence.IDS, steps=device_number.needs),
@@ -98,6 +102,7 @@ DEVICE_CHECKS = (
     Check(name="stop from anybody", level=Evidence.IDS, steps=device_number.stop_from_anybody),
     Check(name="latch", level=Evidence.IDS, steps=device_number.latch),
     Check(name="silence", level=Evidence.IDS, steps=device_number.silence),
+    Check(name="far future", level=Evidence.IDS, steps=beat.far_future),  # last: who fails it obeys nobody
 )
 
 

@@ -41,7 +41,7 @@ class BridgePart:
         self._client: MqttClient | None = None
         self._lock = threading.Lock()
         self._ended = False
-        self._halts = True
+        self._leads = True
         self._report: Callable[[Report], None] = lambda report: None
         self._tell_link: Callable[[bool, str], None] = _nobody
         self._tell: Callable[[Rejection | ForeignCommand], None] = lambda news: None
@@ -101,12 +101,12 @@ class BridgePart:
         return self.loop.read(look)
 
     def leave_robots(self) -> None:
-        """Another process leads them now: `stop` halts none of them."""
-        self._halts = False
+        """Another process leads them now: nothing more is published, and `stop` halts none of them."""
+        self._leads = False
 
     def stop(self) -> None:
         """Halt what still moves, then leave; the plant may be another process that has ended already."""
-        if self._halts:
+        if self._leads:
             self.loop.post(Leaving(at=clock.seconds()))
         self.loop.stop()
         with self._lock:
@@ -126,7 +126,7 @@ class BridgePart:
             if self._seldom.is_due(message.sentence, message.at):
                 LOG.warning("%s", message.sentence)
             self._tell(message)
-        elif self._client is not None:
+        elif self._client is not None and self._leads:
             self._client.publish(message, self._bridge.now)
 
 

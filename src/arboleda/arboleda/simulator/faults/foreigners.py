@@ -141,7 +141,7 @@ def foreign_retained(world: World, fault: Fault) -> End | None:
 
 @kind(targets=whom.boards, words=lambda model, target: ("again", *_goals(model, target)))
 def foreign_old(world: World, fault: Fault) -> None:
-    """A stranger repeats the last command, or sends one of an older number or epoch."""
+    """A stranger repeats the last command, or sends one of an older number, epoch or bridge."""
     old = _again(world, fault) if fault.word == "again" else _old(world, fault)
     if old is not None:
         world.publish(old)
@@ -174,11 +174,13 @@ def _old(world: World, fault: Fault) -> Publication | None:
 
 
 def _older(world: World, fault: Fault) -> tuple[int, int] | None:
-    """epoca and seq below those of the last command that the board carried out; None where it has none."""
+    """epoca and seq of nobody who still commands the board; None where it has carried out nothing."""
     last = world.obeyed.get(fault.target)
     if last is None or last.epoch is None or last.seq is None or last.epoch < 1:
         return None
     dice = Dice(fault.seed, "numbers")
+    if last.epoch < (world.boards[fault.target].least_epoch or 0) and dice.chance(0.5):
+        return last.epoch, last.seq + 1 + dice.below(4)
     if last.seq > 1 and dice.chance(0.5):
         return last.epoch, last.seq - 1 - dice.below(last.seq - 1)
     return last.epoch - 1 - dice.below(last.epoch), last.seq + dice.below(4)

@@ -24,7 +24,7 @@ ROUNDING_DEG = 0.6e-4  # the wire has four decimals
 @invariant(When.EXECUTED)
 def executed_numbers_rise(look: Look) -> Iterable[str]:
     """The (epoca, seq) of the commands that a board carries out rise from its boot on."""
-    for board, goal, before, _ in look.record.boards.executed:
+    for board, goal, before, *_ in look.record.boards.executed:
         if before is not None and goal.seq is not None and (goal.epoch, goal.seq) <= before:
             yield f"{board} carried out {(goal.epoch, goal.seq)} after {before}"
 
@@ -32,9 +32,17 @@ def executed_numbers_rise(look: Look) -> Iterable[str]:
 @invariant(When.EXECUTED)
 def no_repeat_has_effect(look: Look) -> Iterable[str]:
     """A board carries out only what was delivered to it, each message once, and nothing retained."""
-    for board, goal, _, delivered in look.record.boards.executed:
-        if not delivered:
-            yield f"{board} carried out {goal}, which was not delivered anew"
+    for each in look.record.boards.executed:
+        if not each.delivered:
+            yield f"{each.board} carried out {each.goal}, which was not delivered anew"
+
+
+@invariant(When.EXECUTED)
+def nothing_of_an_old_epoch_has_effect(look: Look) -> Iterable[str]:
+    """A board that has heard a bridge beat carries out nothing of one before it."""
+    for board, goal, _, _, beat in look.record.boards.executed:
+        if beat is not None and goal.epoch is not None and goal.epoch < beat:
+            yield f"{board} carried out {(goal.epoch, goal.seq)} after a beat of {beat}"
 
 
 @invariant(When.PUBLISHED)
@@ -208,6 +216,7 @@ WIRE = (
     bridge_obeys_only_its_plant,
     executed_numbers_rise,
     no_repeat_has_effect,
+    nothing_of_an_old_epoch_has_effect,
     wire_targets_legal,
     nothing_retained_on_commands,
     payload_size,

@@ -7,7 +7,7 @@ import math
 from collections import deque
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from arboleda.kinds.arm import Joint
 from arboleda.model.plant_model import Robot
@@ -26,6 +26,17 @@ KEPT = 4096  # angles; arms go the same ways all day
 Numbers = tuple[int, int]  # (epoca, seq)
 
 
+class Executed(NamedTuple):
+    """A command that a board carried out: its last numbers before, whether it was delivered to it, and the
+    newest epoch that it had heard beating."""
+
+    board: str
+    goal: Goal
+    before: Numbers | None
+    delivered: bool
+    beat: int | None
+
+
 class KnownBoard:
     """One board: its numbers since it booted, what is new in its inbox, what the bridge heard of it."""
 
@@ -34,6 +45,7 @@ class KnownBoard:
         self.board = board
         self.boot = board.boot_id
         self.last: Numbers | None = None
+        self.beat: int | None = None  # the newest epoch in the beats that it has read since it booted
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
@@ -50,14 +62,33 @@ class KnownBoard:
             words = self._words(q, node) + b'"estado":0}'
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
 
-    def carried_out(self, goal: Goal) -> tuple[Numbers | None, bool]:
-        """A command that it carries out now: its last numbers before, and whether it was delivered to it."""
-        if self.boot != self.board.boot_id:
-            self.boot, self.last = self.board.boot_id, None
+    def carried_out(self, goal: Goal) -> Executed:
+        """A command that it carries out now."""
+        self._notice_boot()
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
             self.last = (goal.epoch, goal.seq)
-        return before, delivered
+        return Executed(self.robot.mqtt, goal, before, delivered, self.beat)
+
+    def forget_read(self, unread: list[Any]) -> None:
+        """What it has taken out of its inbox, or lost from it, is no longer new to it."""
+        read = [each for each in self.inbox if not any(each is other for other in unread)]
+        self.inbox = [each for each in self.inbox if any(each is other for other in unread)]
+        if not self._notice_boot():
+            for delivery in read:
+                self._read(delivery)
+
+    def _notice_boot(self) -> bool:
+        """Whether it has booted since it was looked at last; it has forgotten everything then."""
+        booted = self.boot != self.board.boot_id
+        if booted:
+            self.boot, self.last, self.beat = self.board.boot_id, None, None
+        return booted
+
+    def _read(self, delivery: Delivery) -> None:
+        epoch = fields(delivery.payload).get("epoca") if delivery.topic.endswith("/latido") else None
+        if type(epoch) is int and not delivery.retain:
+            self.beat = max(epoch, self.beat or 0)
 
     def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
         """Whether valid telemetry that reached the bridge at `since` or later says that it is there."""
@@ -88,6 +119,7 @@ class KnownBoard:
     def _was_delivered(self, goal: Goal) -> bool:
         """Retained ones do not count: nobody knows how old they are."""
         for delivery in self.inbox:
+            self._read(delivery)
             if not delivery.retain and goal_of(delivery.topic, delivery.payload, self._axes) == goal:
                 self.inbox.remove(delivery)
                 return True
@@ -95,12 +127,12 @@ class KnownBoard:
 
 
 class Boards:
-    """`executed`: what was carried out in this step, with the numbers before and whether it was delivered."""
+    """`executed`: what was carried out in this step."""
 
     def __init__(self, boards: dict[str, KnownBoard]) -> None:
         self.by_name = boards
         self.of_robot = {board.robot.name: board for board in boards.values()}
-        self.executed: list[tuple[str, Goal, Numbers | None, bool]] = []
+        self.executed: list[Executed] = []
         self._busy: dict[str, None] = {}  # boards with something in their inbox
         self._hears = {f"{name}/sensores": board.telemetry.append for name, board in boards.items()}
         self._obeys = {topic: name for name in boards for topic in _commands(name)}
@@ -119,18 +151,15 @@ class Boards:
 
     def execute(self, name: str, goal: Goal) -> None:
         """A board carries out a command."""
-        before, delivered = self.by_name[name].carried_out(goal)
-        self.executed.append((name, goal, before, delivered))
+        self.executed.append(self.by_name[name].carried_out(goal))
 
     def forget_read(self, clients: dict[str, Client]) -> None:
-        """What a board has taken out of its inbox, or lost from it, is no longer new to it."""
+        """What boards have read is no longer new to them."""
         if not self._busy:
             return
         for name in tuple(self._busy):
-            unread = clients[name].inbox
-            inbox = [each for each in self.by_name[name].inbox if any(each is other for other in unread)]
-            self.by_name[name].inbox = inbox
-            if not inbox:
+            self.by_name[name].forget_read(clients[name].inbox)
+            if not self.by_name[name].inbox:
                 del self._busy[name]
 
 
@@ -141,7 +170,7 @@ def _angle(value: float, degrees: float) -> str:
 
 
 def _commands(board: str) -> list[str]:
-    said = (Channel.TELEMETRY, Channel.PRESENCE, Channel.BEAT)
+    said = (Channel.TELEMETRY, Channel.PRESENCE)
     return [topic(board, channel) for channel in Channel if channel not in said]
 
 

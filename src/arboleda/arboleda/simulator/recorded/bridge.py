@@ -23,6 +23,7 @@ from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..world import Passed
+from .boards import fields
 
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
@@ -167,6 +168,9 @@ class _Board:
         self._heard_at = -math.inf
         self._number: int | None = None
         self._boot: int | None = None
+        self._least = (
+            self._least_before
+        ) = -1  # the oldest epoca that counts for the board: now, a step before
         self._returns = 0
         self._plant: int | None = None
         self._plant_before: int | None = None  # after the step before: a beat may come between two reports
@@ -286,6 +290,7 @@ class _Board:
         self._up, self._heard_at = True, delivery.at
         self._number = said.get("seq")
         self._boot = said.get("arranque", self._boot)
+        self._least = max(said.get("epoca_ack", -1), said.get("epoca_min", -1))
         self._telling.append((delivery, len(self._orders)))
 
     def _follow_motion(self, at: float, said: dict[str, Any]) -> None:
@@ -383,7 +388,7 @@ class _Board:
         self._early = [each for each in self._early if each[0] + EARLY_S > now]
         self.touched = bool(self._early)
         self._fell = self._rose = self._heard_beat = self._is_new_plant = False
-        self._plant_before = self._plant
+        self._plant_before, self._least_before = self._plant, self._least
 
     def _compare_foreign(self, report: Report) -> None:
         said = (report.foreign_refused or 0, report.foreign_obeyed or 0)
@@ -393,7 +398,7 @@ class _Board:
             )
 
     def _compare_beats(self, published: list[Publication]) -> None:
-        """Who moves hears that somebody is there; whose motion has ended need not."""
+        """Who moves hears that somebody is there; whose motion has ended need not, unless another is new."""
         ended = not self._may_move
         if self._still_since is not None and not self._by_ids:
             ended |= self._heard_at >= self._still_since + LINGER_S + EXACT
@@ -401,10 +406,17 @@ class _Board:
         if not (published or self._heard_beat):
             return
         beats = any(each.topic.endswith("/latido") for each in published)
-        if beats and ended and before and not any(isinstance(order, Motion) for order, _ in self._orders):
+        needless = beats and not any(self._fences(each) for each in published)
+        if needless and ended and before and not any(isinstance(each, Motion) for each, _ in self._orders):
             self._say(BEATS, f"{self.robot.name} is told that somebody is there, and need not move")
         if self._heard_beat and self._motion is not None and not beats and not self._late:
             self._say(BEATS, f"{self.robot.name} moves, and is not told that somebody is there")
+
+    def _fences(self, publication: Publication) -> bool:
+        """Whether it is a beat of which the board has not said yet that it takes nothing older."""
+        if not self._by_ids or not publication.topic.endswith("/latido"):
+            return False
+        return fields(publication.payload).get("epoca", -1) > min(self._least, self._least_before)
 
     def _compare_orders(self, reports: list[Report], published: list[Publication]) -> None:
         orders = [each for each in published if not each.topic.endswith("/latido")]
