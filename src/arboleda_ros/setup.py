@@ -15,11 +15,14 @@ setup(
     entry_points={
         "arboleda.drivers": [
             "follow_joint_trajectory = arboleda_ros.joint_trajectory:FollowJointTrajectory",
+            "follow_waypoints = arboleda_ros.nav2:FollowWaypoints",
             "gripper_command = arboleda_ros.gripper_command:GripperCommand",
+            "navigate_to_pose = arboleda_ros.nav2:NavigateToPose",
         ],
         "arboleda.links": ["ros = arboleda_ros.link:connect"],
         "arboleda.virtual": [
             "gripper = arboleda_ros.virtual.gripper:controller",
+            "nav2 = arboleda_ros.virtual.nav2:controller",
             "trajectory = arboleda_ros.virtual.trajectory:controller",
         ],
         "console_scripts": [

@@ -10,17 +10,22 @@ from typing import Any
 
 import pytest
 
-from arboleda.drivers import Driver, MotionState, MoveJoints, Report, Stop, StopMode
+from arboleda.drivers import Driver, FollowPath, MotionState, MoveJoints, Report, Stop, StopMode
 from arboleda.drivers.gripper_command.settings import Settings as GripperSettings
 from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
+from arboleda.drivers.nav2.pose import Pose
+from arboleda.drivers.nav2.settings import ToPose, Waypoints
 from arboleda.kinds.declared import Device
+from arboleda.kinds.floor import Placement
 from arboleda.kinds.gripper import GripperSettings as KindSettings
 from arboleda.kinds.gripper import gripper
+from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.model.commands import Command
 from arboleda.model.plant_model import Evidence, Link, Robot
 from arboleda.testing.plants import shipped
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
+from arboleda.virtual.nav2.machine import FAULTS as BASE_FAULTS
 from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
 
 pytestmark = pytest.mark.system
@@ -36,6 +41,17 @@ JAW = Device(
     evidence=Evidence.IDS,
     timeout_s=5.0,
     kind=gripper.of(KindSettings()),
+)
+
+CART = Mobile(
+    name="cart",
+    mqtt="cart",
+    link=Link.DRIVER,
+    evidence=Evidence.IDS,
+    timeout_s=30.0,
+    model="cart",
+    grid=Grid(origin=Placement(x=0.0, y=0.0), pitch=0.5),
+    speed=1.0,
 )
 
 
@@ -100,6 +116,33 @@ def jaw(request: pytest.FixtureRequest, ros_domain: int, quick_discovery: None) 
     virtual.stop()
 
 
+@pytest.fixture(params=[False, True], ids=["pose", "waypoints"])
+def cart(request: pytest.FixtureRequest, ros_domain: int, quick_discovery: None) -> Iterator[Bench]:
+    from arboleda_ros.nav2 import FollowWaypoints, NavigateToPose
+    from arboleda_ros.virtual.nav2 import controller
+
+    settings = Waypoints() if request.param else ToPose()
+    faults = Faults(BASE_FAULTS)
+    virtual = controller(
+        faults,
+        action=settings.action,
+        waypoints=request.param,
+        odometry=settings.odometry,
+        localisation=settings.localisation,
+        frame=settings.frame,
+        start=Pose(0.0, 0.0, math.pi / 2),
+        speed=2.0,
+        rate=50.0,
+        lan=False,
+    )
+    virtual.start()
+    driver = FollowWaypoints(settings) if request.param else NavigateToPose(settings)
+    bench = Bench(driver, CART, faults)
+    yield bench
+    bench.driver.stop()
+    virtual.stop()
+
+
 def told(id: str, verb: str, **values: float) -> Command:
     return JAW.kind.command(id=id, robot="jaw", verb=verb, values=values)
 
@@ -157,3 +200,21 @@ def test_a_part_is_gripped_and_let_go(jaw: Bench) -> None:
     assert jaw.until(lambda report: report.fact("gripped")).fact("width_mm") == pytest.approx(40)
     jaw.driver.send(told("2", "open"))
     assert jaw.until(lambda report: report.fact("gripped") is False).fact("width_mm") == 85.0
+
+
+def test_a_base_is_driven_over_its_nodes(cart: Bench) -> None:
+    assert cart.ready().node == 0
+    cart.driver.send(FollowPath(id="1", robot="cart", nodes=(0, 1, 4)))
+    cart.until(lambda report: report.node == 1)
+    assert cart.until(lambda report: report.done == "1").node == 4
+
+
+def test_a_waypoint_that_is_missed_is_a_failure(cart: Bench) -> None:
+    cart.ready()
+    cart.faults.switch("missed", on=True)
+    cart.driver.send(FollowPath(id="1", robot="cart", nodes=(0, 1, 4)))
+    end = cart.until(lambda report: report.done or report.failed)
+    if isinstance(cart.driver.settings, Waypoints):  # type: ignore[attr-defined]
+        assert end.failure == "missed_waypoints node 1"
+    else:  # each node is a goal, and none of them has several
+        assert end.node == 4

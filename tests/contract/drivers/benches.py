@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 
-from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, opcua, ros, vda5050
+from . import dobot, gripper_command, joint_trajectory, line_tcp, modbus, mqtt, nav2, opcua, ros, vda5050
 from .bench import Bench
 
 BENCHES: dict[str, Bench] = {
@@ -20,3 +20,6 @@ if find_spec("control_msgs"):  # no wheels have it: `make ros-test` builds it, a
     BENCHES["follow_joint_trajectory"] = joint_trajectory.BENCH
     BENCHES["gripper_command"] = gripper_command.BENCH
     BENCHES["gripper_command_parallel"] = gripper_command.PARALLEL_BENCH
+if find_spec("nav2_msgs"):
+    BENCHES["navigate_to_pose"] = nav2.BENCH
+    BENCHES["follow_waypoints"] = nav2.WAYPOINTS_BENCH

@@ -7,11 +7,15 @@ from collections.abc import Collection
 
 import pytest
 
+from arboleda.drivers.nav2.localisation import Counted, Localised
+from arboleda.drivers.nav2.pose import Pose
 from arboleda.drivers.ros_action.events import Answered, Ended, Seen, Status
 from arboleda.drivers.ros_action.joints import JointsSeen
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.gripper import machine as gripper
 from arboleda.virtual.gripper.machine import Grip, GripperBody
+from arboleda.virtual.nav2 import machine as nav2
+from arboleda.virtual.nav2.machine import BaseBody, Drive
 from arboleda.virtual.ros_action.machine import CancelAsked, CancelDecided, GoalAsked, VirtualServer
 from arboleda.virtual.trajectory import machine as trajectory
 from arboleda.virtual.trajectory.machine import ArmBody, Points
@@ -140,6 +144,37 @@ def test_one_that_vanishes_is_started_anew_and_knows_of_no_goal() -> None:
     assert rig.of(Seen) and not rig.of(Ended)
 
 
-@pytest.mark.parametrize("known", [trajectory.FAULTS, gripper.FAULTS])
+def base(*faults: str) -> Rig:
+    on = Faults(nav2.FAULTS, faults)
+    return Rig(VirtualServer(BaseBody(on, start=Pose(1.0, 1.0), speed=1.0), on))
+
+
+def test_a_base_drives_from_pose_to_pose_and_its_odometry_begins_where_it_began() -> None:
+    rig = base()
+    rig.ask(Drive(frame="map", poses=(Pose(2.0, 1.0), Pose(2.0, 2.0, 1.5))))
+    rig.wait(1.9)
+    assert rig.server.body.position == pytest.approx((2.0, 1.0, 0.0), abs=1e-3)
+    rig.wait(2.1)
+    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED)]
+    last = rig.of(Counted)[-1]
+    assert isinstance(last, Counted) and last.pose == Pose(1.0, 1.0, 1.5)
+    assert 5 < len(rig.of(Localised)) < 15, "localisation speaks where it has gone some way"
+
+
+@pytest.mark.parametrize("frame", ["odom", "nowhere"])
+def test_poses_of_another_frame_are_refused(frame: str) -> None:
+    rig = base()
+    rig.ask(Drive(frame=frame, poses=(Pose(2.0, 1.0),)))
+    assert rig.of(Answered) == [Answered(id="1", accepted=False)]
+
+
+def test_a_missed_waypoint_is_named_in_a_success() -> None:
+    rig = base("missed")
+    rig.ask(Drive(frame="map", poses=(Pose(2.0, 1.0), Pose(1.0, 1.5))))
+    rig.wait(4)
+    assert rig.of(Ended) == [Ended(id="1", status=Status.SUCCEEDED, missed=(0,))]
+
+
+@pytest.mark.parametrize("known", [trajectory.FAULTS, gripper.FAULTS, nav2.FAULTS])
 def test_there_are_at_least_ten_faults_each_with_a_sentence(known: dict[str, str]) -> None:
     assert len(known) >= 10 and all(known.values())

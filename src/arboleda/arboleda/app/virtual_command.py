@@ -7,6 +7,7 @@ import typer
 from arboleda.virtual.dobot import command as dobot
 from arboleda.virtual.gripper import command as gripper
 from arboleda.virtual.modbus import command as modbus
+from arboleda.virtual.nav2 import command as nav2
 from arboleda.virtual.opcua import command as opcua
 from arboleda.virtual.trajectory import command as trajectory
 from arboleda.virtual.vda5050 import command as vda5050
@@ -22,3 +23,4 @@ cli.command("modbus", help=modbus.HELP)(modbus.run)
 cli.command("opcua", help=opcua.HELP)(opcua.run)
 cli.command("trajectory", help=trajectory.HELP)(trajectory.run)
 cli.command(gripper.NAME, help=gripper.HELP)(gripper.run)
+cli.command("nav2", help=nav2.HELP)(nav2.run)

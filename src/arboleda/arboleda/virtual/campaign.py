@@ -39,7 +39,6 @@ START_S, EPOCH = 100.0, 7
 TASKS = 4
 LOOKS_S = 1.0  # how often somebody looks what the plant advises
 PATIENCE_S = 240.0  # after the last fault, for the last task
-AFTER_S = 20.0  # so long a fault may be the cause of what fails: the longest deadline of a command is shorter
 
 Hear = Callable[[Report], None]
 Causes = Mapping[str, set[Reason]]
@@ -70,6 +69,7 @@ class Trial(ABC):
     causes: Causes
     work: Sequence[Hashable]
     between_s = 8.0  # two tasks
+    after_s = 20.0  # so long a fault may be the cause of what fails: longer than any command of the task
 
     def __init__(self, faults: Mapping[str, str]) -> None:
         self.faults = Faults(faults)
@@ -262,7 +262,11 @@ class World:
             )
 
     def _possible(self) -> set[Reason]:
-        near = [each.name for each in self.result.faults if each.begins <= self.now <= each.ends + AFTER_S]
+        near = [
+            each.name
+            for each in self.result.faults
+            if each.begins <= self.now <= each.ends + self.trial.after_s
+        ]
         return set().union(*(self.trial.causes[name] for name in near))
 
 

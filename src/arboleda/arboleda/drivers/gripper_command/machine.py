@@ -91,8 +91,10 @@ class GripperMover:
         return self._joint.heard_at > at
 
     def is_at(self, goal: Width) -> bool:
-        """Fingers that close on a part are where they rest, and nowhere before."""
-        return not goal.grips and self._near(goal.width_mm)
+        """Fingers that close on a part are there once they rest."""
+        if goal.grips:
+            return self._joint.rest.holds(self._joint.heard_at) and self._holds(goal)
+        return self._near(goal.width_mm)
 
     def rests(self, now: float, since: float = 0.0) -> bool:
         return self._joint.rest.holds(now, since)

@@ -115,6 +115,8 @@ class Machine:
         there = self._mover.is_at(goal.what)
         if not there and not self._mover.rests(now, since):
             return
+        if not there:
+            self._cancel(now)  # a server that was wrong of its end may go on with it
         objection = self._mover.objection(goal.what)
         self._mover.settle(goal.what)
         if objection:

@@ -1,0 +1,101 @@
+"""Where a base is on its map: what localisation said last, and what odometry has counted since.
+
+Localisation such as amcl speaks only while the base drives, and up to a quarter of a meter apart. Odometry
+speaks many times a second and drifts. Both together are what the frames `map`, `odom` and `base_link` say
+of each other, found without them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from ..ros_action.events import Seen
+from ..ros_action.goal import Rest
+from .pose import Pose, wrapped
+
+SILENT_S = 1.0  # odometry comes many times a second
+KEPT = 200  # poses of odometry, some seconds of it
+STILL_M = 0.005  # or rad; less than this is noise
+
+
+@dataclass(frozen=True, kw_only=True)
+class Localised(Seen):
+    """Localisation says where the base is on the map."""
+
+    pose: Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class Counted(Seen):
+    """Odometry says how far the base has come, from wherever it began."""
+
+    pose: Pose
+
+
+class Localisation:
+    """`far_m` is how far the base may go without a word of localisation, before it counts as lost."""
+
+    def __init__(self, *, odometry: str, localisation: str, far_m: float) -> None:
+        self.heard_at = -math.inf
+        self.rest = Rest(STILL_M)
+        self._odometry, self._localisation, self._far_m = odometry, localisation, far_m
+        self._counted: deque[Counted] = deque(maxlen=KEPT)
+        self._early: Localised | None = None  # came before any odometry
+        self._map: Pose | None = None  # where odometry began, on the map
+        self._gone_m = 0.0  # since localisation spoke
+        self._turned = 0.0  # without a jump from pi to -pi
+
+    @property
+    def pose(self) -> Pose | None:
+        """Where it is on the map; None where nobody has said that."""
+        if self._map is None or not self._counted:
+            return None
+        return self._map @ self._counted[-1].pose
+
+    def see(self, now: float, seen: Seen) -> bool:
+        """Whether that is news: a pose without a number, or with the time of the one before, is none."""
+        if isinstance(seen, Counted) and seen.pose.is_finite:
+            return self._count(now, seen)
+        if isinstance(seen, Localised) and seen.pose.is_finite:
+            self._localise(seen)
+        return False
+
+    def missing(self, now: float) -> str:
+        if now >= self.heard_at + SILENT_S:
+            return f"{self._odometry} has said nothing new for {SILENT_S:g} s"
+        if self._map is None:
+            return f"{self._localisation} has not said yet where the base is"
+        if self._gone_m > self._far_m:
+            return f"{self._localisation} has said nothing new over {self._far_m:g} m of way"
+        return ""
+
+    def _count(self, now: float, seen: Counted) -> bool:
+        before = self._counted[-1] if self._counted else None
+        if before is not None and before.stamp == seen.stamp:
+            return False
+        if before is not None:
+            self._gone_m += before.pose.distance(seen.pose)
+            self._turned += wrapped(seen.pose.yaw - before.pose.yaw)
+        self._counted.append(seen)
+        self.heard_at = now
+        if not self._localisation:
+            self._map, self._gone_m = Pose(0.0, 0.0), 0.0
+        elif self._early is not None:
+            early, self._early = self._early, None
+            self._localise(early)
+        self.rest.look(now, (seen.pose.x, seen.pose.y, self._turned))
+        return self._map is not None
+
+    def _localise(self, seen: Localised) -> None:
+        """Odometry of the same time says where it began on the map."""
+        if not self._counted:
+            self._early = seen
+            return
+        then = min(self._counted, key=lambda each: abs(_seconds(each) - _seconds(seen)))
+        self._map, self._gone_m = seen.pose @ then.pose.inverse, 0.0
+
+
+def _seconds(seen: Seen) -> float:
+    return seen.stamp[0] + seen.stamp[1] / 1e9

@@ -1,0 +1,139 @@
+"""A base that Nav2 drives from node to node of the plant's grid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from arboleda.kinds.mobile import FollowPath, Mobile
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import Robot
+
+from ..ros_action.events import Ended, Seen
+from ..ros_action.machine import Machine
+from ..ros_action.mover import NoGoal, failure
+from .localisation import Localisation
+from .pose import Pose
+from .settings import Settings
+
+
+@dataclass(frozen=True, kw_only=True)
+class Route:
+    """A goal: poses on the map, and the nodes that they are of."""
+
+    frame: str
+    nodes: tuple[int, ...]
+    poses: tuple[Pose, ...]
+
+
+Split = Callable[[Route], tuple[Route, ...]]
+
+
+class BaseMover:
+    """One mobile base, by localisation and odometry; `split` makes goals of a way."""
+
+    replaces = False
+
+    def __init__(self, mobile: Mobile, settings: Settings, split: Split) -> None:
+        self.name = mobile.name
+        self._mobile, self._settings, self._split = mobile, settings, split
+        self._where = Localisation(
+            odometry=settings.odometry,
+            localisation=settings.localisation,
+            far_m=settings.unlocalised_m,
+        )
+        self._node: int | None = None  # the last one that it stood on
+
+    def see(self, now: float, seen: Seen) -> bool:
+        if not self._where.see(now, seen):
+            return False
+        node = self._stands_on()
+        self._node = self._node if node is None else node
+        return True
+
+    def missing(self, now: float) -> str:
+        return self._where.missing(now)
+
+    def goals(self, command: Command) -> tuple[Route, ...]:
+        if not isinstance(command, FollowPath):
+            raise NoGoal(f"Nav2 has no word for {type(command).__name__}")
+        here, *ahead = command.nodes
+        return self._split(self._route(ahead if ahead and here == self._stands_on() else command.nodes))
+
+    def heard_since(self, at: float) -> bool:
+        return self._where.heard_at > at
+
+    def is_at(self, goal: Route) -> bool:
+        return self._stands_on() == goal.nodes[-1]
+
+    def rests(self, now: float, since: float = 0.0) -> bool:
+        return self._where.rest.holds(now, since)
+
+    def failure(self, end: Ended, goal: Route) -> str:
+        if end.missed:  # a server may end so as a success
+            names = ", ".join(str(goal.nodes[each]) for each in end.missed if each < len(goal.nodes))
+            return f"missed_waypoints node {names}" if names else "missed_waypoints"
+        return failure(end, {})
+
+    def objection(self, goal: Route) -> str:
+        """Where it stands on another node, the plant sees that; where on none, its last one says nothing."""
+        return "stands_on_no_node" if self._stands_on() is None else ""
+
+    def settle(self, goal: Route | None) -> None:
+        """Nothing of it outlives its goal."""
+
+    def shows(self, *, busy: bool) -> dict[str, Any]:
+        """Under way, the node that it came by last; at rest, the one that it stands on, if any."""
+        return {"node": self._node if busy else self._stands_on()}
+
+    def _route(self, nodes: Sequence[int]) -> Route:
+        """The poses of nodes, each with the direction in which the base comes there."""
+        places = [self._place(node) for node in nodes]
+        here = self._where.pose
+        assert here is not None
+        poses, before = [], here
+        for place in places:
+            if before.distance(place) > self._settings.tolerance_m:
+                yaw = math.atan2(place.y - before.y, place.x - before.x)
+            else:
+                yaw = before.yaw
+            before = Pose(place.x, place.y, yaw)
+            poses.append(before)
+        return Route(frame=self._settings.frame, nodes=tuple(nodes), poses=tuple(poses))
+
+    def _place(self, node: int) -> Pose:
+        """Where a node is on the map."""
+        grid = self._mobile.grid
+        origin = Pose(grid.origin.x, grid.origin.y, grid.origin.yaw)
+        return self._settings.floor @ origin @ Pose(*grid.position(node))
+
+    def _stands_on(self) -> int | None:
+        pose = self._where.pose
+        if pose is None:
+            return None
+        near = min(range(self._mobile.grid.size), key=lambda node: pose.distance(self._place(node)))
+        return near if pose.distance(self._place(near)) <= self._settings.tolerance_m else None
+
+
+def each_alone(route: Route) -> tuple[Route, ...]:
+    """A goal for each node."""
+    rows = zip(route.nodes, route.poses, strict=True)
+    return tuple(Route(frame=route.frame, nodes=(node,), poses=(pose,)) for node, pose in rows)
+
+
+def all_at_once(route: Route) -> tuple[Route, ...]:
+    return (route,)
+
+
+def machine(devices: Sequence[Robot], settings: Settings, *, split: Split) -> Machine:
+    """ValueError where that is anything but one mobile robot."""
+    if len(devices) != 1 or not isinstance(devices[0], Mobile):
+        raise ValueError("Nav2 drives one mobile robot")
+    return Machine(BaseMover(devices[0], settings, split), settings.action)
+
+
+to_pose = partial(machine, split=each_alone)
+waypoints = partial(machine, split=all_at_once)

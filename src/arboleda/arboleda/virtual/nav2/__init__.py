@@ -1,0 +1,1 @@
+"""A virtual base that Nav2 drives: `arboleda virtual nav2`."""

@@ -1,0 +1,36 @@
+"""Drivers of actions where their messages are missing; the contract of drivers has the rest."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+import pytest
+
+from arboleda.drivers import DriverError
+from arboleda.drivers.joint_trajectory.settings import Settings as ArmSettings
+from arboleda.drivers.nav2.settings import ToPose
+from arboleda.testing.plants import shipped
+from arboleda_ros.joint_trajectory import FollowJointTrajectory
+from arboleda_ros.nav2 import NavigateToPose
+
+CELL = shipped("sis_c").cells[0]
+
+
+@pytest.mark.parametrize(
+    ("driver", "device", "package"),
+    [
+        (FollowJointTrajectory(ArmSettings()), CELL.arm, "control_msgs"),
+        (NavigateToPose(ToPose()), CELL.mobile, "nav2_msgs"),
+    ],
+)
+def test_a_missing_message_package_is_named_in_one_sentence(
+    driver: Any, device: Any, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    apt = f"ros-jazzy-{package.replace('_', '-')}"
+    with pytest.raises(DriverError, match=rf"needs the message package {package}.*apt install {apt}"):
+        driver.start([device], lambda report: None, time.monotonic)
+    driver.stop()

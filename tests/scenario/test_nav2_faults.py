@@ -1,0 +1,51 @@
+"""A base behind the actions of Nav2, under faults; `scripts/driver-faults` runs more seeds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.drivers.ros_action.goal import Rest
+from arboleda.kinds.mobile import Mobile
+from arboleda.virtual import campaign
+from arboleda.virtual.nav2.campaign import BASE_CAUSES, RoundTrial, WaypointsTrial
+from arboleda.virtual.nav2.machine import FAULTS
+
+EXAMPLE = load(Path(__file__).parents[2] / "examples/nav2/plant.yaml")
+SEEDS = 2
+
+
+def breaches(seed: int, *names: str, trial: type[RoundTrial] = RoundTrial) -> list[str]:
+    return campaign.run(trial(EXAMPLE), seed, [f"cart.{name}" for name in names]).breaches
+
+
+@pytest.mark.parametrize("trial", [RoundTrial, WaypointsTrial])
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_no_false_success_no_hang_and_the_right_cause(seed: int, trial: type[RoundTrial]) -> None:
+    assert breaches(seed, trial=trial) == []
+
+
+@pytest.mark.parametrize("fault", ["lie", "early", "short", "stuck", "jump", "unlocalised", "no_odometry"])
+def test_faults_by_themselves(fault: str) -> None:
+    assert breaches(1, fault) == []
+
+
+def test_waypoints_that_are_missed() -> None:
+    assert breaches(1, "missed", trial=WaypointsTrial) == []
+
+
+def test_a_base_that_is_believed_anywhere_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Mobile, "stands_at", lambda self, position, goal: True)
+    assert any("false success" in each for seed in range(3) for each in breaches(seed, "lie"))
+
+
+def test_a_result_that_is_believed_before_rest_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Rest, "holds", lambda self, now, since=0.0: True)
+    monkeypatch.setitem(BASE_CAUSES, "early", set())
+    assert any("wrong cause" in each for seed in range(3) for each in breaches(seed, "early"))
+
+
+def test_every_fault_has_the_reasons_that_it_may_give() -> None:
+    assert set(BASE_CAUSES) == set(FAULTS)
