@@ -15,8 +15,9 @@ from tests.postgres import DATABASE, PASSWORD, USER, Server
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.adapters.postgres.history import PostgresHistory
 from arboleda.adapters.postgres.leadership import Leadership
-from arboleda.adapters.postgres.memory import LEASE_S, RENEW_S, PostgresMemory
+from arboleda.adapters.postgres.memory import PostgresMemory
 from arboleda.adapters.task_rows import TaskQuery
+from arboleda.core.leading import LEASE_S, RENEW_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN

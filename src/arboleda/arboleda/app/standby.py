@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arboleda.adapters.plant_memory import LedElsewhere
+from arboleda.core.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
 
@@ -31,7 +32,6 @@ NEEDED_THEN = (
     "arboleda.recorder.view_log",
     "arboleda.recorder.writing",
 )
-LOOK_S = 0.2
 SAY_S = 1.0  # how often it says to the database that it waits
 NEEDS_STORE = (
     "--standby needs a memory that both hosts reach: write `store: postgresql://USER@HOST/DATABASE` into the"

@@ -7,10 +7,10 @@ import socket
 from dataclasses import dataclass
 from typing import Any
 
+from arboleda.core.leading import LEASE_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
-from .memory import LEASE_S
 from .schema import prepare, schema_of
 from .server import Impatient, checked, connected, explained
 

@@ -13,6 +13,7 @@ from typing import Any, NoReturn, TypeVar
 import psycopg
 
 from arboleda.adapters import clock
+from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Candidate, Lease
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
@@ -20,9 +21,6 @@ from ..plant_memory import LedElsewhere, PlantMemory, Statement, Superseded
 from .schema import SUPERSEDED, prepare, schema_of
 from .server import Impatient, checked, connected, explained, plain_values, translated
 
-LEASE_S = 2.5  # who did not say for so long that he leads may be superseded
-RENEW_S = 0.5
-AGAIN_S = 1.0  # for how long a write is tried again where the server is away, as while it restarts
 PAUSE_S = 0.1
 LEAD = (
     "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
@@ -35,7 +33,6 @@ RENEW = (
     "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL"
     " RETURNING wanted > clock_timestamp() - %s * interval '1 second'"
 )
-WANTED_S = 30.0  # who asked for another leader waits no longer
 T = TypeVar("T")
 
 
@@ -53,7 +50,7 @@ class PostgresMemory(PlantMemory):
         self._renewing: Impatient | None = None  # of the thread that renews
         self._is_open = False
         self._epoch: int | None = None
-        self._leads_until = 0.0  # on the clock of this machine: by then nobody else can lead
+        self._lease = Lease()
 
     def open(self) -> None:
         if self._is_open:
@@ -84,17 +81,18 @@ class PostgresMemory(PlantMemory):
 
     def lead(self, epoch: int) -> int:
         """As for every memory; who was killed and cannot say so is waited for, as long as a lease lasts."""
-        until, first = clock.seconds() + LEASE_S + RENEW_S, self._last_seen()
+        candidate = Candidate(clock.seconds(), self._last_seen())
         while True:
             asked_at = clock.seconds()
             me = plain(socket.gethostname()), os.getpid()
             row = self._asked(LEAD, epoch, *me, WANTED_S, LEASE_S)
             if row is not None:
-                self._epoch, self._leads_until = int(row[0]), asked_at + LEASE_S
+                self._epoch = int(row[0])
+                self._lease.renewed(asked_at)
                 self.going = tuple(json.loads(row[1]))
                 self._asked("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
-            if clock.seconds() > until or self._last_seen() != first:
+            if candidate.gives_up(clock.seconds(), self._last_seen()):
                 self._refuse_second()
             time.sleep(PAUSE_S)
 
@@ -116,18 +114,17 @@ class PostgresMemory(PlantMemory):
             db.execute(statement, values)
 
     def confirm(self) -> None:
-        if clock.seconds() < self._leads_until:
-            return
-        self._patiently(lambda db: self._renew(db))
+        if not self._lease.lasts(clock.seconds()):
+            self._patiently(lambda db: self._renew(db))
 
     def _renew(self, db: Impatient) -> bool:
-        """Say that it leads; the time counts from before it was said. Whether another leader is wanted."""
+        """Say that it leads. Whether another leader is wanted."""
         asked_at = clock.seconds()
         with explained(self.name, ArboledaError, "cannot be reached"):
             row = db.execute(RENEW, (self._epoch, WANTED_S)).fetchone()
         if row is None:
             raise self._superseded(db)
-        self._leads_until = asked_at + LEASE_S
+        self._lease.renewed(asked_at)
         return bool(row[0])
 
     def _write(self, *statements: Statement, durable: bool) -> None:

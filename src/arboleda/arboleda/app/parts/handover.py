@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from arboleda.adapters import clock
-from arboleda.core.cell_states import CellState
+from arboleda.core.leading import all_stand, at_work
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, Verb
 
@@ -30,10 +30,10 @@ class Operated(Protocol):
 
 def hold_all(plant: Operated) -> list[str]:
     """Hold every cell that is at work, and wait until all of them stand; their names."""
-    working = [name for name, state in _states(plant).items() if state == CellState.EXECUTE]
+    working = at_work(_states(plant))
     held = [name for name in working if plant.operate(Verb.HOLD, name).result(HELD_S).refusal is None]
     patience = clock.seconds() + HELD_S
-    while any(_states(plant)[name] == CellState.HOLDING for name in held) and clock.seconds() < patience:
+    while not all_stand(_states(plant), held) and clock.seconds() < patience:
         threading.Event().wait(LOOK_S)
     return held
 

@@ -15,6 +15,7 @@ from uuid import uuid4
 from arboleda.adapters import clock
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.adapters.task_rows import COMMAND, ROS, History, TaskQuery
+from arboleda.core.leading import Standing, may_leave
 from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
@@ -272,11 +273,16 @@ class Orchestrator:
                 self._store.confirm()
             except ArboledaError as error:
                 self._forget(error)
-        if self._amnesia is None or (leaves_unkept(message) and not isinstance(self._amnesia, Superseded)):
-            return True
-        if isinstance(message, Command):
+        leaves = may_leave(message, self._standing)
+        if not leaves and isinstance(message, Command) and self._amnesia is not None:
             raise self._amnesia
-        return False
+        return leaves
+
+    @property
+    def _standing(self) -> Standing:
+        if self._amnesia is None:
+            return Standing.LEADS
+        return Standing.SUPERSEDED if isinstance(self._amnesia, Superseded) else Standing.UNSURE
 
     def _forget(self, error: Exception) -> None:
         """Nothing can be kept any more: the plant ends."""
