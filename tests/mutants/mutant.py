@@ -57,7 +57,7 @@ class Mutant:
 
     `likely` is the one that is tried first: it found the bug last, where those before it take long.
     `rest_s`: how long to wait for everything to come to rest, where that is what it does not do. `any_of`:
-    with tasks that several cells can do.
+    with tasks that several cells can do. `standby`: on two hosts.
     """
 
     invariant: str
@@ -69,6 +69,7 @@ class Mutant:
     cycles: int = 6
     rest_s: float = 600.0
     any_of: bool = False
+    standby: bool = False
 
     def plant(self, patch: pytest.MonkeyPatch) -> None:
         """Bring the bug in."""
@@ -77,8 +78,8 @@ class Mutant:
 
     def climate(self, model: PlantModel, seed: int) -> Climate:
         if isinstance(self.weather, str):
-            return Climate.draw(model, seed, self.weather)
-        return Climate.from_file(model, seed, {"rates": dict(self.weather)})
+            return Climate.draw(model, seed, self.weather, standby=self.standby)
+        return Climate.from_file(model, seed, {"rates": dict(self.weather)}, standby=self.standby)
 
 
 def edit(function: Any, old: str, new: str) -> Edit:

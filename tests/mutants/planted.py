@@ -11,10 +11,12 @@ from arboleda.trees.trail import Known, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
 
+from .leaders import PLANTED_LEADERS
 from .mutant import SHARED, edit, mutant
 from .restarts import DIES, FULL
 
 PLANTED = (
+    *PLANTED_LEADERS,
     mutant(
         "ends_are_proven",
         "A position from before the command counts at joints.",

@@ -12,10 +12,12 @@ from arboleda.app import config
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator import watched
 from arboleda.simulator.invariants import INVARIANTS, Invariant
+from arboleda.simulator.invariants.hosts import HOSTS
 from arboleda.simulator.run import Simulation
 
 from .mutant import Mutant
 
+JUDGES = (*INVARIANTS, *HOSTS)
 _whole: dict[tuple[object, ...], str | None] = {}  # many mutants are found in the same weather
 
 
@@ -36,14 +38,15 @@ def found_at(mutant: Mutant) -> int | None:
 
 def breaks_unplanted(mutant: Mutant, seed: int) -> bool:
     """Whether its invariant breaks at that seed without the bug, too."""
-    key = (seed, mutant.cycles, mutant.rest_s, str(mutant.weather), mutant.any_of)
+    weather = str(mutant.weather), mutant.any_of, mutant.standby
+    key = (seed, mutant.cycles, mutant.rest_s, *weather)
     if key not in _whole:
-        _whole[key] = _broken(mutant, seed, INVARIANTS)
+        _whole[key] = _broken(mutant, seed, JUDGES if mutant.standby else INVARIANTS)
     return _whole[key] is not None and _alone(mutant, seed) == mutant.invariant
 
 
 def _alone(mutant: Mutant, seed: int) -> str | None:
-    return _broken(mutant, seed, [each for each in INVARIANTS if each.name == mutant.invariant])
+    return _broken(mutant, seed, [each for each in JUDGES if each.name == mutant.invariant])
 
 
 def _broken(mutant: Mutant, seed: int, invariants: Sequence[Invariant]) -> str | None:
@@ -52,6 +55,13 @@ def _broken(mutant: Mutant, seed: int, invariants: Sequence[Invariant]) -> str |
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(watched, "REST_S", mutant.rest_s)
         faults = mutant.climate(model, seed).faults
-        simulation = Simulation(model, seed, faults, invariants=invariants, any_of=mutant.any_of)
+        simulation = Simulation(
+            model,
+            seed,
+            faults,
+            invariants=invariants,
+            any_of=mutant.any_of,
+            standby=mutant.standby,
+        )
         broken = simulation.run(cycles=mutant.cycles).broken
     return broken.invariant if broken else None

@@ -14,7 +14,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Heartbeat, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.simulator.chance import Dice
-from arboleda.simulator.faults import KINDS, OF_CRASHES, OF_DEVICES, Fault
+from arboleda.simulator.faults import KINDS, OF_CRASHES, OF_DEVICES, OF_HOSTS, ON_ONE_HOST, Fault
 from arboleda.simulator.faults.foreigners import GARBAGE
 from arboleda.simulator.faults.operators import SAID
 from arboleda.simulator.world import BRIDGE, PLANT, World
@@ -268,7 +268,7 @@ def test_every_kind_is_in_one_of_the_tables():
         "foreign_old",
         "foreign_halt",
     }
-    assert instants | set(LASTING) | set(OF_DEVICES) == set(KINDS)
+    assert instants | set(LASTING) | set(OF_DEVICES) | set(OF_HOSTS) == set(KINDS)
     assert not instants & set(LASTING)
 
 
@@ -307,7 +307,7 @@ def test_an_illegal_fault_is_told_what_is_allowed(wrong, sentence):
 def test_everything_at_once_leaves_nothing_behind(evidence, seed):
     world, ends = world_of(evidence=evidence), []
     dice = Dice(seed, "everything")
-    for number, kind in enumerate(KINDS.values()):
+    for number, kind in enumerate(ON_ONE_HOST.values()):
         if kind.targets(world.model):
             drawn = Fault(kind=kind.name, at=0.0, seed=number, **kind.draw(dice, world.model))
             ends.append(begin(world, drawn))

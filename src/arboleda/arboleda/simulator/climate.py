@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
 from itertools import accumulate
 from typing import Any
@@ -11,12 +11,13 @@ from arboleda.model.plant_model import PlantModel
 
 from .chance import Dice
 from .checks import BadFaults, is_number, only, within
-from .faults import GENERAL, KINDS, OF_CRASHES, Fault, Kind
+from .faults import GENERAL, KINDS, NOT_WITH_STANDBY, OF_CRASHES, OF_HOSTS, ON_ONE_HOST, Fault, Kind
 from .general import is_general
-from .levels import LEVELS
+from .levels import CRASHES, LEVELS
 
 MINUTE_S = 60.0
-CRASHES, CRASH_WEIGHT = "crashes", 8.0  # beside one of each other kind
+HOST_WEIGHT = 3.0  # with a standby: beside one of each other kind
+CRASH_WEIGHT = 8.0  # beside one of each other kind
 
 ABSENT = 0.25  # the share of kinds that a seed does without
 FIELDS = tuple(each.name for each in fields(Fault))
@@ -37,19 +38,22 @@ class Climate:
     told: tuple[Fault, ...] = ()
 
     @classmethod
-    def draw(cls, model: PlantModel, seed: int, level: str) -> Climate:
-        """What a seed has in store at a level of LEVELS: how much in all, and of which kinds how much."""
+    def draw(cls, model: PlantModel, seed: int, level: str, *, standby: bool = False) -> Climate:
+        """What a seed has in store at a level of LEVELS: how much in all, and of which kinds how much.
+
+        `standby`: the plant has two hosts, which much befalls too.
+        """
         if level not in LEVELS:
             raise BadFaults(f"{level!r} is not a level of faults; there are {', '.join(LEVELS)}")
         dice, (low, high) = Dice(seed, "climate"), LEVELS[level]
         total = low * (high / low) ** dice.random() if low else 0.0
-        judged = GENERAL if is_general(model) else KINDS
+        judged = _possible(model, standby=standby)
         kinds = {name: kind for name, kind in KINDS.items() if name in judged and kind.targets(model)}
         weights = {name: _weight(dice, _weight_at(level, kind)) for name, kind in kinds.items()}
         return cls(model=model, seed=seed, rates=_shared(round(total, 3), weights))
 
     @classmethod
-    def from_file(cls, model: PlantModel, seed: int, data: Any) -> Climate:
+    def from_file(cls, model: PlantModel, seed: int, data: Any, *, standby: bool = False) -> Climate:
         """What a file holds: `{"rates": {kind: per minute}}`, `{"faults": [{"kind": ..., "at": s}]}` or both.
 
         What such a fault leaves out is drawn; BadFaults says what is wrong with the first bad one.
@@ -64,6 +68,8 @@ class Climate:
         for number, each in enumerate(listed):
             with within("faults", number):
                 told.append(_told(model, Dice(seed, "told", number), each))
+        for name in (*rates, *(fault.kind for fault in told)):
+            _refuse_hosts(name, standby=standby)
         return cls(model=model, seed=seed, rates=rates, told=tuple(told))
 
     def faults(self, minute: int) -> list[Fault]:
@@ -79,7 +85,21 @@ class Climate:
         return Fault(kind=name, at=at, seed=dice.below(2**32), **KINDS[name].draw(dice, self.model))
 
 
+def _possible(model: PlantModel, *, standby: bool) -> Collection[str]:
+    known = GENERAL if is_general(model) else ON_ONE_HOST
+    return [*(name for name in known if name not in NOT_WITH_STANDBY), *OF_HOSTS] if standby else known
+
+
+def _refuse_hosts(name: str, *, standby: bool) -> None:
+    if name in OF_HOSTS and not standby:
+        raise BadFaults(f"{name} befalls a plant with two hosts: simulate it with --standby")
+    if name in NOT_WITH_STANDBY and standby:
+        raise BadFaults(f"{name} befalls a plant on one host: leave out --standby, or take leader_killed")
+
+
 def _weight_at(level: str, kind: Kind) -> float:
+    if kind.name in OF_HOSTS:
+        return HOST_WEIGHT
     return CRASH_WEIGHT if level == CRASHES and kind.name in OF_CRASHES else kind.weight
 
 

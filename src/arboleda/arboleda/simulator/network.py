@@ -113,6 +113,19 @@ class Broker:
         for topic in client.topics:
             self._listeners.setdefault(topic, []).append(client)
 
+    def leave(self, client: Client) -> None:
+        """A client that never comes back."""
+        client.connect(False)
+        del self.clients[client.name]
+        for topic in client.topics:
+            self._listeners[topic].remove(client)
+
+    def rename(self, client: Client, name: str) -> None:
+        """Another process takes its place under its name."""
+        del self.clients[client.name]
+        client.name = name
+        self.clients[name] = client
+
     def publish(self, publication: Publication, sender: Client | None = None) -> None:
         """Somebody publishes; None: somebody who is no part of the plant, or the broker for a lost client."""
         now = self._clock()

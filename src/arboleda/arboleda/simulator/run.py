@@ -47,6 +47,7 @@ class Simulation:
     `plan` gives the faults of each minute; the same model, seed and plan give the same `digest`. With a
     `script` people do what it says, and none are drawn: the run is as long as that, and until its tasks end.
     With `any_of` customers name several cells for about half of their tasks.
+    `standby`: a second host waits to lead.
     """
 
     def __init__(
@@ -62,9 +63,16 @@ class Simulation:
         make_plant: Callable[..., Plant] | None = None,
         script: Script | None = None,
         any_of: bool = False,
+        standby: bool = False,
     ) -> None:
         self.watched = Watched(
-            model, invariants=invariants, keep=keep, tell=tell, recipes=recipes, make_plant=make_plant
+            model,
+            invariants=invariants,
+            keep=keep,
+            tell=tell,
+            recipes=recipes,
+            make_plant=make_plant,
+            standby=standby,
         )
         self.world, self.trace = self.watched.world, self.watched.trace
         self.result = Result(seed=seed, faults=self.watched.faults)

@@ -12,13 +12,16 @@ from arboleda.model.recipe import Builders
 
 from .faults import KINDS, Fault
 from .general import GeneralTruth, is_general
+from .hosts.database import LeaderRow, SharedDisk
+from .hosts.hosts import Hosts
 from .invariants import Invariant
 from .invariants.invariant import Judges, Look
 from .judged import judged_by
 from .record import Record
+from .recorded.leaders import Leaders
 from .trace import Trace
 from .truth import Truth
-from .world import World
+from .world import FIRST_EPOCH, START_S, World
 
 REST_S = 600.0  # after the last fault, or the end of a task since, everything must have come to rest by then
 STAYS_S = 10.0  # and stay there
@@ -36,7 +39,8 @@ class Broken(Exception):
 class Watched:
     """A world in which every step is judged: Broken leaves the one that breaks an invariant.
 
-    `faults` are those that have begun; their times are in s since `start`.
+    `faults` are those that have begun; their times are in s since `start`. `standby`: a second host waits to
+    lead.
     """
 
     def __init__(
@@ -48,17 +52,21 @@ class Watched:
         tell: Callable[[str], None] | None = None,
         recipes: Builders | None = None,
         make_plant: Callable[..., Plant] | None = None,
+        standby: bool = False,
     ) -> None:
-        self.world = World(model, recipes=recipes, make_plant=make_plant)
+        disk = SharedDisk(LeaderRow(epoch=FIRST_EPOCH + 1, seen=START_S)) if standby else None
+        self.world = World(model, recipes=recipes, make_plant=make_plant, disk=disk)
+        hosts = None if disk is None else Hosts(self.world, disk)
         self._start = self.world.now
         self.faults: list[Fault] = []
         general = is_general(model)
-        self.invariants = tuple(judged_by(model) if invariants is None else invariants)
+        self.invariants = tuple(judged_by(model, standby=standby) if invariants is None else invariants)
         self.trace = Trace(self.world, keep=keep, tell=tell)
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
         truth = GeneralTruth(self.world) if general else Truth(self.world)
-        self._look = Look(world=self.world, truth=truth, record=Record(self.world))
+        leaders = None if hosts is None else Leaders(self.world, hosts)
+        self._look = Look(world=self.world, truth=truth, record=Record(self.world), leaders=leaders)
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 
@@ -125,6 +133,8 @@ class Watched:
         look = self._look
         look.truth.look()
         look.record.look()
+        if look.leaders is not None:
+            look.leaders.look()
         self.trace.look()
         self._raise(self._judges.after_a_step(look))
 

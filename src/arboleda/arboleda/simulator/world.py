@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from heapq import heappop, heappush
 from itertools import count
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
 from arboleda.core.plant import Plant
@@ -39,16 +39,20 @@ from arboleda.wire.hop import HEARTBEAT, FromPlant, command_topic, loses_its_id,
 from arboleda.wire.payloads import Goal
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+if TYPE_CHECKING:
+    from .hosts.hosts import Hosts
 from .disk import Content, Disk, DiskFull, is_kept
 from .network import Broker, Client, Hop, Line
 
 START_S = 100.0  # what its clock says where a world begins
+FIRST_EPOCH = 1000  # of its plant; its bridge has the next one
 PLANT, BRIDGE = "plant", "bridge"
 ENDS_S = 6.0  # how long a plant that ends waits for its robots to stand
 BY_HAND_S = 1.0  # from a robot put right to the word that it is
 AT_ONE_INSTANT = 1000  # passes; more means two machines that never stop talking
 Carry = Callable[[Publication], Iterable[Publication]]
 Part = Callable[[Report], Iterable[Report]]
+Gate = Callable[[Command | Heartbeat], None]
 
 
 class Side(Enum):
@@ -85,6 +89,19 @@ class Ending:
     starts_again: bool = False
 
 
+@dataclass(slots=True, eq=False)
+class Left:
+    """A process that another one has superseded: its plant with what it was told, its bridge with its client,
+    and until when it is frozen.
+    """
+
+    plant: Plant
+    bridge: Bridge
+    client: Client
+    inbox: list[Event]
+    until: float
+
+
 @dataclass(slots=True)
 class Passed:
     """One step of the bridge: what it took in, in order, and what it gave out."""
@@ -111,6 +128,8 @@ class Moment:
     taken: list[FromPlant] = field(default_factory=list)  # what the bridge took in from the plant and others
     published: list[tuple[str, Publication]] = field(default_factory=list)  # (client, what it published)
     delivered: list[tuple[str, Delivery]] = field(default_factory=list)  # (client, what reached it)
+    former: list[Any] = field(default_factory=list)  # what left a process that another one had superseded
+    writes: list[Any] = field(default_factory=list)  # what a store took that two hosts reach
     executed: list[tuple[str, Goal]] = field(default_factory=list)  # (board, command it carries out)
     opened: list[str] = field(default_factory=list)  # boards whose effectors somebody else opened
     bridged: list[Passed] = field(default_factory=list)  # what the bridge took in, and gave out
@@ -127,6 +146,8 @@ class Moment:
         self.taken.clear()
         self.published.clear()
         self.delivered.clear()
+        self.former.clear()
+        self.writes.clear()
         self.executed.clear()
         self.opened.clear()
         self.bridged.clear()
@@ -152,13 +173,16 @@ class World:
         model: PlantModel,
         *,
         now: float = START_S,
-        epoch: int = 1000,
+        epoch: int = FIRST_EPOCH,
         watchers: Iterable[Callable[[], None]] = (),
         carriers: Iterable[Carry] = (),
         recipes: Builders | None = None,
         make_plant: Callable[..., Plant] | None = None,
+        disk: Disk | None = None,
     ) -> None:
         self._make_plant = make_plant
+        self.hosts: Hosts | None = None  # where a second host waits
+        self.gate: Gate | None = None  # asked before a message leaves for the bridge; raises DiskFull
         self.model = model
         self.now = now
         self.moment = Moment()
@@ -166,7 +190,7 @@ class World:
         self.carriers = list(carriers)
         self.partings: dict[str, Part] = {}
         self.before_asking: list[Callable[[], None]] = []  # called before a step in which somebody asks
-        self.disk = Disk()
+        self.disk = disk or Disk()
         self.starts = 1
         self.found = Content()
         self.has_stepped = False  # since it started
@@ -291,6 +315,38 @@ class World:
             if self.plant.now != self.now:
                 self.plant = self._new_plant()
 
+    def change_leaders(self, epoch: int) -> Left | None:
+        """Another process leads from now on, plant and bridge, under that number and on what is kept; what is
+        left of the one before, where that runs."""
+        self._be_gone(self._ending)
+        client, bridge, left = self.broker.clients[BRIDGE], self.bridge, None
+        until = max(self._stalled.pop(PLANT, self.now), self._stalled.pop(BRIDGE, self.now))
+        if PLANT in self._off or bridge is None:
+            self.broker.leave(client)
+        else:
+            left = Left(self.plant, bridge, client, self._plant_inbox, until)
+            self.broker.rename(client, f"{BRIDGE} before {epoch}")
+            self._stalled[client.name] = math.inf  # whoever has it steps it
+        self.fuses.clear()
+        self._writes_until, self._plant_inbox, self.last_fault_at = self.now, [], self.now
+        self._off.discard(PLANT)
+        self.starts += 1
+        self.has_stepped = False
+        self.plant, self._due[PLANT] = self._new_plant(epoch), self.now
+        self.beat_reached_bridge_at = -math.inf
+        self.start_bridge(epoch)
+        return left
+
+    def bury(self, left: Left) -> None:
+        """Nothing is left of a process that led."""
+        self.broker.leave(left.client)
+        del self._stalled[left.client.name]
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether there is a plant that can keep nothing more, and waits for its robots to stand."""
+        return self._ending is not None
+
     def cut_power(self, reached: int) -> None:
         """The plant's machine loses power: of the commits that nothing had synced the first ones stay."""
         if PLANT not in self._off or self._ending is not None:
@@ -405,9 +461,9 @@ class World:
         client.connect(False)
         self._due.pop(BRIDGE, None)
 
-    def start_bridge(self) -> None:
+    def start_bridge(self, epoch: int | None = None) -> None:
         """A new bridge process connects; the broker delivers what it retained."""
-        self.bridge = Bridge(self.model, epoch=next(self._epochs), now=self.now)
+        self.bridge = Bridge(self.model, epoch=next(self._epochs) if epoch is None else epoch, now=self.now)
         self._off.discard(BRIDGE)
         if BRIDGE not in self.broker.clients:
             self.broker.join(Client(BRIDGE, self.bridge.subscriptions))
@@ -573,6 +629,8 @@ class World:
         leaves = isinstance(message, Command | TaskChanged | OperatorAnswer)
         if leaves:
             self._burn(Side.BEFORE)
+        if self.gate is not None and isinstance(message, Command | Heartbeat):
+            self.gate(message)
         self.moment.sent.append(message)
         if isinstance(message, Command | Heartbeat) and self.writes:
             self.at(self._writes_until, self._say_late, (self.plant, message))
@@ -596,7 +654,7 @@ class World:
     def _say_late(self, late: tuple[Plant, Command | Heartbeat]) -> None:
         """What had to wait for a commit leaves after it, unless it is too late or its plant has died."""
         plant, message = late
-        if plant is not self.plant or PLANT in self._off:
+        if plant is not self.plant or PLANT in self._off or not self._leads_still(message):
             return
         if not is_too_late(message, plant, self.now):
             self.moment.late.append((message, self.now - plant.now))
@@ -604,6 +662,15 @@ class World:
         elif isinstance(message, Command):
             why = SENT_TOO_LATE(seconds=self.now - plant.now)
             self._post(Undelivered(at=self.now, id=message.id, robot=message.robot, sentence=why))
+
+    def _leads_still(self, message: Command | Heartbeat) -> bool:
+        """Whether what had to wait may leave; where not, the plant finds out itself with the next one."""
+        try:
+            if self.gate is not None:
+                self.gate(message)
+        except DiskFull:
+            return False
+        return True
 
     def _make_last_words(self) -> None:
         """What the plant was asked and has sent in this step is all that there will be of it."""
@@ -666,12 +733,12 @@ class World:
         if PLANT not in self._off or self._ending is not None:
             self._plant_inbox.append(event)
 
-    def _new_plant(self) -> Plant:
+    def _new_plant(self, epoch: int | None = None) -> Plant:
         self.found = self.disk.found()
         make = self._make_plant or Plant
         return make(
             self.model,
-            epoch=next(self._epochs),
+            epoch=next(self._epochs) if epoch is None else epoch,
             now=self.now,
             memory=self.found.facts,
             kept=self.found.tasks.values(),

@@ -10,7 +10,7 @@ from arboleda.app.simulate.plants import Plant
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
 from arboleda.simulator.chance import Dice
-from arboleda.simulator.faults import KINDS, Fault
+from arboleda.simulator.faults import ON_ONE_HOST, Fault
 from arboleda.simulator.faults.kind import NONE, Kind
 
 from .words import Misuse, known
@@ -50,7 +50,7 @@ def fault(
     seed: int,
 ) -> Fault:
     """The fault; word and amount that are None are drawn, seconds that are None have no end."""
-    of_kind = KINDS[known("a kind of fault", kind, KINDS)]
+    of_kind = ON_ONE_HOST[known("a kind of fault", kind, ON_ONE_HOST)]
     target = _target(of_kind, target, model)
     drawn = of_kind.draw(Dice(seed, "left out"), model, target)
     lasting = math.inf if of_kind.seconds != NONE else 0.0
@@ -69,7 +69,7 @@ def fault(
 
 def must_fit(fault: Fault, model: PlantModel) -> None:
     """Misuse where there can be no such fault in this plant."""
-    objection = KINDS[known("a kind of fault", fault.kind, KINDS)].objection(fault, model)
+    objection = ON_ONE_HOST[known("a kind of fault", fault.kind, ON_ONE_HOST)].objection(fault, model)
     if objection is not None:
         raise Misuse(objection)
 

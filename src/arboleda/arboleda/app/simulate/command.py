@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from arboleda.simulator.levels import LEVELS
+from arboleda.simulator.levels import CRASHES, LEVELS
 
 from ..stores import refuse_without_library
 from ..user_file import check_new, check_writable
@@ -21,6 +21,7 @@ HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, a
 arboleda simulate                            {SEEDS} seeds on two plants
 arboleda simulate --plant my_plant.yaml      your plant
 arboleda simulate --drawn-plants             a plant of its own for each seed
+arboleda simulate --standby                  on two hosts, of which one stands by
 arboleda simulate --until-failure            seed after seed until something breaks
 arboleda simulate --seed 4711 --trace        one seed, line by line, the same every time
 arboleda simulate --seed 4711 --record seed.mcap  and look at it: arboleda replay seed.mcap --page
@@ -68,6 +69,14 @@ AnyOf = Annotated[
         "--any-of", help="Have about half of the tasks name several cells, of which the plant chooses one."
     ),
 ]
+Standby = Annotated[
+    bool,
+    typer.Option(
+        "--standby",
+        help="Simulate each plant on two hosts and one store, with what befalls those: leaders that are"
+        " killed, frozen or cut off, clocks that drift, planned changes.",
+    ),
+]
 UntilFailure = Annotated[bool, typer.Option("--until-failure", help="End at the first broken invariant.")]
 Json = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write what came of every seed to this file.")
@@ -108,6 +117,7 @@ def simulate(
     cycles: Cycles = CYCLES,
     faults: Faults = LEVEL,
     any_of: AnyOf = False,
+    standby: Standby = False,
     until_failure: UntilFailure = False,
     json: Json = None,
     record: Record = None,
@@ -127,6 +137,8 @@ def simulate(
         raise typer.BadParameter("--trace and --record are for one seed; choose it with --seed")
     if drawn_plants and plant is not None:
         raise typer.BadParameter("--drawn-plants and --plant exclude each other")
+    if standby and faults == CRASHES:
+        raise typer.BadParameter("--standby has deaths of its own: leave out --faults crashes")
     request = Request(
         plant=plant,
         drawn_plants=drawn_plants,
@@ -136,6 +148,7 @@ def simulate(
         faults=faults,
         until_failure=until_failure,
         any_of=any_of,
+        standby=standby,
     )
     if worker and (not store or alone or until_failure or jobs is not None):
         raise typer.BadParameter(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ class Told:
     """`climate` is what Climate.from_file and script_from take; of a broken seed also which it is, and how
     long it ran.
 
-    `plant_file` is the content of the plant's file, where it was drawn.
+    `plant_file` is the content of the plant's file, where it was drawn; `standby`: it ran on two hosts.
     """
 
     climate: Any
@@ -34,6 +34,7 @@ class Told:
     plant: str | None = None
     plant_file: dict[str, Any] | None = None
     seconds: float | None = None
+    standby: bool = False
 
 
 def read(path: Path, seed: int | None) -> Told:
@@ -44,7 +45,7 @@ def read(path: Path, seed: int | None) -> Told:
     if SUMMARY not in data:
         return Told(climate=data, plant=_plant(path, data))
     try:
-        return _broken(path, data[SUMMARY], seed)
+        return replace(_broken(path, data[SUMMARY], seed), standby=data.get("standby") is True)
     except (KeyError, TypeError):
         raise ConfigError((f"{path}: is not what `arboleda simulate --json` writes",)) from None
 

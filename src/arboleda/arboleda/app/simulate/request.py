@@ -39,6 +39,12 @@ class Request:
     faults: str = LEVEL
     until_failure: bool = False
     any_of: bool = False
+    standby: bool = False
+
+    @property
+    def two_hosts(self) -> bool:
+        """Whether a second host waits to lead: as asked, or as in the file of a broken seed."""
+        return self.standby or (self.told is not None and self.told.standby)
 
     @property
     def first(self) -> int:
@@ -102,6 +108,7 @@ class Request:
             told=self.told.climate if self.told else None,
             seconds=self.told.seconds if self.told else None,
             any_of=self.any_of,
+            standby=self.two_hosts,
         )
         try:
             for seed in self._checked:
@@ -143,6 +150,7 @@ class Request:
         plant = ["--plant", str(self.plant)] if self.plant else []
         plant += ["--drawn-plants"] if self.drawn_plants and drawn else []
         plant += ["--any-of"] if self.any_of else []
+        plant += ["--standby"] if self.standby else []
         return shlex.join(["arboleda", "simulate", *words, *plant, "--trace"])
 
 

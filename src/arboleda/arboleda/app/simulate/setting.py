@@ -29,7 +29,7 @@ class Setting:
     """`plants` says on which one a seed runs; faults are drawn at `level`, or are as `told`.
 
     A run goes on until `cycles` tasks have ended, or for `seconds` where they are given. With `any_of` about
-    half of the tasks are for several cells.
+    half of the tasks are for several cells. `standby`: on two hosts.
     """
 
     plants: Plants
@@ -38,6 +38,7 @@ class Setting:
     told: Any = None  # what Climate.from_file and script_from take
     seconds: float | None = None
     any_of: bool = False
+    standby: bool = False
 
     def plant(self, seed: int) -> PlantModel:
         """The plant of a seed as it is simulated."""
@@ -46,8 +47,8 @@ class Setting:
     def climate(self, seed: int) -> Climate:
         """The faults of a seed; BadFaults where those that are told cannot be."""
         if self.told is not None:
-            return Climate.from_file(self.plant(seed), seed, self.told)
-        return Climate.draw(self.plant(seed), seed, self.level)
+            return Climate.from_file(self.plant(seed), seed, self.told, standby=self.standby)
+        return Climate.draw(self.plant(seed), seed, self.level, standby=self.standby)
 
     def script(self, plant: PlantModel) -> Script | None:
         """What people do where that is told; BadFaults where it cannot be."""
@@ -84,13 +85,22 @@ class Setting:
             make_plant=make_plant,
             script=script,
             any_of=self.any_of,
+            standby=self.standby,
         )
         return simulation.run(seconds=self.seconds, cycles=self.cycles)
 
     def attempt(self, plant: Plant, seed: int, plan: Plan, seconds: float, *, keep: bool = False) -> Result:
         """A seed on such a plant with these faults, for so long."""
         script = self.script(plant.model)
-        simulation = Simulation(plant.model, seed, plan, keep=keep, script=script, any_of=self.any_of)
+        simulation = Simulation(
+            plant.model,
+            seed,
+            plan,
+            keep=keep,
+            script=script,
+            any_of=self.any_of,
+            standby=self.standby,
+        )
         return simulation.run(seconds=seconds)
 
 

@@ -30,9 +30,8 @@ def campaign_of(request: Request) -> str:
     plants = request.plants.plants if isinstance(request.plants, InTurn) else ()
     contents = [{name: text.hex() for name, text in each.files.contents.items()} for each in plants]
     asked = [__version__, request.first, request.count, request.cycles, request.faults, told, contents]
-    return hashlib.sha256(json.dumps([*asked, request.drawn_plants, request.any_of]).encode()).hexdigest()[
-        :16
-    ]
+    asked += [request.drawn_plants, request.any_of, request.two_hosts]
+    return hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:16]
 
 
 def work(request: Request, console: Console, store: str, file: Path | None) -> int:

@@ -35,6 +35,7 @@ def summary(request: Request, tally: Tally, shrunk: Shrunk | None, *, complete: 
         "drawn_plants": request.drawn_plants,
         "cycles": request.cycles,
         "level": request.faults,
+        "standby": request.two_hosts,
         "complete": complete,
         "totals": {
             "seeds": len(rows),

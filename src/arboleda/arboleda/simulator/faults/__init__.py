@@ -8,6 +8,7 @@ from . import (
     devices,
     effectors,
     foreigners,
+    hosts,
     links,
     operators,
     orchestrators,
@@ -17,7 +18,17 @@ from . import (
 )
 from .kind import Fault, Kind
 
-__all__ = ["GENERAL", "KINDS", "OF_CRASHES", "OF_DEVICES", "Fault", "Kind"]
+__all__ = [
+    "GENERAL",
+    "KINDS",
+    "NOT_WITH_STANDBY",
+    "OF_CRASHES",
+    "OF_DEVICES",
+    "OF_HOSTS",
+    "ON_ONE_HOST",
+    "Fault",
+    "Kind",
+]
 
 FAMILIES = (
     boards,
@@ -31,6 +42,7 @@ FAMILIES = (
     operators,
     foreigners,
     crashes,  # those at the end change nothing of what seeds draw of the others
+    hosts,
 )
 KINDS: dict[str, Kind] = {kind.name: kind for family in FAMILIES for kind in family.KINDS}
 
@@ -40,6 +52,15 @@ OF_DEVICES = tuple(kind.name for kind in devices.KINDS)
 OF_CRASHES = ("plant_crash", *(kind.name for kind in crashes.KINDS))
 """The kinds in which the plant dies; they are drawn at a level of their own."""
 
+OF_HOSTS = tuple(kind.name for kind in hosts.KINDS)
+"""The kinds that befall two hosts: only where a standby is simulated."""
+
+NOT_WITH_STANDBY = frozenset({*OF_CRASHES, "plant_freeze", "bridge_restart"})
+"""The kinds that are of a plant on one host: with a standby others stand for them."""
+
+ON_ONE_HOST = {name: kind for name, kind in KINDS.items() if name not in OF_HOSTS}
+"""The kinds that befall a plant where no standby is simulated."""
+
 OF_STORAGE = frozenset({"bad_task", "flood_of_tasks"})
-GENERAL = tuple(name for name in KINDS if name not in OF_STORAGE)
+GENERAL = tuple(name for name in ON_ONE_HOST if name not in OF_STORAGE)
 """The kinds that befall plants of any devices: those that are left out are made of words of storage."""

@@ -77,6 +77,10 @@ def bridge(model: PlantModel) -> tuple[str, ...]:
     return (BRIDGE,)
 
 
+def store(model: PlantModel) -> tuple[str, ...]:
+    return ("store",)
+
+
 def broker(model: PlantModel) -> tuple[str, ...]:
     return ("broker",)
 

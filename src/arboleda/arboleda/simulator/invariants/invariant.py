@@ -10,6 +10,7 @@ from itertools import compress
 from operator import attrgetter
 
 from ..record import Record
+from ..recorded.leaders import Leaders
 from ..truth import Truth
 from ..world import Moment, World
 
@@ -21,6 +22,7 @@ class Look:
     world: World
     truth: Truth
     record: Record
+    leaders: Leaders | None = None  # where there are two hosts
     moment: Moment = field(init=False)
 
     def __post_init__(self) -> None:
@@ -57,6 +59,10 @@ class When(Enum):
     MET = "truth.zones.meetings"
     FREED = "truth.zones.freed"
     ENTERED = "truth.zones.entries"
+    FORMER = "moment.former"
+    LED_TWICE = "leaders.twice"
+    OLD_NUMBER = "leaders.old"
+    WRONG_HISTORY = "leaders.wrong"
     END = "end"  # once, when everything should be at rest
 
 

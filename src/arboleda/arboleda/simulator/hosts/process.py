@@ -1,0 +1,80 @@
+"""A host, its clock and its way to the store; and a process that leads there, as far as it knows."""
+
+from __future__ import annotations
+
+from collections import Counter
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from arboleda.core.leading import Lease, Standing
+
+if TYPE_CHECKING:
+    from .database import LeaderRow
+
+ANSWER_S = 1.0  # a server that says nothing for so long counts as away
+
+
+class Way(Enum):
+    """What of a host's way to the store is cut."""
+
+    TO = "to the store"
+    BOTH = "both ways"
+    FROM = "from the store"
+
+
+class Host:
+    """One of two; `delay_s`: how long the store takes to answer it, `wall_s`: how far its calendar is ahead,
+    which counts for nothing but the number that it proposes.
+    """
+
+    def __init__(self, name: str, now: float) -> None:
+        self.name = name
+        self.cuts: Counter[Way] = Counter()
+        self.delay_s = 0.0
+        self.wall_s = 0.0
+        self._rate, self._since, self._shown = 1.0, now, now
+
+    def clock(self, now: float) -> float:
+        """What its own clock shows."""
+        return self._shown + self._rate * (now - self._since)
+
+    def run(self, now: float, rate: float) -> None:
+        """Have its clock run so much faster than those of others from now on, or slower."""
+        self._shown, self._since, self._rate = self.clock(now), now, rate
+
+    @property
+    def rate(self) -> float:
+        return self._rate
+
+    @property
+    def reaches(self) -> bool:
+        """Whether what it says comes to the store."""
+        return not (self.cuts[Way.TO] or self.cuts[Way.BOTH])
+
+    @property
+    def hears(self) -> bool:
+        """Whether an answer of the store comes back in time."""
+        return self.reaches and not self.cuts[Way.FROM] and self.delay_s < ANSWER_S
+
+
+class Process:
+    """A process on `host` that led the plant under `epoch`; `standing` is what it knows of that."""
+
+    def __init__(self, host: Host, epoch: int) -> None:
+        self.host = host
+        self.epoch = epoch
+        self.lease = Lease()
+        self.standing = Standing.LEADS
+
+    def confirm(self, row: LeaderRow, now: float) -> Standing:
+        """As a leader does before each message: it asks the store only where its lease may be over."""
+        if self.standing is not Standing.LEADS or self.lease.lasts(self.host.clock(now)):
+            return self.standing
+        took = row.renew(self.epoch, now) if self.host.reaches else None
+        if not self.host.hears:
+            self.standing = Standing.UNSURE
+        elif took is None:
+            self.standing = Standing.SUPERSEDED
+        else:
+            self.lease.renewed(self.host.clock(now))
+        return self.standing

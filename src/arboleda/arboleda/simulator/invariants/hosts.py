@@ -1,0 +1,42 @@
+"""What must hold where a plant has a leader and a standby."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ..recorded.leaders import may_follow
+from .invariant import Invariant, Look, When, invariant
+
+
+@invariant(When.FORMER)
+def one_leader_at_a_time(look: Look) -> Iterator[str]:
+    """Nothing leaves a process that another one has superseded, but the stops of one that cannot find out."""
+    for said in look.moment.former:
+        if not may_follow(said):
+            yield f"who led under number {said.epoch}, and does no more, sends {said.message}"
+
+
+@invariant(When.LED_TWICE)
+def each_number_is_led_once(look: Look) -> Iterable[str]:
+    """A number under which the plant is led belongs to one process, and is higher than any before."""
+    return look.leaders.twice
+
+
+@invariant(When.OLD_NUMBER)
+def old_numbers_have_no_effect(look: Look) -> Iterable[str]:
+    """A board that was led under a number carries out nothing of a lower one, however late it comes."""
+    return look.leaders.old
+
+
+@invariant(When.WRONG_HISTORY)
+def history_is_one(look: Look) -> Iterable[str]:
+    """Only who leads writes; a task is accepted once and ends once; who starts finds all that was taken."""
+    return look.leaders.wrong
+
+
+HOSTS: tuple[Invariant, ...] = (
+    one_leader_at_a_time,
+    each_number_is_led_once,
+    old_numbers_have_no_effect,
+    history_is_one,
+)

@@ -1,0 +1,110 @@
+"""Who led a plant with two hosts, what it let out and what it wrote, apart from what any of them believes."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from arboleda.core.leading import Standing
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import ENDED, Heartbeat, TaskChanged, TaskState
+from arboleda.wire.payloads import Goal
+from arboleda.wire.topics import Channel, parse
+from arboleda.wire.transport import Publication
+
+from ..hosts.database import Write
+from ..hosts.former import Said
+from ..hosts.hosts import Hosts
+from ..world import World
+
+NO_ORDERS = (Channel.STOP, Channel.BEAT)
+
+
+class Leaders:
+    """`twice` are numbers that were led more than once, or that went back; `heard` is, by board, the highest
+    number under which it carried out anything since it booted; `old` what a board carries out in this step of
+    a lower one. `history` is all that the store took of each task, `wrong` what of it is lost or doubled.
+    """
+
+    def __init__(self, world: World, hosts: Hosts) -> None:
+        self._world, self._hosts = world, hosts
+        self._known = 0  # of the numbers
+        self._boots: dict[str, int] = {}
+        self._heard: dict[str, int] = {}
+        self._states: dict[str, TaskState] = {}
+        self._last: Write | None = None
+        self._starts = world.starts
+        self.twice: list[str] = []
+        self.old: list[str] = []
+        self.wrong: list[str] = []
+
+    def look(self) -> None:
+        """Take in what happened in this step."""
+        self.twice, self.old, self.wrong = [], [], []
+        moment = self._world.moment
+        if len(self._hosts.numbers) > self._known:
+            self._look_at_numbers()
+        for board, goal in moment.executed:
+            self._carried_out(board, goal)
+        for write in moment.writes:
+            self._wrote(write)
+        if self._world.starts != self._starts:
+            self._starts = self._world.starts
+            self._look_at_found()
+
+    def _look_at_numbers(self) -> None:
+        numbers = self._hosts.numbers
+        for (before, _), (number, host) in pairwise(numbers):
+            if number <= before:
+                self.twice.append(f"{host} leads under number {number}, after number {before}")
+        self._known = len(numbers)
+
+    def _carried_out(self, board: str, goal: Goal) -> None:
+        """A board that booted knows no numbers any more."""
+        if goal.epoch is None:
+            return
+        boot = self._world.boards[board].boot_id
+        if self._boots.get(board) != boot:
+            self._boots[board] = boot
+            self._heard.pop(board, None)
+        heard = self._heard.get(board, 0)
+        if goal.epoch < heard:
+            self.old.append(f"{board} was led under number {heard}, and carries out {goal}")
+        self._heard[board] = max(heard, goal.epoch)
+
+    def _wrote(self, write: Write) -> None:
+        if write.epoch != write.leads:
+            self.wrong.append(
+                f"who led under number {write.epoch} writes {write.message} while {write.leads} leads"
+            )
+        again = self._last is not None and self._last.message is write.message  # an answer was lost
+        self._last = write
+        if isinstance(write.message, TaskChanged) and not again:
+            self._changed(write.message)
+
+    def _changed(self, said: TaskChanged) -> None:
+        before = self._states.get(said.task)
+        if before in ENDED and said.state is not before:
+            self.wrong.append(f"task {said.task} had ended as {before.value}, is kept as {said.state.value}")
+        if before is None and said.state is not TaskState.QUEUED:
+            self.wrong.append(f"task {said.task} is {said.state.value}, and was never kept as accepted")
+        if before not in ENDED:
+            self._states[said.task] = said.state
+
+    def _look_at_found(self) -> None:
+        """Who starts finds all that the store took."""
+        tasks = self._world.disk.tasks
+        for id, state in self._states.items():
+            found = tasks.get(id)
+            if found is None or found.state is not state:
+                now = "nothing" if found is None else found.state.value
+                self.wrong.append(f"the store took task {id} as {state.value}, and knows of it {now}")
+
+
+def may_follow(said: Said) -> bool:
+    """Whether something may leave a process that another one has superseded: a stop of one that cannot find
+    that out, and the beat without which it does not count; what its bridge makes of that, or stops by itself.
+    """
+    if isinstance(said.message, Publication):
+        return parse(said.message.topic)[1] in NO_ORDERS
+    is_stop = isinstance(said.message, Stop) and said.message.mode is not StopMode.CLEAR
+    return said.standing is Standing.UNSURE and (is_stop or isinstance(said.message, Heartbeat))

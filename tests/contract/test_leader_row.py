@@ -1,0 +1,117 @@
+"""The leader's row of the simulated store does as the statements do on a real server."""
+
+from __future__ import annotations
+
+import random
+
+import psycopg
+import pytest
+from tests.postgres import Server
+
+from arboleda.adapters.plant_memory import Superseded
+from arboleda.adapters.postgres.leadership import Leadership
+from arboleda.adapters.postgres.memory import LEAD, PostgresMemory
+from arboleda.core.leading import LEASE_S, WANTED_S
+from arboleda.model.messages import Fact, Remember
+from arboleda.simulator.hosts.database import LeaderRow
+
+NOW = 1000.0
+AGES_S = (0.3, LEASE_S - 0.5, LEASE_S + 0.5, WANTED_S - 5.0, WANTED_S + 5.0)
+
+
+class Both:
+    """A row and a database to which the same is done; time passes in both as their times grow older."""
+
+    def __init__(self, server: Server, address: str, plant: str) -> None:
+        self.row = LeaderRow(epoch=0)
+        self.others = Leadership(address, plant)
+        self.processes: list[tuple[PostgresMemory, int]] = []
+        self._server, self._address, self._plant = server, address, plant
+        self.others.prepare()
+
+    def lead(self, proposed: int) -> None:
+        expected = self.row.lead(proposed, NOW)
+        if expected is None:  # the process itself would wait for the lease to end
+            with self._connection() as db:
+                values = (proposed, "x", 1, WANTED_S, LEASE_S)
+                assert db.execute(LEAD, values).fetchone() is None
+            return
+        memory = PostgresMemory(self._address, self._plant)
+        memory.open()
+        assert (memory.lead(proposed), tuple(memory.going)) == expected
+        self.processes.append((memory, expected[0]))
+
+    def renew(self, memory: PostgresMemory, epoch: int) -> None:
+        expected = self.row.renew(epoch, NOW)
+        if expected is None:
+            with pytest.raises(Superseded):
+                memory.renew()
+        else:
+            assert memory.renew() is expected
+
+    def write(self, memory: PostgresMemory, epoch: int) -> None:
+        said = Remember(fact=Fact.EFFECTOR, name="ra1", value="on")
+        if self.row.is_fenced(epoch):
+            memory.keep(said)
+        else:
+            with pytest.raises(Superseded):
+                memory.keep(said)
+
+    def hand_over(self, memory: PostgresMemory, epoch: int) -> None:
+        memory.hand_over(["sis_a", f"after {epoch}"])
+        self.row.hand_over(epoch, ["sis_a", f"after {epoch}"])
+
+    def end(self, memory: PostgresMemory, epoch: int) -> None:
+        memory.close()
+        self.row.give_back(epoch)
+        self.processes.remove((memory, epoch))
+
+    def want(self) -> None:
+        self.others.ask_for_handover()
+        self.row.wanted = NOW
+
+    def grow_older(self, seconds: float) -> None:
+        self.row.seen = None if self.row.seen is None else self.row.seen - seconds
+        self.row.wanted = None if self.row.wanted is None else self.row.wanted - seconds
+        with self._connection() as db:
+            db.execute(
+                "UPDATE leader SET seen = seen - %s * interval '1 second',"
+                " wanted = wanted - %s * interval '1 second'",
+                (seconds, seconds),
+            )
+
+    def compare(self) -> None:
+        leader = self.others.leader()
+        assert (leader.epoch, leader.leads) == (self.row.epoch, self.row.leads(NOW))
+
+    def close(self) -> None:
+        for memory, _ in self.processes:
+            memory.close()
+        self.others.close()
+
+    def _connection(self) -> psycopg.Connection:
+        db = self._server.connection()
+        db.execute(f'SET search_path TO "plant_{self._plant}"')
+        return db
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_row_of_the_simulator_does_what_a_server_does(
+    postgres: Server, database: str, plant: str, seed: int
+) -> None:
+    dice, both = random.Random(seed), Both(postgres, database, plant)
+    of_one = (both.renew, both.renew, both.write, both.write, both.hand_over, both.end)
+    try:
+        for _ in range(60):
+            what = dice.randrange(4)
+            if what == 0 or not both.processes:
+                both.lead(dice.randrange(40))
+            elif what == 1:
+                both.grow_older(dice.choice(AGES_S))
+            elif what == 2 and dice.random() < 0.4:
+                both.want()
+            else:
+                dice.choice(of_one)(*dice.choice(both.processes))
+            both.compare()
+    finally:
+        both.close()

@@ -1,0 +1,53 @@
+"""Bugs of a plant with a leader and a standby."""
+
+from __future__ import annotations
+
+from arboleda.core.leading import Lease, may_leave
+from arboleda.sim.receipts import Receipts
+from arboleda.simulator.hosts.database import LeaderRow
+
+from .mutant import edit, mutant
+
+CHANGES = {"leader_frozen": 8.0, "store_cut": 6.0, "store_slow": 3.0, "clock_drift": 4.0, "handover": 2.0}
+LATE = {"leader_frozen": 10.0}
+
+LEADERS = (
+    mutant(
+        "one_leader_at_a_time",
+        "A leader believes for ever that its lease lasts.",
+        edit(Lease.lasts, "now < self._until", "True"),
+        weather=CHANGES,
+        standby=True,
+    ),
+    mutant(
+        "each_number_is_led_once",
+        "A standby leads under the number that it proposes.",
+        edit(LeaderRow.lead, "max(self.epoch + 1, proposed)", "proposed"),
+        weather={**CHANGES, "clock_step": 10.0},
+        standby=True,
+    ),
+    mutant(
+        "old_numbers_have_no_effect",
+        "A board goes by the sequence and not by the number of who leads.",
+        edit(Receipts.objection, "(goal.epoch, goal.seq) <= (self.epoch, last)", "goal.seq <= last"),
+        weather=LATE,
+        likely=4,
+        standby=True,
+    ),
+    mutant(
+        "history_is_one",
+        "The store takes what a leader of before writes.",
+        edit(LeaderRow.is_fenced, "epoch == self.epoch", "True"),
+        weather=CHANGES,
+        standby=True,
+    ),
+)
+PLANTED_LEADERS = (
+    mutant(
+        "one_leader_at_a_time",
+        "Who was superseded still stops the robots of the next leader.",
+        edit(may_leave, "return standing is Standing.LEADS", "return True"),
+        weather=CHANGES,
+        standby=True,
+    ),
+)
