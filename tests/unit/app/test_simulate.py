@@ -169,6 +169,26 @@ def test_a_breach_can_be_replayed_from_the_file(arboleda: Arboleda, faults: Path
 
 
 @pytest.mark.usefixtures("brittle")
+def test_a_breach_on_two_hosts_is_replayed_on_two(arboleda: Arboleda, tmp_path: Path) -> None:
+    faults, out = tmp_path / "killed.yaml", tmp_path / "out.json"
+    told = "[{kind: leader_killed, at: 5}, {kind: reboot, at: 20, target: ra_1}]"
+    faults.write_text(f"faults: {told}\n")
+    ended = arboleda("--standby", "--seed", 3, "--faults", faults, "--json", out)
+    assert " --standby --trace" in ended.said
+    again = arboleda("--faults", out, "--trace")
+    assert again.status == 1 and "reboot ra_1" in again.said and json.loads(out.read_text())["standby"]
+
+
+def test_what_befalls_two_hosts_is_refused_for_one(arboleda: Arboleda, tmp_path: Path) -> None:
+    faults = tmp_path / "killed.yaml"
+    faults.write_text("faults: [{kind: leader_killed, at: 5}]\n")
+    ended = arboleda("--faults", faults)
+    assert ended.status == 2 and "simulate it with --standby" in ended.complained
+    both = arboleda("--standby", "--faults", "crashes")
+    assert both.status == 2 and "leave out --faults crashes" in " ".join(both.complained.split())
+
+
+@pytest.mark.usefixtures("brittle")
 def test_until_failure_goes_on_until_something_breaks(arboleda: Arboleda) -> None:
     ended = arboleda("--until-failure", "--faults", "many")
     assert ended.status == 1 and ended.said.endswith(" 1 seed of 1\n") is ("seed 1 breaks" in ended.said)
