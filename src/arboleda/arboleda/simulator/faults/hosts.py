@@ -40,9 +40,7 @@ LATE = words("", "last packets late")
 
 @kind(targets=whom.plant, words=LATE, seconds=(0.3, 20.0), amount=(0.01, 0.6), weight=0.0)
 def leader_frozen(world: World, fault: Fault) -> End:
-    """The process that leads does nothing for a while, its bridge neither; what it published in the last
-    `amount` s before may lie in its socket until it goes on.
-    """
+    """The leader is frozen; at times its last packets, of `amount` s, lie in its socket until it goes on."""
     ends: list[End] = []
 
     def thaw() -> None:
