@@ -14,6 +14,7 @@ from tests.postgres import DATABASE, PASSWORD, USER, Server
 
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.adapters.postgres.history import PostgresHistory
+from arboleda.adapters.postgres.leaders import Leaders
 from arboleda.adapters.postgres.leadership import Leadership
 from arboleda.adapters.postgres.memory import PostgresMemory
 from arboleda.adapters.task_rows import TaskQuery
@@ -358,3 +359,14 @@ def test_who_is_frozen_with_a_lock_keeps_nobody_out(postgres: Server, database: 
             db.execute(f'UPDATE "plant_{plant}".leader SET epoch = 2')
         assert time.monotonic() - began < 3.0
         frozen.close()
+
+
+def test_all_plants_of_a_database_are_found_with_who_leads_them(database: str, plant: str) -> None:
+    second = f"{plant}_b"
+    with leading(database, plant) as memory, PostgresMemory(database, second):
+        memory.announce("http://10.0.0.1:8080")
+        leaders = Leaders(database)
+        found = {name: each for name, each in leaders.all().items() if name in (plant, second)}
+        leaders.close()
+    assert (found[plant].url, found[plant].leads) == ("http://10.0.0.1:8080", True)
+    assert not found[second].leads

@@ -31,6 +31,7 @@ TOLD_BY = (
     "wire",
     "app.parts",
     "app.plant_file",
+    "app.site",
     "dashboard",
 )
 OTHERS = LANGUAGES[1:]

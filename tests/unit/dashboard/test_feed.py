@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.feed import BEHIND, Feed
+from arboleda.dashboard.feed import Feed
+from arboleda.dashboard.frames import BEHIND
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 

@@ -44,6 +44,7 @@ from . import (
     replay_command,
     report_command,
     service_command,
+    site_command,
     tasks_command,
     token_command,
     tree_command,
@@ -418,6 +419,7 @@ cli.command()(tasks_command.tasks)
 cli.command()(oee_command.oee)
 cli.command()(certs_command.certs)
 cli.command()(handover_command.handover)
+cli.command()(site_command.site)
 backup_command.add_to(cli)
 cli.add_typer(service_command.cli, name="service")
 cli.add_typer(record_command.cli, name="record")

@@ -41,10 +41,14 @@ def running_plants() -> list[Path]:
         return []
 
 
-def _default_root() -> Path:
+def state_root() -> Path:
+    """`$XDG_STATE_HOME`, else `~/.local/state`."""
     base = os.environ.get("XDG_STATE_HOME", "")
-    root = Path(base) if os.path.isabs(base) else Path.home() / ".local" / "state"
-    return root / "arboleda"
+    return Path(base) if os.path.isabs(base) else Path.home() / ".local" / "state"
+
+
+def _default_root() -> Path:
+    return state_root() / "arboleda"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,48 +3,25 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 from arboleda.adapters.task_rows import TaskRow
-from arboleda.views.changes import changed
 
 from .faces import Face
+from .frames import Frames, Viewer
 from .plant_side import PlantSide
 from .story import Story
 
 FRAMES_HZ = 10.0
 BEAT_S = 1.0  # after so long without news the plant is asked, and pages are told that it answers
-BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
 WAITING = 200  # snapshots between two frames; past that the oldest are dropped
 
 log = logging.getLogger(__name__)
-
-
-class Viewer(Protocol):
-    """One open page."""
-
-    language: str
-
-    @property
-    def connected(self) -> bool: ...
-
-    def show(self, number: int, patch: str) -> None:
-        """Send one frame: its number among those that it was sent, and what changed as JSON."""
-
-
-class Seen:
-    """How far one viewer is, in the frames that it was sent."""
-
-    def __init__(self) -> None:
-        self.whole = True  # it has to be told everything
-        self.sent = 0
-        self.seen = 0
 
 
 class Feed:
@@ -54,8 +31,7 @@ class Feed:
         self._plant = plant
         self._told: deque[tuple[float, dict[str, Any]]] = deque(maxlen=WAITING)
         self._story: Story | None = None
-        self._viewers: dict[Viewer, Seen] = {}
-        self._shown: dict[str, Face] = {}
+        self._frames = Frames()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._news: asyncio.Event | None = None
         self._unwatch: Callable[[], None] | None = None
@@ -72,17 +48,15 @@ class Feed:
 
     def add(self, viewer: Viewer) -> None:
         """A page was opened, or is back: it will be told everything."""
-        self._viewers[viewer] = Seen()
+        self._frames.add(viewer)
         self._wake()
 
     def remove(self, viewer: Viewer) -> None:
-        self._viewers.pop(viewer, None)
+        self._frames.remove(viewer)
 
     def seen(self, viewer: Viewer, number: int) -> None:
         """A page says which frame it has shown."""
-        known = self._viewers.get(viewer)
-        if known is not None and 0 <= number <= known.sent:
-            known.seen = max(known.seen, number)
+        self._frames.seen(viewer, number)
 
     def start(self) -> None:
         """Listen to the plant; in the event loop that will `run`."""
@@ -104,7 +78,7 @@ class Feed:
             quiet = not self._news.is_set()
             self._news.clear()
             try:
-                if quiet and self._viewers:
+                if quiet and self._frames.languages:
                     self._told.append((time.time(), self._plant.snapshot()))
                 self.turn(beat=quiet)
             except Exception:  # one frame that cannot be made does not end the page
@@ -122,38 +96,15 @@ class Feed:
         if story is None:
             return
         self._take_in()
-        languages = {viewer.language for viewer in self._viewers}
+        languages = self._frames.languages
         links = self._plant.links() if languages else {}
-        self._shown = {language: self._shown.get(language, {}) for language in languages}
         for language in languages:
-            self._send(language, story.face(language, links), beat=beat)
+            self._frames.send(language, story.face(language, links), beat=beat)
 
     def _take_in(self) -> None:
         while self._told and self._story is not None:
             unix_s, snapshot = self._told.popleft()
             self._story.see(snapshot, unix_s)
-
-    def _send(self, language: str, face: Face, *, beat: bool) -> None:
-        patch = changed(self._shown[language], face)
-        self._shown[language] = face
-        text, everything = json.dumps(patch), ""
-        for viewer, seen in self._viewers.items():
-            if viewer.language != language or not self._ready(viewer, seen):
-                continue
-            if seen.whole:
-                everything = everything or json.dumps(face)
-            elif not patch and not beat:
-                continue
-            seen.sent += 1
-            viewer.show(seen.sent, everything if seen.whole else text)
-            seen.whole = False
-
-    def _ready(self, viewer: Viewer, seen: Seen) -> bool:
-        """Whether a viewer takes a frame; one that is away or behind is told everything later."""
-        if viewer.connected and seen.sent - seen.seen <= BEHIND:
-            return True
-        seen.whole = True
-        return False
 
     def _tell(self, snapshot: dict[str, Any]) -> None:
         self._told.append((time.time(), snapshot))

@@ -10,7 +10,7 @@ from .wording import LANGUAGES, Words
 def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> None:
     """`role` is that of somebody who logged in, None where nobody has to."""
     with tag("header", classes="top"):
-        _stop(words)
+        _stop(words, words("stop.button"), words("does.stop"))
         with tag("div", classes="brand"):
             tag("h1", layout["plant"])
             live("p", "sum", classes="sum", role="status")
@@ -34,10 +34,23 @@ def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, 
         tag("div", id="answer", role="status", aria_live="polite")
 
 
-def _stop(words: Words) -> None:
+def of_site(words: Words, parts: list[str], role: str | None) -> None:
+    """That of the page on many plants."""
+    with tag("header", classes="top"):
+        _stop(words, words("site.stop_all"), words("site.stop_all_does"))
+        with tag("div", classes="brand"):
+            tag("h1", words("site.title"))
+            live("p", "sum", classes="sum", role="status")
+        _tabs(words, parts)
+        _tools(words, role, sounds=False)
+        tag("p", words("page.connecting"), id="connection", role="status", data_lost=words("site.lost"))
+        tag("div", id="answer", role="status", aria_live="polite")
+
+
+def _stop(words: Words, label: str, does: str) -> None:
     """The first thing that the keyboard reaches."""
     with tag("div", classes="stop"):
-        tag("button", words("stop.button"), id="stop", type="button", title=words("does.stop"))
+        tag("button", label, id="stop", type="button", title=does)
         live("p", "stop", classes="stop-state", role="status", aria_live="assertive")
         tag("p", words("stop.held_key"), classes="stop-key")
 

@@ -79,8 +79,8 @@ def fill(
     footer: Callable[[], None] = lambda: None,
 ) -> None:
     """Fill the page of one browser; `header` is given the names of the parts, `script` is its entry."""
-    ui.add_head_html(head(said, script))
     shown = parts_of(parts, layout)
+    ui.add_head_html(head(said, script, *(["twin.js"] if "twin" in shown else [])))
     with tag("div", classes="app"):
         header(list(shown))
         with tag("div", id="parts"):
@@ -97,18 +97,15 @@ def parts_of(parts: Parts, layout: Layout) -> Parts:
     return {name: build for name, build in parts.items() if name != "twin" or layout["places"]["robots"]}
 
 
-def head(said: Words, script: str) -> str:
-    """What the page's head needs: our style, our script, and the few words that the script says itself."""
+def head(said: Words, *scripts: str) -> str:
+    """What the page's head needs: our style, our scripts, and the few words that these say themselves."""
     spoken = {key[3:]: text for key, text in said.flat.items() if key.startswith("js.")}
     data = json.dumps({"language": said.language, "words": spoken}).replace("<", "\\u003c")
     styles = "".join(
         f'<link rel="stylesheet" href="{assets()}/{name}.css">' for name in ("page", "twin", "record")
     )
-    return (
-        f"{styles}<script>window.arboledaPage = {data};</script>"
-        f'<script type="module" src="{assets()}/{script}"></script>'
-        f'<script type="module" src="{assets()}/twin.js"></script>'
-    )
+    modules = "".join(f'<script type="module" src="{assets()}/{name}"></script>' for name in scripts)
+    return f"{styles}<script>window.arboledaPage = {data};</script>{modules}"
 
 
 @cache

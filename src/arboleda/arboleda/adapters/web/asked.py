@@ -10,7 +10,7 @@ from starlette.types import Scope
 from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
-STOP = re.compile(r"/api/(plant|cells/[^/]+)/stop")
+STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}
 FORWARDED = {"forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"}

@@ -9,11 +9,14 @@ const SECOND_WAY_MS = 300;
 const HELD_MS = 800; // longer than a key that closes a question is pressed
 const words = window.arboledaPage.words;
 let scope = "";
+let stopOf = (of) => (of ? `cells/${encodeURIComponent(of)}` : "plant");
 
 export const setScope = (chosen) => (scope = chosen);
 export const connected = () => Boolean(window.socket?.connected && window.did_handshake);
 
-export function start() {
+// `stops` says below which address of the API something is stopped, where that is no plant's.
+export function start(stops = stopOf) {
+  stopOf = stops;
   question.start();
   document.getElementById("stop").addEventListener("click", () => stop(""));
   stopByHeldKey();
@@ -64,11 +67,10 @@ export async function stop(of) {
   button.dataset.s = "asked";
   answer(words.stopping, false);
   const second = new SecondWay(of);
-  const where = of ? `cells/${encodeURIComponent(of)}` : "plant";
   try {
-    const sent = await fetch(`/api/${where}/stop`, { method: "POST", keepalive: true, signal: AbortSignal.timeout(PATIENCE_MS) });
+    const sent = await fetch(`/api/${stopOf(of)}/stop`, { method: "POST", keepalive: true, signal: AbortSignal.timeout(PATIENCE_MS) });
     second.forget();
-    answer(sent.ok ? words.stop_heard : (await sent.json()).sentence, sent.ok);
+    answer((await sent.json()).sentence ?? words.stop_heard, sent.ok);
   } catch {
     second.go();
     if (!isUnderWay()) answer(words.stop_lost, false);

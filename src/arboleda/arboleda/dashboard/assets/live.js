@@ -77,7 +77,7 @@ function drawRow(list, id, row, columns) {
   Object.assign(row.dataset, { row: id, print, s: told.state });
   const titled = columns.some(Boolean);
   row.setAttribute("role", titled ? "row" : "listitem");
-  const cells = told.texts.map((text, n) => ({ text, label: columns[n], name: `column-${n}`, to: told.link?.column === n && told.link.to }));
+  const cells = told.texts.map((text, n) => ({ text, label: columns[n], name: `column-${n}`, ...(told.link?.column === n ? { to: told.link.to, href: told.link.href } : {}) }));
   if (told.acts) cells.push({ acts: told.acts, name: "acts" });
   cells.forEach((said, n) => {
     const before = row.children[n];
@@ -91,12 +91,12 @@ function drawRow(list, id, row, columns) {
   return row;
 }
 
-function cell({ text, label, name, to, acts }) {
+function cell({ text, label, name, to, href, acts }) {
   const made = document.createElement("span");
   made.className = name;
   if (label) made.dataset.label = label;
   if (acts) made.append(...acts.map(offerButton));
-  else made.append(to ? link(text, to) : text);
+  else made.append(to ? link(text, to) : href ? outside(text, href) : text);
   return made;
 }
 
@@ -106,6 +106,11 @@ function link(text, to) {
   made.href = address(to);
   made.textContent = text;
   return made;
+}
+
+// The page of somebody else, who does not learn from where one comes.
+function outside(text, href) {
+  return Object.assign(document.createElement("a"), { href, textContent: text, target: "_blank", rel: "noopener noreferrer" });
 }
 
 function offerButton({ act, of, label, does, asks, by_hand: byHand, refused }) {

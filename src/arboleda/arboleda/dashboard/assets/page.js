@@ -3,7 +3,8 @@
 import * as acts from "./acts.js";
 import * as form from "./form.js";
 import * as history from "./history.js";
-import { apply, onChange, value } from "./live.js";
+import * as frames from "./frames.js";
+import { onChange, value } from "./live.js";
 import * as oee from "./oee.js";
 import * as place from "./place.js";
 import * as question from "./question.js";
@@ -12,19 +13,12 @@ import * as sound from "./sound.js";
 import * as task from "./task.js";
 import * as tree from "./tree.js";
 
-const SILENT_MS = 4000;
-const ACK_EVERY = 5; // frames
 const { all } = shell;
-let heardAt = 0;
-let frames = 0;
 
 window.arboleda = {
   live(number, patch) {
     begin();
-    heardAt = Date.now();
-    apply(patch);
-    if (frames++ % ACK_EVERY === 0) window.emitEvent("arboleda", "seen", number);
-    watch();
+    frames.hear(number, patch);
   },
   answer: shell.answer,
 };
@@ -76,15 +70,6 @@ function clicked(event) {
   if (of !== undefined) chooseScope(of), place.go({ cell: cellOf(of) || null });
 }
 
-// A page that hears nothing any more must not look as if all were well.
-function watch() {
-  const silent = Date.now() - heardAt > SILENT_MS;
-  const line = document.getElementById("connection");
-  document.documentElement.classList.toggle("silent", silent);
-  line.hidden = heardAt > 0 && !silent;
-  if (heardAt > 0 && silent) line.textContent = line.dataset.lost.replace("{time}", `${Math.round((Date.now() - heardAt) / 1000)} s`);
-}
-
 let begun = false;
 
 function begin() {
@@ -105,7 +90,7 @@ function begin() {
   chooseScope("");
   place.start(arrive);
   place.settle({});
-  setInterval(watch, 1000);
+  frames.start();
 }
 
 shell.whenReady(begin);

@@ -1,0 +1,67 @@
+"""Who leads each plant of a database, for whoever looks at all of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from psycopg import sql
+
+from arboleda.model.errors import ArboledaError
+from arboleda.model.outside import plain
+
+from .leadership import Leader
+from .memory import LEASE_S
+from .schema import PREFIX
+from .server import Impatient, checked, connected, explained
+
+PLANTS = (
+    "SELECT table_schema FROM information_schema.columns WHERE table_name = 'leader' AND column_name = 'url'"
+    " AND starts_with(table_schema, %s) ORDER BY table_schema"
+)
+LEADER = (
+    "SELECT {name}, epoch, host, process, url,"
+    " seen IS NOT NULL AND seen > clock_timestamp() - {lease} * interval '1 second',"
+    " (SELECT count(*) FROM {schema}.standby WHERE seen > clock_timestamp() - {lease} * interval '1 second')"
+    " FROM {schema}.leader"
+)
+
+
+class Leaders:
+    """On a connection of its own, for one thread at a time; ArboledaError where the database is away."""
+
+    def __init__(self, address: str) -> None:
+        self._address = checked(address)
+        self._opened: Impatient | None = None
+
+    def all(self) -> dict[str, Leader]:
+        """By the name of the plant; those whose tables this user may read."""
+        with explained(self._address, ArboledaError, "cannot be reached"):
+            db = self._connection()
+            schemas = [row[0] for row in db.execute(PLANTS, (PREFIX,)).fetchall()]
+            if not schemas:
+                return {}
+            rows = db.execute(sql.SQL(" UNION ALL ").join(map(_leader, schemas))).fetchall()
+        return {plain(name): _row(*rest) for name, *rest in rows}
+
+    def close(self) -> None:
+        """Give the connection back; idempotent."""
+        if self._opened is not None:
+            self._opened.close()
+            self._opened = None
+
+    def _connection(self) -> Impatient:
+        if self._opened is None or self._opened.closed:
+            self._opened = connected(self._address, "public")
+        return self._opened
+
+
+def _leader(schema: str) -> sql.Composed:
+    name = sql.Literal(schema.removeprefix(PREFIX))
+    lease = sql.Literal(LEASE_S)
+    return sql.SQL(LEADER).format(name=name, lease=lease, schema=sql.Identifier(schema))
+
+
+def _row(epoch: int, host: str, process: int, url: str, leads: bool, standbys: Any) -> Leader:
+    return Leader(
+        epoch=epoch, host=plain(host), process=process, url=plain(url), leads=leads, standbys=int(standbys)
+    )

@@ -1,0 +1,83 @@
+"""Frames for open pages: to each what changed since the last one that it was sent."""
+
+from __future__ import annotations
+
+import json
+from typing import Protocol
+
+from arboleda.views.changes import changed
+
+from .faces import Face
+
+BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
+
+
+class Viewer(Protocol):
+    """One open page."""
+
+    language: str
+
+    @property
+    def connected(self) -> bool: ...
+
+    def show(self, number: int, patch: str) -> None:
+        """Send one frame: its number among those that it was sent, and what changed as JSON."""
+
+
+class Seen:
+    """How far one viewer is, in the frames that it was sent."""
+
+    def __init__(self) -> None:
+        self.whole = True  # it has to be told everything
+        self.sent = 0
+        self.seen = 0
+
+
+class Frames:
+    """Who looks, and what was shown last in each language."""
+
+    def __init__(self) -> None:
+        self._viewers: dict[Viewer, Seen] = {}
+        self._shown: dict[str, Face] = {}
+
+    @property
+    def languages(self) -> set[str]:
+        """Those in which somebody looks."""
+        return {viewer.language for viewer in self._viewers}
+
+    def add(self, viewer: Viewer) -> None:
+        """A page was opened, or is back: it will be told everything."""
+        self._viewers[viewer] = Seen()
+
+    def remove(self, viewer: Viewer) -> None:
+        self._viewers.pop(viewer, None)
+
+    def seen(self, viewer: Viewer, number: int) -> None:
+        """A page says which frame it has shown."""
+        known = self._viewers.get(viewer)
+        if known is not None and 0 <= number <= known.sent:
+            known.seen = max(known.seen, number)
+
+    def send(self, language: str, face: Face, *, beat: bool) -> None:
+        """Send what is new to each viewer of that language; with `beat` also nothing."""
+        self._shown = {each: self._shown.get(each, {}) for each in self.languages}
+        patch = changed(self._shown[language], face)
+        self._shown[language] = face
+        text, everything = json.dumps(patch), ""
+        for viewer, seen in self._viewers.items():
+            if viewer.language != language or not self._ready(viewer, seen):
+                continue
+            if seen.whole:
+                everything = everything or json.dumps(face)
+            elif not patch and not beat:
+                continue
+            seen.sent += 1
+            viewer.show(seen.sent, everything if seen.whole else text)
+            seen.whole = False
+
+    def _ready(self, viewer: Viewer, seen: Seen) -> bool:
+        """Whether a viewer takes a frame; one that is away or behind is told everything later."""
+        if viewer.connected and seen.sent - seen.seen <= BEHIND:
+            return True
+        seen.whole = True
+        return False

@@ -1,0 +1,134 @@
+"""What the page on many plants shows, as flat plain data: trouble first. Pure."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from arboleda.views.view import standing
+
+from ..faces import Face
+from ..faces.oee import UNKNOWN
+from ..faces.whole import WELL, WORST
+from ..wording import Words
+from .side import PlantSeen
+
+SILENT = "offline"
+ORDER = (SILENT, *WORST)
+Row = dict[str, Any]
+
+
+def face(plants: Sequence[PlantSeen], words: Words) -> Face:
+    """A row for each plant, the one that needs somebody most first; and what they all come to."""
+    in_order = sorted(plants, key=lambda plant: (ORDER.index(state_of(plant)), plant.name))
+    found: Face = {"rows/plants": [plant.name for plant in in_order]}
+    for plant in in_order:
+        found[f"row/plants/{plant.name}"] = _row(plant, words)
+    return found | {"text/sum": _sum(plants, words), "text/title": _title(plants, words)}
+
+
+def state_of(plant: PlantSeen) -> str:
+    """The worst of its cells', SILENT where it does not answer."""
+    if plant.silent is not None or plant.snapshot is None:
+        return SILENT
+    states = [standing(cell) for cell in plant.snapshot["cells"]]
+    return min(states, key=WORST.index, default=WORST[-1])
+
+
+def whole_oee(rows: Iterable[Row]) -> float | None:
+    """That of several cells: each counts by the time for which it was planned; None where nobody can say."""
+    known = [
+        (row["oee"], row["planned_s"]) for row in rows if row["oee"] is not None and row["planned_s"] > 0
+    ]
+    planned_s = sum(seconds for _, seconds in known)
+    return sum(share * seconds for share, seconds in known) / planned_s if planned_s else None
+
+
+def _row(plant: PlantSeen, words: Words) -> Row:
+    state = state_of(plant)
+    tasks = _tasks(plant)
+    texts = [
+        _said(state, words),
+        plant.name,
+        _why(plant, words),
+        words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"])
+        if _is_heard(plant)
+        else "",
+        words("oee.counted", **_ended([plant])) if plant.oee else "",
+        _percent(whole_oee(plant.oee)),
+    ]
+    return {
+        "state": state,
+        "texts": texts,
+        "link": {"column": 1, "href": plant.url} if plant.url.startswith(("http://", "https://")) else None,
+        "acts": [_stop(plant, words)],
+    }
+
+
+def _stop(plant: PlantSeen, words: Words) -> Row:
+    return {
+        "act": "stop",
+        "of": plant.name,
+        "label": words("site.stop_one"),
+        "does": words("site.stop_one_does", plant=plant.name),
+    }
+
+
+def _said(state: str, words: Words) -> str:
+    return words("site.silent") if state == SILENT else words.of("cell_state", state)
+
+
+def _is_heard(plant: PlantSeen) -> bool:
+    return state_of(plant) != SILENT
+
+
+def _why(plant: PlantSeen, words: Words) -> str:
+    """Why it is silent, or what is in the way of its cells; and whether somebody stands by."""
+    parts = [words.say(plant.silent)] if plant.silent is not None else []
+    for cell in plant.snapshot["cells"] if plant.snapshot and plant.silent is None else ():
+        stands = standing(cell)
+        if stands not in WELL:
+            why = cell["held_by"] or cell["not_ready"]
+            parts.append(f"{cell['name']}: {why or words.of('cell_state', stands)}")
+    if plant.standbys and plant.silent is None:
+        parts.append(words("site.stands_by", count=plant.standbys))
+    return "; ".join(parts)
+
+
+def _tasks(plant: PlantSeen) -> Counter[str]:
+    tasks = plant.snapshot["tasks"] if plant.snapshot and _is_heard(plant) else ()
+    return Counter(task["state"] for task in tasks)
+
+
+def _ended(plants: Iterable[PlantSeen]) -> dict[str, int]:
+    rows = [row for plant in plants for row in plant.oee]
+    return {key: sum(row[key] for row in rows) for key in ("done", "failed")}
+
+
+def _sum(plants: Sequence[PlantSeen], words: Words) -> list[str]:
+    """How many plants are in which state, the worst of them colours it; tasks and OEE of all."""
+    states = Counter(map(state_of, plants))
+    there = [state for state in ORDER if state in states]
+    counts = [f"{_said(state, words)}: {states[state]}" for state in there[::-1]]
+    tasks = sum((_tasks(plant) for plant in plants), Counter[str]())
+    figures = [
+        words("site.plants", count=len(plants)),
+        *counts,
+        words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"]),
+        words("oee.counted", **_ended(plants)),
+        f"OEE {_percent(whole_oee(row for plant in plants for row in plant.oee))}",
+    ]
+    return [" · ".join(figures), there[0] if there else ""]
+
+
+def _title(plants: Sequence[PlantSeen], words: Words) -> list[str]:
+    """What a browser's tab says: the plants that need somebody."""
+    bad = sorted(plant.name for plant in plants if state_of(plant) not in WELL)
+    if not bad:
+        return [words("site.title"), "well"]
+    return [f"⚠ {', '.join(bad[:3])}{' ...' if len(bad) > 3 else ''} - {words('site.title')}", "trouble"]
+
+
+def _percent(share: float | None) -> str:
+    return UNKNOWN if share is None else f"{100 * share:.0f} %"
