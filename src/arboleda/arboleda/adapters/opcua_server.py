@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 STARTED_S = 120.0  # a second on a machine that has nothing else to do
 TICK_S = 0.02
+STOPPED_S = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ class OpcUaServer:
     def stop(self) -> None:
         """End every session, and listen no more."""
         self._ending.set()
-        self._thread.join()
+        self._thread.join(STOPPED_S)
 
     async def _run(self) -> None:
         try:

@@ -6,7 +6,7 @@ import random
 import threading
 from collections.abc import Callable, Collection
 
-from ..plc import machine as belt
+from ..plc.machine import FAULTS as BELT_FAULTS
 from ..plc.machine import Belt
 
 FAULTS = {
@@ -15,7 +15,7 @@ FAULTS = {
     "wrong_unit": "answers come from another unit",
     "refuses_reads": "nothing can be read: exception code 2, illegal address",
     "refuses_writes": "nothing can be written: exception code 6, busy",
-    **belt.FAULTS,
+    **BELT_FAULTS,
 }
 INPUTS = ("boot", "alive", "state", "accepted", "done", "rejected", "reason", "failed", "failure")
 PLACES = {"part_at": 10, "mm_s": 11, "seen": 12}
@@ -29,9 +29,16 @@ UNIT_BYTE = {True: 6, False: 0}  # where the unit stands in a packet, by whether
 class BeltMemory:
     """What a Modbus server serves; it passes the time of the program whenever it is asked."""
 
-    def __init__(self, faults: Collection[str], clock: Callable[[], float], *, tcp: bool = True) -> None:
+    def __init__(
+        self,
+        faults: Collection[str],
+        clock: Callable[[], float],
+        *,
+        tcp: bool = True,
+        belt: Belt | None = None,
+    ) -> None:
         self._faults, self._clock, self._tcp = faults, clock, tcp
-        self._belt = Belt(faults=faults)
+        self._belt = belt or Belt(faults=faults)
         self._holding = [0] * 5
         self._lock = threading.Lock()
 

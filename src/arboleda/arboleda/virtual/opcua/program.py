@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 
 from arboleda.adapters.opcua_server import Bad
 
-from ..plc import machine as belt
 from ..plc.machine import ADVANCE, GATE, LOAD, SCAN, Belt
+from ..plc.machine import FAULTS as BELT_FAULTS
 
 FAULTS = {
     "mute": "requests are not answered, and connections stay",
@@ -15,7 +15,7 @@ FAULTS = {
     "bad_status": "the place of the part has the status BadSensorFailure",
     "null": "the place of the part is null",
     "text": "the place of the part is text where a number should be",
-    **belt.FAULTS,
+    **BELT_FAULTS,
 }
 PLACES = ("part_at", "gate", "mm_s", "seen")
 ECHO = ("boot", "alive", "state", "reason", "failure", "accepted", "rejected", "failed", "done")
@@ -38,9 +38,11 @@ class BeltProgram:
         **dict.fromkeys(("Halt", "Latch", "Clear"), ()),
     }
 
-    def __init__(self, faults: Collection[str], clock: Callable[[], float]) -> None:
+    def __init__(
+        self, faults: Collection[str], clock: Callable[[], float], *, belt: Belt | None = None
+    ) -> None:
         self._faults, self._clock = faults, clock
-        self._belt = Belt(faults=faults)
+        self._belt = belt or Belt(faults=faults)
         self._beaten = False
 
     def show(self) -> Mapping[str, object]:

@@ -1,0 +1,89 @@
+"""The belt behind Modbus under its faults: the driver's machine at the PLC's registers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from arboleda.adapters.modbus import Refused
+from arboleda.drivers import Report
+from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
+from arboleda.drivers.modbus.settings import Settings
+from arboleda.model.commands import Command
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import PlantModel
+
+from ..campaign import Causes
+from ..plc.campaign import NO_LINK, BeltTrial
+from ..plc.joined import Broken
+from .memory import FAULTS, BeltMemory
+
+CAUSES: Causes = {
+    "mute": NO_LINK,
+    "noise": NO_LINK,
+    "wrong_unit": NO_LINK,
+    "refuses_reads": NO_LINK,
+    "refuses_writes": {Reason.REJECTED, *NO_LINK},
+}
+FRAME = bytes([0, 1, 0, 0, 0, 5, 1, 3, 2, 0, 7])  # any answer: what the line makes of it
+
+
+class ModbusTrial(BeltTrial):
+    """The example's belt, with the registers of its virtual PLC."""
+
+    driver = "modbus"
+
+    def __init__(self, example: PlantModel) -> None:
+        super().__init__(example, FAULTS, CAUSES)
+        self._memory = BeltMemory(self.faults, lambda: self.now, belt=self.belt)
+
+    def wire(self) -> Registers:
+        assert self.device.driver is not None and isinstance(self.device.driver.settings, Settings)
+        return Registers(ModbusDevice(self.device, self.device.driver.settings), self._memory)
+
+
+class Registers:
+    """Reads and writes of the driver's machine; what is answered goes over the line."""
+
+    def __init__(self, machine: ModbusDevice, memory: BeltMemory) -> None:
+        self._machine, self._memory = machine, memory
+
+    def begin(self) -> None:
+        self._machine.begin(self._read(self._machine.first_blocks))
+
+    def order(self, command: Command) -> str | None:
+        try:
+            for put in self._machine.order(command):
+                self._write(put)
+        except Refused as error:
+            return error.word
+        return None
+
+    def beat(self, number: int) -> None:
+        try:
+            self._write(Put(table="holding", address=4, values=(number,)))
+        except Refused as error:
+            raise Broken(str(error)) from error
+
+    def report(self, at: float) -> Report:
+        return self._machine.report(at, self._read(self._machine.blocks))
+
+    def _read(self, blocks: Sequence[Block]) -> Raw:
+        raw: dict[tuple[str, int], int] = {}
+        for block in blocks:
+            values = self._memory.read(block.table, block.address, block.length)
+            self._hear()
+            if isinstance(values, int):
+                raise Broken(str(Refused(f"to show {block.table} {block.address}", values)))
+            raw |= {(block.table, block.address + at): value for at, value in enumerate(values)}
+        return raw
+
+    def _write(self, put: Put) -> None:
+        code = self._memory.write(put.table, put.address, list(put.values))
+        self._hear()
+        if code is not None:
+            raise Refused(f"to take {put.table} {put.address}", code)
+
+    def _hear(self) -> None:
+        """The answer, as the line carries it."""
+        if self._memory.trace(True, FRAME) != FRAME:
+            raise Broken("the PLC does not answer")

@@ -1,0 +1,107 @@
+"""A plant with a belt behind a PLC under faults: what is done with a part, and what each fault may cause."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from arboleda.kinds.declared import Device
+from arboleda.model.commands import Command, Stop
+from arboleda.model.messages import Reason
+from arboleda.model.plant_model import PlantModel, Robot
+
+from ..campaign import START_S, Causes, Hear, Trial
+from .joined import Joined, Wire
+from .machine import CLOSED, ENTRY, EXIT, OPEN, Belt
+
+NO_LINK = {Reason.LINK_LOST}
+CAUSES: Causes = {
+    "busy": {Reason.REJECTED},
+    "deaf": {Reason.DEADLINE},
+    "slow": {Reason.DEADLINE},
+    "jam": {Reason.DEADLINE},
+    "gives_up": {Reason.DEVICE_FAULT},
+    "forgets": {Reason.DEADLINE},
+    "lies": {Reason.NOT_REACHED, Reason.DEADLINE},
+    "blind": {Reason.NOT_REACHED},
+    "drive_fault": {Reason.DEVICE_FAULT},
+    "reboots": {Reason.REBOOTED},
+    "runs_on": {Reason.STOP_UNCONFIRMED},
+    "frozen": {Reason.DEADLINE, *NO_LINK},  # too short for its link to be lost, it has not noticed an order
+    "nonsense": NO_LINK,
+    "bad_part": {Reason.REJECTED},
+}
+"""Why a task may fail while a fault of the program is there, or soon after it."""
+
+
+@dataclass(kw_only=True)
+class CountedBelt(Belt):
+    """Counts the orders that it has taken."""
+
+    taken: int = 0
+
+    def order(self, now: float, number: int, verb: int, to: int = 0, speed_mm_s: int = 0) -> None:
+        before = self.shown.accepted
+        super().order(now, number, verb, to, speed_mm_s)
+        self.taken += self.shown.accepted != before
+
+
+class BeltTrial(Trial):
+    """A part is taken in and carried to the exit: where it truly was, and how the gate stood."""
+
+    work = ((ENTRY, OPEN), (EXIT, OPEN), (EXIT, CLOSED))
+
+    def __init__(self, example: PlantModel, faults: Mapping[str, str], causes: Causes) -> None:
+        super().__init__(faults)
+        self.model, self.causes = example, {**CAUSES, **causes}
+        (device,) = example.robots.values()
+        assert isinstance(device, Device)
+        self.device, self.now = device, START_S
+        self.belt = CountedBelt(faults=self.faults)
+        self._given = 0
+
+    @property
+    def robots(self) -> Sequence[Robot]:
+        return [self.device]
+
+    def task(self, number: int) -> str:
+        return f"line pass 200 #{number}"
+
+    def join(self, hear: Hear, now: float) -> Joined:
+        return Counted(self, self.wire(), hear, now)
+
+    @abstractmethod
+    def wire(self) -> Wire:
+        """A new machine of the driver, at the line to the PLC."""
+
+    def seen(self) -> tuple[int, int]:
+        return (self.belt.shown.part_at, self.belt.shown.gate)
+
+    def moves(self) -> tuple[int, int]:
+        return (self.belt.taken, self._given)
+
+    def give(self, command: Command) -> None:
+        """Take note of what the driver was given."""
+        self._given += not isinstance(command, Stop)
+
+    def by_hand(self) -> None:
+        """What stands still in a fault is set back at the panel."""
+        self.belt.halt(self.now)
+
+
+class Counted(Joined):
+    """Tells its trial what it was given, and what time it is."""
+
+    def __init__(self, trial: BeltTrial, wire: Wire, hear: Hear, now: float) -> None:
+        super().__init__(trial.device.name, wire, hear, now)
+        self._trial = trial
+
+    def ask(self, command: Command) -> str | None:
+        self._trial.give(command)
+        return super().ask(command)
+
+    def pass_time(self, now: float) -> None:
+        self._trial.now = now
+        self._trial.belt.scan(now)
+        super().pass_time(now)
