@@ -26,6 +26,7 @@ NAMES = (
     "kept",
     "modbus_driver",
     "opcua_driver",
+    "trajectory_driver",
     "simulate",
     "dobot",
 )

@@ -1,6 +1,7 @@
-"""Start the two virtual controllers of this example, and its plant; Ctrl-C ends all of it.
+"""Start the virtual controllers of this example, and its plant; Ctrl-C ends all of it.
 
 python examples/mixed/start.py "line deliver slot_1 200"
+python examples/mixed/start.py --ros2 "line ship slot_1 200"       where ROS 2 with control_msgs is sourced
 """
 
 from __future__ import annotations
@@ -10,8 +11,9 @@ import sys
 from pathlib import Path
 
 ARBOLEDA = Path(sys.executable).with_name("arboleda")  # of the same installation
-PLANT = Path(__file__).with_name("plant.yaml")
+HERE = Path(__file__).parent
 CONTROLLERS = [["dobot", "--enabled"], ["modbus"]]
+WITH_ROS2 = [["vda5050"], ["trajectory"], ["gripper"]]
 ANY_PORT = ["--fault-port", "0"]
 
 
@@ -26,13 +28,16 @@ def controller(options: list[str]) -> subprocess.Popen[str]:
 
 
 def main(options: list[str]) -> int:
+    ros2 = "--ros2" in options
+    plant = HERE / ("plant_ros2.yaml" if ros2 else "plant.yaml")
     running: list[subprocess.Popen[str]] = []
     try:
-        for each in CONTROLLERS:
+        for each in CONTROLLERS + (WITH_ROS2 if ros2 else []):
             running.append(controller(each))
         if any(each.poll() is not None for each in running):
             return 1  # it has said why
-        up = ["up", *options, "--plant", str(PLANT), "--boards", "drivers", "--no-ros"]
+        tasks = [each for each in options if each != "--ros2"]
+        up = ["up", *tasks, "--plant", str(plant), "--boards", "drivers", "--no-ros"]
         return subprocess.run([ARBOLEDA, *up], check=False).returncode
     except KeyboardInterrupt:
         return 0

@@ -23,17 +23,21 @@ def free_ports(count: int) -> list[int]:
     return found
 
 
-def test_a_part_is_delivered_by_one_command(tmp_path: Path, start: Callable[..., Any]) -> None:
-    dobot, feedback, plc = map(str, free_ports(3))
+def copied(tmp_path: Path) -> None:
+    """The example, with ports that are free."""
+    dobot, feedback, plc, broker = map(str, free_ports(4))
     texts = {file.name: file.read_text("utf-8") for file in EXAMPLE.iterdir() if file.is_file()}
+    plant = {
+        "{host: 127.0.0.1}": f"{{host: 127.0.0.1, port: {dobot}, feedback_port: {feedback}}}",
+        "port: 5020": f"port: {plc}",
+    }
     other = {
-        "plant.yaml": {
-            "{host: 127.0.0.1}": f"{{host: 127.0.0.1, port: {dobot}, feedback_port: {feedback}}}",
-            "port: 5020": f"port: {plc}",
-        },
+        "plant.yaml": plant,
+        "plant_ros2.yaml": {**plant, "127.0.0.1:1884": f"127.0.0.1:{broker}"},
         "start.py": {
             '"--enabled"': f'"--enabled", "--port", "{dobot}", "--feedback-port", "{feedback}"',
             '["modbus"]': f'["modbus", "--port", "{plc}"]',
+            '["vda5050"]': f'["vda5050", "--port", "{broker}"]',
         },
     }
     for name, text in texts.items():
@@ -41,6 +45,10 @@ def test_a_part_is_delivered_by_one_command(tmp_path: Path, start: Callable[...,
             assert old in text
             text = text.replace(old, new)
         (tmp_path / name).write_text(text, "utf-8")
+
+
+def test_a_part_is_delivered_by_one_command(tmp_path: Path, start: Callable[..., Any]) -> None:
+    copied(tmp_path)
     state = ("--state", str(tmp_path / "state"))
     plant = start(sys.executable, str(tmp_path / "start.py"), "line deliver slot_1 200", *state)
     plant.wait_for("done      line slot_1 200", patience_s=90)

@@ -88,7 +88,10 @@ def index_of(missed: Any) -> int:
 def pose_of(pose: Any) -> Pose:
     """What of a pose lies on the floor."""
     turned = pose.orientation
-    yaw = math.atan2(2 * (turned.w * turned.z + turned.x * turned.y), 1 - 2 * (turned.y**2 + turned.z**2))
+    # Products, not powers: a power that is too large for a number raises.
+    across = turned.w * turned.z + turned.x * turned.y
+    along = turned.y * turned.y + turned.z * turned.z
+    yaw = math.atan2(2 * across, 1 - 2 * along)
     return Pose(pose.position.x, pose.position.y, yaw)
 
 

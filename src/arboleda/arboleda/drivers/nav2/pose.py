@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+FAR = 1e6  # m; numbers beyond are none that a robot measures, and do not bear to be reckoned with
+
 
 @dataclass(frozen=True)
 class Pose:
@@ -31,7 +33,8 @@ class Pose:
 
     @property
     def is_finite(self) -> bool:
-        return all(map(math.isfinite, (self.x, self.y, self.yaw)))
+        """Whether it is on any floor."""
+        return all(abs(each) < FAR for each in (self.x, self.y, self.yaw))
 
     def distance(self, other: Pose) -> float:
         return math.hypot(self.x - other.x, self.y - other.y)

@@ -10,6 +10,7 @@ from .events import Seen
 from .goal import REST, Rest
 
 SILENT_S = 1.0  # joint states come many times a second
+FAR = 1e6  # m or rad; numbers beyond are none that a robot measures, and do not bear to be reckoned with
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +37,7 @@ class Joints:
             return False
         at = dict(zip(seen.names, seen.positions, strict=True))
         q = tuple(at.get(name, math.nan) for name in self.names)
-        if seen.stamp == self._stamp or not all(math.isfinite(value) for value in q):
+        if seen.stamp == self._stamp or not all(abs(value) < FAR for value in q):
             return False
         self.q, self._stamp, self.heard_at = q, seen.stamp, now
         self.rest.look(now, q)

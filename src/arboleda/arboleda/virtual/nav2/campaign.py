@@ -22,7 +22,7 @@ BASE_CAUSES = {
     "early": BESIDE,  # it rests a moment on each node
     "short": BESIDE,
     "stall": {Reason.DEADLINE, *BESIDE},
-    "stuck": {Reason.DEADLINE, *BESIDE},
+    "stuck": {Reason.DEADLINE, *BESIDE, *NO_LINK},  # then odometry jumps as far as it had gone meanwhile
     "unlocalised": NO_LINK,
     "jump": {*BESIDE, *NO_LINK},
     "no_odometry": NO_LINK,
@@ -45,7 +45,7 @@ class RoundTrial(ActionTrial):
     work = (6, 8, 0)
     parts = (Part(name="cart", machine=driver.to_pose, body=_base, read=_drive, causes=BASE_CAUSES),)
     between_s = 30.0
-    after_s = 40.0
+    after_s = 60.0
 
     def __init__(self, example: PlantModel) -> None:
         super().__init__(example)

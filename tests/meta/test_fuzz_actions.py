@@ -1,0 +1,42 @@
+"""A short run of scripts/fuzz-actions, and that it finds what it is for."""
+
+from __future__ import annotations
+
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.drivers.nav2 import pose
+from arboleda.drivers.ros_action import joints
+
+pytestmark = pytest.mark.requires("rclpy")
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "fuzz-actions"
+RUNS = 400
+
+
+@pytest.fixture(scope="module")
+def fuzz() -> Any:
+    loader = SourceFileLoader("fuzz_actions", str(SCRIPT))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
+
+
+def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
+    seen = fuzz.run(RUNS, 1)
+    assert all(seen[what] > 0 for what in ("refused", "measured", "said")), seen
+
+
+@pytest.mark.parametrize("module", [joints, pose])
+def test_a_number_without_a_limit_would_be_found(
+    fuzz: Any, module: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "FAR", float("inf"))
+    with pytest.raises(AssertionError):
+        fuzz.run(4 * RUNS, 1)
