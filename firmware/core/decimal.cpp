@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kDigits = 512;         // no message is longer
 constexpr int kLeastPoint = -30;     // a value with more zeros behind its point counts as 0
-constexpr int kMostPoint = 7;        // kMaxAngleDeg has so many digits before it
+constexpr int kMostPoint = 11;       // 1e10 has so many digits before its point
 constexpr int kBits = 54;            // of a double, and one to round by
 constexpr int kEndlessExponent = 99999;
 
@@ -126,7 +126,7 @@ bool whole(Text text, uint32_t top, uint32_t* value) {
     return !negative || read == 0;
 }
 
-bool real(Text text, double* value) {
+bool real(Text text, double bound, double* value) {
     Decimal decimal;
     decimal.read(text);
     if (decimal.count == 0 || decimal.point < kLeastPoint) {
@@ -139,7 +139,7 @@ bool real(Text text, double* value) {
     decimal.pad();
     const double magnitude = rounded(decimal);
     *value = decimal.negative ? -magnitude : magnitude;
-    return magnitude <= kMaxAngleDeg;
+    return magnitude <= bound;
 }
 
 uint64_t ten_thousandths(double value) {

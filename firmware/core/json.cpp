@@ -12,7 +12,12 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_hex(char c) { return is_digit(c) || ((c | 0x20) >= 'a' && (c | 0x20) <= 'f'); }
 
-constexpr const char* kLiterals[] = {"true", "false", "null"};
+struct Literal {
+    const char* text;
+    Kind kind;
+};
+
+constexpr Literal kLiterals[] = {{"true", Kind::kTrue}, {"false", Kind::kFalse}, {"null", Kind::kOther}};
 
 bool is_one_of(char c, const char* set) { return c != '\0' && strchr(set, c) != nullptr; }
 
@@ -44,11 +49,16 @@ bool Object::find(const char* key, Value* value) const {
     for (size_t at = 0; at < count_; ++at) {
         const Entry& entry = entries_[at];
         if (same_text(name(entry), wanted)) {
-            *value = {entry.kind, {text_ + entry.value, entry.value_size}};
+            *value = this->value(at);
             return true;
         }
     }
     return false;
+}
+
+Value Object::value(size_t at) const {
+    const Entry& entry = entries_[at];
+    return {entry.kind, {text_ + entry.value, entry.value_size}};
 }
 
 bool Object::has(const char* key) const {
@@ -91,6 +101,9 @@ bool Object::open(bool object) {
     uint8_t& byte = objects_[depth_ / 8];
     const auto bit = static_cast<uint8_t>(1U << depth_ % 8);
     byte = static_cast<uint8_t>(object ? byte | bit : byte & ~bit);
+    if (depth_ == 1 && object) {
+        entries_[count_ - 1].value = static_cast<uint16_t>(at_);
+    }
     ++depth_;
     ++at_;
     wanted_ = object ? Wanted::kFirstKey : Wanted::kFirstItem;
@@ -106,6 +119,9 @@ bool Object::close(bool object) {
     }
     --depth_;
     ++at_;
+    if (depth_ == 1 && object) {
+        keep(Kind::kObject, entries_[count_ - 1].value, at_);
+    }
     wanted_ = depth_ == 0 ? Wanted::kNothing : Wanted::kNext;
     return true;
 }
@@ -226,11 +242,11 @@ bool Object::number() {
 }
 
 bool Object::literal() {
-    for (const char* known : kLiterals) {
-        const size_t length = strlen(known);
-        if (size_ - at_ >= length && memcmp(text_ + at_, known, length) == 0) {
+    for (const Literal& known : kLiterals) {
+        const size_t length = strlen(known.text);
+        if (size_ - at_ >= length && memcmp(text_ + at_, known.text, length) == 0) {
             at_ += length;
-            keep(Kind::kOther, at_, at_);
+            keep(known.kind, at_, at_);
             return true;
         }
     }

@@ -8,11 +8,11 @@
 
 namespace arboleda {
 
-enum class Kind : uint8_t { kInteger, kReal, kWord, kOther };
+enum class Kind : uint8_t { kInteger, kReal, kWord, kTrue, kFalse, kObject, kOther };
 
 struct Value {
     Kind kind = Kind::kOther;
-    Text text;  // of numbers and words; words without their quotes, escapes as they came
+    Text text;  // of numbers, words and objects; words without their quotes, escapes as they came
 };
 
 // Keeps offsets into the bytes it read; they have to outlive it.
@@ -23,6 +23,10 @@ public:
 
     bool find(const char* key, Value* value) const;
     bool has(const char* key) const;
+
+    size_t count() const { return count_; }  // of keys of the outermost object
+    Text key(size_t at) const { return name(entries_[at]); }
+    Value value(size_t at) const;
 
 private:
     enum class Wanted : uint8_t { kValue, kFirstKey, kKey, kFirstItem, kNext, kNothing };

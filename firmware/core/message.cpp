@@ -18,7 +18,7 @@ bool integer(const Object& object, const char* key, uint32_t top, uint32_t* numb
 bool angle(const Object& object, const char* key, double* degrees) {
     Value value;
     const bool number = object.find(key, &value) && (value.kind == Kind::kInteger || value.kind == Kind::kReal);
-    return number && real(value.text, degrees);
+    return number && real(value.text, kMaxAngleDeg, degrees);
 }
 
 // An integer that may be absent; false where it is there and none.
@@ -62,6 +62,14 @@ bool stamped_well(const Message& message) {
 }
 
 }  // namespace
+
+bool read_stamp(const Object& object, Message* message) {
+    if (optional(object, "seq", &message->seq) && optional(object, "epoca", &message->epoch)) {
+        return true;
+    }
+    message->seq = message->epoch = MaybeNumber();
+    return false;
+}
 
 const char* channel_name(Channel channel) { return kChannelNames[static_cast<uint8_t>(channel)]; }
 

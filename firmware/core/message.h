@@ -33,6 +33,11 @@ struct Message {
     Stop stop = Stop::kHalt;
 };
 
+class Object;
+
+// `seq` and `epoca`; false, and neither of them, where one of them is there and none.
+bool read_stamp(const Object& object, Message* message);
+
 // The message that these bytes are for a board with so many axes; retained as the broker flagged it.
 Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained, uint8_t axes);
 

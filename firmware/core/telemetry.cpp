@@ -14,7 +14,9 @@ void maybe(Writer& writer, const char* key, MaybeNumber number) {
     }
 }
 
-void receipts(Writer& writer, const Receipts& receipts) {
+}  // namespace
+
+void write_receipts(Writer& writer, const Receipts& receipts) {
     maybe(writer, "epoca_ack", receipts.epoch());
     if (receipts.least().known && !(receipts.epoch().known && receipts.epoch().value == receipts.least().value)) {
         writer.integer("epoca_min", receipts.least().value);
@@ -27,9 +29,11 @@ void receipts(Writer& writer, const Receipts& receipts) {
     }
 }
 
+namespace {
+
 void ids(Writer& writer, const Telemetry& said) {
     writer.integer("seq", said.number);
-    receipts(writer, said.receipts);
+    write_receipts(writer, said.receipts);
     writer.integer("arranque", said.boot_id);
     writer.integer("ref", said.homed ? 1 : 0);
     writer.integer("efector", said.effector ? 1 : 0);

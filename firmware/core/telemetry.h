@@ -27,6 +27,10 @@ struct Telemetry {
     bool piece = false;
 };
 
+class Writer;
+
+void write_receipts(Writer& writer, const Receipts& receipts);  // `epoca_ack` to `rechazo_seq`
+
 // Compact JSON in `buffer`; its length, or 0 where it does not fit.
 size_t encode(const Telemetry& said, char* buffer, size_t capacity);
 

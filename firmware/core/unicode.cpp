@@ -99,6 +99,16 @@ bool is_utf8(const uint8_t* bytes, size_t size) {
     return true;
 }
 
+bool consists_of(Text text, size_t longest, bool (*is_one)(uint32_t)) {
+    size_t count = 0;
+    for (size_t at = 0; at < text.size; ++count) {
+        if (count == longest || !is_one(decode(text, &at))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool same_text(Text one, Text other) {
     size_t here = 0;
     size_t there = 0;

@@ -33,15 +33,53 @@ void Writer::word(const char* key, const char* value) {
     put('"');
 }
 
+void Writer::boolean(const char* key, bool value) {
+    name(key);
+    text(value ? "true" : "false");
+}
+
+void Writer::whole(const char* key, double value) {
+    name(key);
+    if (value < 0.0) {
+        put('-');
+    }
+    digits(static_cast<uint64_t>(value < 0.0 ? -value : value));
+}
+
+void Writer::open(const char* key, char bracket) {
+    name(key);
+    put(bracket);
+    first_ = true;
+}
+
+void Writer::close(char bracket) {
+    put(bracket);
+    first_ = false;
+}
+
+void Writer::pair(uint32_t number, const char* word) {
+    next();
+    put('[');
+    digits(number);
+    text(",\"");
+    text(word);
+    text("\"]");
+}
+
 size_t Writer::finish() {
     put('}');
     return size_ <= capacity_ ? size_ : 0;
 }
 
-void Writer::name(const char* key) {
-    if (size_ > 1) {
+void Writer::next() {
+    if (!first_) {
         put(',');
     }
+    first_ = false;
+}
+
+void Writer::name(const char* key) {
+    next();
     put('"');
     text(key);
     text("\":");

@@ -17,10 +17,9 @@ constexpr int kRetryMs = 500;
 
 }  // namespace
 
-Link::Link(const Options& options, uint8_t axes) : options_(options), axes_(axes) {
-    for (uint8_t channel = 0; channel < kChannels; ++channel) {
-        const char* name = channel_name(static_cast<Channel>(channel));
-        snprintf(topics_[channel], sizeof topics_[channel], "%s/%s", options.robot, name);
+Link::Link(const Options& options) : options_(options) {
+    for (uint8_t channel = 0; channel < profile::kTopics; ++channel) {
+        snprintf(topics_[channel], sizeof topics_[channel], "%s/%s", options.robot, profile::topic(channel));
     }
     snprintf(presence_, sizeof presence_, "%s/conexion", options.robot);
     snprintf(telemetry_, sizeof telemetry_, "%s/sensores", options.robot);
@@ -61,7 +60,7 @@ bool Link::start() {
     mosquitto_connect_callback_set(
         client_, [](mosquitto*, void* self, int refusal) { static_cast<Link*>(self)->on_connect(refusal); });
     mosquitto_disconnect_callback_set(client_, [](mosquitto*, void* self, int) {
-        static_cast<Link*>(self)->put({Heard::What::kDown, Message()});
+        static_cast<Link*>(self)->put({Heard::What::kDown, profile::Incoming()});
     });
     mosquitto_publish_callback_set(
         client_, [](mosquitto*, void* self, int number) { static_cast<Link*>(self)->last_sent_ = number; });
@@ -106,9 +105,9 @@ int Link::present(const char* there) {
     return trouble == MOSQ_ERR_SUCCESS ? number : 0;
 }
 
-void Link::tell(const Telemetry& said) {
+void Link::tell(const profile::Outgoing& said) {
     char payload[kMessageBytes];
-    const size_t size = encode(said, payload, sizeof payload);
+    const size_t size = profile::write(said, payload, sizeof payload);
     if (size > 0) {
         mosquitto_publish(client_, nullptr, telemetry_, static_cast<int>(size), payload, 0, false);
     }
@@ -119,11 +118,11 @@ void Link::on_connect(int refusal) {
         say_once(mosquitto_connack_string(refusal));
         return;
     }
-    char* topics[kChannels];
-    for (int channel = 0; channel < kChannels; ++channel) {
+    char* topics[profile::kTopics];
+    for (int channel = 0; channel < profile::kTopics; ++channel) {
         topics[channel] = topics_[channel];
     }
-    mosquitto_subscribe_multiple(client_, nullptr, kChannels, topics, 1, 0, nullptr);
+    mosquitto_subscribe_multiple(client_, nullptr, profile::kTopics, topics, 1, 0, nullptr);
 }
 
 void Link::on_subscribe(int count, const int* granted) {
@@ -134,16 +133,15 @@ void Link::on_subscribe(int count, const int* granted) {
         }
     }
     say_once("is there");
-    put({Heard::What::kUp, Message()});
+    put({Heard::What::kUp, profile::Incoming()});
 }
 
 void Link::on_message(const mosquitto_message& received) {
-    for (uint8_t channel = 0; channel < kChannels; ++channel) {
+    for (uint8_t channel = 0; channel < profile::kTopics; ++channel) {
         if (strcmp(topics_[channel], received.topic) == 0) {
             const auto* bytes = static_cast<const uint8_t*>(received.payload);
             const auto size = static_cast<size_t>(received.payloadlen);
-            put({Heard::What::kMessage,
-                 decode(static_cast<Channel>(channel), bytes, size, received.retain, axes_)});
+            put({Heard::What::kMessage, profile::read(channel, bytes, size, received.retain)});
         }
     }
 }

@@ -4,28 +4,27 @@
 #include <mosquitto.h>
 #include <pthread.h>
 
-#include "../core/message.h"
+#include "../core/profile.h"
 #include "../core/ring.h"
-#include "../core/telemetry.h"
 #include "options.h"
 
 namespace arboleda {
 
 struct Heard {
     enum class What : uint8_t { kUp, kDown, kMessage } what = What::kDown;
-    Message message;
+    profile::Incoming message;
 };
 
 class Link {
 public:
-    Link(const Options& options, uint8_t axes);
+    explicit Link(const Options& options);
     ~Link();
 
     bool start();  // false: a sentence was said on standard error
     int wake_fd() const { return wake_[0]; }
     bool take(Heard* heard);
     int present(const char* there);  // `conexion`: "1" or "0", retained; the number of the message
-    void tell(const Telemetry& said);
+    void tell(const profile::Outgoing& said);
 
 private:
     void on_connect(int refusal);
@@ -37,10 +36,9 @@ private:
     void say_once(const char* trouble);
 
     const Options& options_;
-    const uint8_t axes_;
     mosquitto* client_ = nullptr;
     int wake_[2] = {-1, -1};
-    char topics_[kChannels][96] = {};
+    char topics_[profile::kTopics][96] = {};
     char presence_[96] = "";
     char telemetry_[96] = "";
     pthread_t thread_ = {};

@@ -72,7 +72,7 @@ Program::Program(const Options& options)
     : options_(options),
       config_(configured(options)),
       world_(config_),
-      link_(options, config_.robot->axes),
+      link_(options),
       board_(config_, world_, *this) {
     int32_t at[kMostAxes] = {};
     for (int place = 0; place < options.places; ++place) {

@@ -33,33 +33,6 @@ constexpr option kOptions[] = {{"robot", required_argument, nullptr, 'r'},
                                {"help", no_argument, nullptr, '?'},
                                {nullptr, 0, nullptr, 0}};
 
-bool refuse(const char* what, const char* value, const char* allowed) {
-    fprintf(stderr, "board: %s is '%s'; allowed: %s\n", what, value, allowed);
-    return false;
-}
-
-bool good_name(const char* name) {
-    const size_t length = strlen(name);
-    const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
-    return length >= 1 && length <= 64 && strspn(name, letters) == length;
-}
-
-bool read_broker(const char* text, Options* options) {
-    const char* colon = strrchr(text, ':');
-    const size_t length = colon == nullptr ? strlen(text) : static_cast<size_t>(colon - text);
-    char* end = nullptr;
-    const long port = colon == nullptr ? 1883 : strtol(colon + 1, &end, 10);
-    const bool whole = colon == nullptr || (end != colon + 1 && *end == '\0');
-    if (length == 0 || length >= sizeof options->host || !whole || port < 1 || port > 65535) {
-        return refuse("--broker", text, "HOST:PORT, e.g. 127.0.0.1:1883");
-    }
-    const bool bracketed = text[0] == '[' && text[length - 1] == ']';
-    memcpy(options->host, text + (bracketed ? 1 : 0), length - (bracketed ? 2 : 0));
-    options->host[length - (bracketed ? 2 : 0)] = '\0';
-    options->port = static_cast<int>(port);
-    return true;
-}
-
 bool read_pose(const char* what, const char* text, double* pose) {
     char rest = '\0';
     if (sscanf(text, "%lf,%lf,%lf%c", &pose[0], &pose[1], &pose[2], &rest) != 3) {
@@ -98,6 +71,33 @@ bool read_one(int letter, const char* value, Options* options) {
 }
 
 }  // namespace
+
+bool refuse(const char* what, const char* value, const char* allowed) {
+    fprintf(stderr, "board: %s is '%s'; allowed: %s\n", what, value, allowed);
+    return false;
+}
+
+bool good_name(const char* name) {
+    const size_t length = strlen(name);
+    const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+    return length >= 1 && length <= 64 && strspn(name, letters) == length;
+}
+
+bool read_broker(const char* text, Options* options) {
+    const char* colon = strrchr(text, ':');
+    const size_t length = colon == nullptr ? strlen(text) : static_cast<size_t>(colon - text);
+    char* end = nullptr;
+    const long port = colon == nullptr ? 1883 : strtol(colon + 1, &end, 10);
+    const bool whole = colon == nullptr || (end != colon + 1 && *end == '\0');
+    if (length == 0 || length >= sizeof options->host || !whole || port < 1 || port > 65535) {
+        return refuse("--broker", text, "HOST:PORT, e.g. 127.0.0.1:1883");
+    }
+    const bool bracketed = text[0] == '[' && text[length - 1] == ']';
+    memcpy(options->host, text + (bracketed ? 1 : 0), length - (bracketed ? 2 : 0));
+    options->host[length - (bracketed ? 2 : 0)] = '\0';
+    options->port = static_cast<int>(port);
+    return true;
+}
 
 bool read_options(int count, char** words, Options* options, int* status) {
     *status = kBadInput;

@@ -18,6 +18,11 @@ struct Options {
     int places = 0;
 };
 
+// Of one option each; false: a sentence was said on standard error.
+bool good_name(const char* name);
+bool read_broker(const char* text, Options* options);
+bool refuse(const char* what, const char* value, const char* allowed);
+
 // False: a sentence was said on standard error, or the help on standard output.
 bool read_options(int count, char** words, Options* options, int* status);
 

@@ -194,7 +194,18 @@ def mosquitto(
 
 @pytest.fixture(scope="session")
 def compiled_board(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The firmware's board as a program, built once for all workers and outside the checkout.
+    """The firmware's board of an arm as a program."""
+    return _compiled(tmp_path_factory, "board")
+
+
+@pytest.fixture(scope="session")
+def device_board(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The firmware's board of the press of examples/press_board as a program."""
+    return str(Path(_compiled(tmp_path_factory, "device")).with_name("device_board"))
+
+
+def _compiled(tmp_path_factory: pytest.TempPathFactory, target: str) -> str:
+    """What a target of the firmware makes, built once for all workers and outside the checkout.
 
     A test that built it where users do would hide another that needs it without saying so.
     """
@@ -206,8 +217,8 @@ def compiled_board(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = shared_between_workers(tmp_path_factory) / "firmware"
     with folder.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        subprocess.run(["make", "-C", str(ROOT / "firmware"), "board", f"B={folder}"], check=True)
-    return str(folder / "board")
+        subprocess.run(["make", "-C", str(ROOT / "firmware"), target, f"B={folder}"], check=True)
+    return str(folder / target)
 
 
 def shared_between_workers(factory: pytest.TempPathFactory) -> Path:

@@ -24,25 +24,28 @@ EPOCH = 7
 class Desk:
     """A board's program with its console at hand, and a client that hears what it says."""
 
-    def __init__(self, program: str, port: int) -> None:
+    def __init__(
+        self, program: str, port: int, *, name: str = "ra_1", words: tuple[str, ...] = ("--robot", "ra_1")
+    ) -> None:
         self.heard: list[Delivery] = []
+        self._name = name
         self._seq = 0
-        topics = ("ra_1/sensores", "ra_1/conexion")
+        topics = (f"{name}/sensores", f"{name}/conexion")
         address = Address(host="127.0.0.1", port=port)
         self._client = MqttClient("desk", address, subscriptions=topics, on_event=self._hear)
         self._client.start()
         self.program = subprocess.Popen(
-            [program, "--robot", "ra_1", "--broker", f"127.0.0.1:{port}"], stdin=subprocess.PIPE, text=True
+            [program, *words, "--broker", f"127.0.0.1:{port}"], stdin=subprocess.PIPE, text=True
         )
 
     def type(self, line: str) -> None:
         assert self.program.stdin is not None
         print(line, file=self.program.stdin, flush=True)
 
-    def send(self, channel: str, **body: float) -> None:
+    def send(self, channel: str, **body: Any) -> None:
         self._seq += 1
         payload = json.dumps({**body, "seq": self._seq, "epoca": EPOCH}).encode()
-        self._client.publish(Publication(topic=f"ra_1/{channel}", payload=payload))
+        self._client.publish(Publication(topic=f"{self._name}/{channel}", payload=payload))
 
     def wait(self, such: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """The first telemetry from now on that is such."""

@@ -1,20 +1,19 @@
 // What the network task and the motion task hand each other; neither waits for the other.
 #pragma once
 
-#include "message.h"
+#include "profile.h"
 #include "ring.h"
-#include "telemetry.h"
 
 namespace arboleda {
 
 struct Heard {
     enum class What : uint8_t { kUp, kDown, kMessage } what = What::kDown;
-    Message message;
+    profile::Incoming message;
 };
 
 struct Said {
     bool present = false;  // `conexion` 1, else the telemetry
-    Telemetry telemetry;
+    profile::Outgoing telemetry;
 };
 
 struct Exchange {

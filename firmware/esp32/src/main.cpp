@@ -12,10 +12,14 @@
 #include "console.h"
 #include "exchange.h"
 #include "keepsakes.h"
-#include "machine.h"
 #include "motion.h"
 #include "network.h"
 #include "settings.h"
+#ifdef ARBOLEDA_DEVICE
+#include "device_machine.h"
+#else
+#include "machine.h"
+#endif
 
 namespace {
 
@@ -44,7 +48,11 @@ void keep_house(void*) {
 }  // namespace
 
 void setup() {
+#ifdef ARBOLEDA_DEVICE
+    make_outputs_safe();
+#else
     restore_effector();
+#endif
     Serial.begin(115200);
     settings = load_settings();
     start_motion(settings, boot_id(boots_counted(), esp_random()), &exchange);

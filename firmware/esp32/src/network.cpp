@@ -42,13 +42,13 @@ private:
     void on_piece(const espMqttClientTypes::MessageProperties& properties, const char* topic,
                   const uint8_t* piece, size_t size, size_t index, size_t total);
     void on_message(const char* topic, bool retained, size_t total);
-    void put(Heard::What what) { exchange_.heard.put({what, Message()}); }
+    void put(Heard::What what) { exchange_.heard.put({what, profile::Incoming()}); }
     void say(const Said& said);
 
     const Settings settings_;
     Exchange& exchange_;
     Client client_{kPriority, kCore};
-    char topics_[kChannels][kTopic] = {};
+    char topics_[profile::kTopics][kTopic] = {};
     char presence_[kTopic] = "";
     char telemetry_[kTopic] = "";
     uint8_t message_[kMessageBytes] = {};  // one that comes in pieces
@@ -58,8 +58,8 @@ private:
 Network* network = nullptr;
 
 void Network::name_topics() {
-    for (uint8_t channel = 0; channel < kChannels; ++channel) {
-        snprintf(topics_[channel], kTopic, "%s/%s", settings_.robot, channel_name(static_cast<Channel>(channel)));
+    for (uint8_t channel = 0; channel < profile::kTopics; ++channel) {
+        snprintf(topics_[channel], kTopic, "%s/%s", settings_.robot, profile::topic(channel));
     }
     snprintf(presence_, kTopic, "%s/conexion", settings_.robot);
     snprintf(telemetry_, kTopic, "%s/sensores", settings_.robot);
@@ -110,7 +110,11 @@ void Network::turn() {
 }
 
 void Network::on_connect() {
+#ifdef ARBOLEDA_DEVICE
+    client_.subscribe(topics_[0], 1, topics_[1], 1, topics_[2], 1);
+#else
     client_.subscribe(topics_[0], 1, topics_[1], 1, topics_[2], 1, topics_[3], 1, topics_[4], 1);
+#endif
 }
 
 // A board that cannot hear its commands does not say that it is there.
@@ -134,12 +138,11 @@ void Network::on_piece(const espMqttClientTypes::MessageProperties& properties, 
 }
 
 void Network::on_message(const char* topic, bool retained, size_t total) {
-    for (uint8_t channel = 0; channel < kChannels; ++channel) {
+    for (uint8_t channel = 0; channel < profile::kTopics; ++channel) {
         if (strcmp(topics_[channel], topic) == 0) {
             // one that is too long was not kept: as an empty one it is refused as well
             const size_t size = total <= kMessageBytes ? total : 0;
-            const auto on = static_cast<Channel>(channel);
-            exchange_.heard.put({Heard::What::kMessage, decode(on, message_, size, retained, kScara.axes)});
+            exchange_.heard.put({Heard::What::kMessage, profile::read(channel, message_, size, retained)});
         }
     }
 }
@@ -150,7 +153,7 @@ void Network::say(const Said& said) {
         return;
     }
     char payload[kMessageBytes];
-    const size_t size = encode(said.telemetry, payload, sizeof payload);
+    const size_t size = profile::write(said.telemetry, payload, sizeof payload);
     if (size > 0) {
         client_.publish(telemetry_, 0, false, reinterpret_cast<const uint8_t*>(payload), size);
     }

@@ -1,8 +1,11 @@
 #include "settings.h"
 
 #include <Preferences.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "profile.h"
 
 namespace arboleda {
 
@@ -60,6 +63,7 @@ bool save_any(Preferences& flash, const char* key, const char* value) {
 
 Settings load_settings() {
     Settings settings;
+    snprintf(settings.robot, sizeof settings.robot, "%s", profile::kUsualName);
     Preferences flash;
     flash.begin(kSpace, true);
     read_word(flash, "robot", settings.robot, sizeof settings.robot);

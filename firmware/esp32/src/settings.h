@@ -14,7 +14,7 @@ constexpr uint16_t kUsualPort = 1883;
 #endif
 
 struct Settings {
-    char robot[65] = "ra_1";  // its name on MQTT: the first level of every topic, and the client id
+    char robot[65] = "";       // its name on MQTT: the first level of every topic, and the client id
     char wifi[33] = "";
     char wifi_password[65] = "";
     char broker[65] = "";

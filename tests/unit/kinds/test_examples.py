@@ -46,6 +46,7 @@ OF_HOW_TOS = (
     "own_driver",
     "own_tree",
     "plc_conveyor",
+    "press_board",
 )  # their pages are in docs/how-to
 SHOWN = [folder for folder in FOLDERS if folder not in OF_HOW_TOS]
 WITH_ARMS = ("assembly", "kitting", "machine_tending", "mixed", "own_tree")
@@ -117,6 +118,8 @@ CASES = (
     ),
     Case(folder="plc_conveyor", task="line pass 200", ends_with=("belt gate", "belt scan")),
     Case(folder="plc_conveyor", task="line pass 400", answers={"belt": "bad"}, why="the part is bad"),
+    Case(folder="press_board", task="bench stamp 1", ends_with=("press open", "press clamp")),
+    Case(folder="press_board", task="bench stamp 2", answers={"press": "absent"}, why="there is no part"),
     tree(task="cell tend slot_1 1002", ends_with=TAKEN, tries_again=frozenset({("mill", "run")})),
     tree(task="cell tend slot_1 1001", answers={"camera": "bad"}, ends_with=SCRAPPED),
     tree(task="cell tend slot_2 1001", answers={"camera": "unsure"}, ends_with=TAKEN),

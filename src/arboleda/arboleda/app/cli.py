@@ -55,6 +55,7 @@ from . import (
 from .alarm_options import alarm_options
 from .client import Gone, PlantClient, Refused
 from .conformance import command as conformance
+from .firmware_config import command as firmware_config
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
@@ -376,6 +377,7 @@ def _watch(reached: PlantClient, *, as_json: bool) -> None:
 token_command.add_to(cli)
 simulate.add_to(cli)
 conformance.add_to(cli)
+firmware_config.add_to(cli)
 bench_command.add_to(cli)
 verbs.add_to(cli)
 

@@ -1,0 +1,53 @@
+"""The core's board of a declared device behind its C interface, for ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+
+from .core import BUILD, CAPACITY
+
+
+class DecodedOrder(ctypes.Structure):
+    """`struct DecodedOrder` of test/scripted_device.cpp."""
+
+    _fields_ = (
+        ("well_formed", ctypes.c_int),
+        ("known", ctypes.c_int),
+        ("has_seq", ctypes.c_int),
+        ("has_epoch", ctypes.c_int),
+        ("seq", ctypes.c_uint32),
+        ("epoch", ctypes.c_uint32),
+        ("verb", ctypes.c_int),
+        ("value", ctypes.c_double),
+    )
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """The library that `make firmware-test` builds."""
+    loaded = ctypes.CDLL(str(BUILD / "libscripted_device.so"))
+    loaded.arboleda_device_run.restype = ctypes.c_size_t
+    loaded.arboleda_device_run.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_size_t)
+    text = (ctypes.c_char_p, ctypes.c_size_t)
+    loaded.arboleda_decode_order.argtypes = (*text, ctypes.POINTER(DecodedOrder))
+    return loaded
+
+
+@cache
+def _buffer() -> ctypes.Array[ctypes.c_char]:
+    return ctypes.create_string_buffer(CAPACITY)
+
+
+def run(lines: list[str]) -> list[str]:
+    """What the core's board said under a script, a line each."""
+    size = library().arboleda_device_run("\n".join(lines).encode(), _buffer(), CAPACITY)
+    assert size < CAPACITY, "the board says more than this test has room for"
+    return _buffer()[:size].decode().splitlines()
+
+
+def decode(raw: bytes) -> DecodedOrder:
+    """What the core makes of an order."""
+    decoded = DecodedOrder()
+    library().arboleda_decode_order(raw, len(raw), ctypes.byref(decoded))
+    return decoded

@@ -1,0 +1,73 @@
+"""What the header says: the wiring, resolved to places in lists; values as the core has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from arboleda.kinds.declared import DeviceVerb, FactType
+
+from .shapes import Wiring
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """A value: fixed, or that of a parameter, looked up in `map` where that is not empty."""
+
+    constant: float = 0.0
+    parameter: int = -1
+    map: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A value, and how inputs have to be for it."""
+
+    value: float
+    when: tuple[tuple[int, bool], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """What inputs say; `otherwise` where no row fits."""
+
+    rows: tuple[Row, ...] = ()
+    otherwise: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fact:
+    name: str
+    type: FactType
+    source: str  # kTold, kInputs, kAnalog
+    reading: Reading = Reading()
+    analog: int = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Action:
+    drive: str  # kOutput, kServo
+    index: int
+    value: Given
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verb:
+    told: DeviceVerb
+    sets: tuple[tuple[int, Given], ...]
+    needs: tuple[tuple[int, float], ...]
+    start: tuple[Action, ...]
+    end: tuple[Action, ...]
+    answer: Reading
+    at_least_s: float
+    held_fact: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tables:
+    """A device as the firmware knows it; `unseen`: facts that verbs set and no input looks at."""
+
+    name: str
+    wiring: Wiring
+    facts: tuple[Fact, ...]
+    verbs: tuple[Verb, ...]
+    unseen: tuple[str, ...]
