@@ -370,3 +370,22 @@ def test_all_plants_of_a_database_are_found_with_who_leads_them(database: str, p
         leaders.close()
     assert (found[plant].url, found[plant].leads) == ("http://10.0.0.1:8080", True)
     assert not found[second].leads
+
+
+def test_a_server_that_was_silent_for_a_while_is_heard_again_by_leader_and_standby(
+    postgres: Server, database: str, plant: str
+) -> None:
+    with leading(database, plant) as memory:
+        others = Leadership(database, plant)
+        memory.renew()
+        epoch = others.leader().epoch
+        postgres.freeze(on=True)
+        try:
+            for ask in (memory.renew, others.leader):
+                with pytest.raises(ArboledaError, match="gave no answer for 1 s"):
+                    ask()
+        finally:
+            postgres.freeze(on=False)
+        memory.renew()
+        assert others.leader().epoch == epoch and others.leader().leads
+        others.close()

@@ -38,11 +38,22 @@ CONNECTING = r"^connection failed: (connection to server .*? failed: )?(FATAL: *
 T = TypeVar("T")
 
 
+class NoAnswer(psycopg.OperationalError):
+    """The server said nothing for ANSWER_S."""
+
+
 class Impatient(psycopg.Connection[Any]):
-    """A connection that is given up when its server says nothing for ANSWER_S."""
+    """A connection that is closed when its server says nothing for ANSWER_S.
+
+    The answer may still come, and nobody could tell it from that to the next statement.
+    """
 
     def wait(self, gen: Generator[Any, Any, T], *options: Any, **named: Any) -> T:
-        return super().wait(_limited(gen, time.monotonic() + ANSWER_S), *options, **named)
+        try:
+            return super().wait(_limited(gen, time.monotonic() + ANSWER_S), *options, **named)
+        except NoAnswer:
+            self.close()
+            raise
 
 
 def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T]:
@@ -55,7 +66,7 @@ def _limited(gen: Generator[Any, Any, T], until: float) -> Generator[Any, Any, T
             return end.value
         ready = yield wanted
         if not ready and time.monotonic() > until:
-            raise psycopg.OperationalError(f"the server gave no answer for {ANSWER_S:g} s")
+            raise NoAnswer(f"the server gave no answer for {ANSWER_S:g} s")
 
 
 def checked(address: str) -> str:
