@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -613,3 +614,21 @@ def test_a_plant_that_cannot_find_out_whether_it_leads_stops_robots_and_nothing_
     assert asked == [1]  # who waits for a server that is away for each message stops late
     heard = turn(plant)
     assert [type(event) for event in heard] == [Undelivered]
+
+
+@pytest.mark.parametrize(("renew_s", "begins"), [(None, False), (0.5, True)], ids=["a file", "a database"])
+def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
+    plant, store, monkeypatch, renew_s, begins
+):
+    topics, started = Topics(store, watched=False, diagnosed=False), []
+    monkeypatch.setattr(topics, "check_alone", lambda: refuse("another node already commands"), raising=False)
+    monkeypatch.setattr(store, "renew_s", renew_s, raising=False)
+    monkeypatch.setattr(plant.loop, "start", lambda: started.append(plant))
+    plant.connect_ros(topics)
+    with nullcontext() if begins else pytest.raises(StartError, match="already commands"):
+        plant.start()
+    assert started == ([plant] if begins else [])
+
+
+def refuse(sentence: str) -> None:
+    raise StartError(sentence)

@@ -179,8 +179,11 @@ class Orchestrator:
         self._ros = port
 
     def start(self) -> None:
-        """StartError where another node already commands these robots."""
-        if self._ros is not None:
+        """StartError where another node already commands these robots.
+
+        Where a database says who leads, that is the one before, which ends or was cut off; nobody obeys it.
+        """
+        if self._ros is not None and (self._store is None or self._store.renew_s is None):
             self._ros.check_alone()
         for run in self.plant.cells.values():
             if run.found is not None:
