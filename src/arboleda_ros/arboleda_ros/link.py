@@ -23,6 +23,7 @@ from .bridge import BridgePort
 from .orchestrator import OrchestratorPort
 from .port import Port
 from .ros_log import QUIET, RosLog
+from .standby import StandbyVoice
 
 LOG = logging.getLogger("arboleda.ros")
 
@@ -88,6 +89,10 @@ class Link:
         port = BridgePort(self.node("mqtt_bridge"), model, on_event, clock)
         self._ports.append(port)
         return port
+
+    def standby(self) -> StandbyVoice:
+        """What says in `/diagnostics` that this process waits to lead a plant, until it is closed."""
+        return StandbyVoice(self._context)
 
     def start(self) -> None:
         """Begin to deliver; a second call does nothing."""

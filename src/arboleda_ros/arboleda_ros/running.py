@@ -22,6 +22,7 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load_recorded
 from arboleda.app.log_file import LogFile
 from arboleda.app.log_queue import log_to
+from arboleda.app.standby import take_over
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 
@@ -44,6 +45,10 @@ _PARAMETERS: dict[str, tuple[Value, str]] = {
 _DASHBOARD: dict[str, tuple[Value, str]] = {
     "dashboard": (False, "serve the page and the HTTP API on this machine: port 8080, or a free one"),
 }
+_STORE: dict[str, tuple[Value, str]] = {
+    "store": ("", "database that keeps the plant's memory; empty: what the plant file says, else a file"),
+    "standby": (False, "wait until nobody leads this plant, and lead it then; needs a store"),
+}
 _PARTS = {"orchestrator": "orchestrator", "mqtt_bridge": "bridge", "virtual_devices": "devices"}
 _KINDS = {float: "a number", str: "a text", bool: "true or false"}
 
@@ -61,7 +66,7 @@ def run(name: str) -> int:
 
 def offered(name: str) -> dict[str, tuple[Value, str]]:
     """The parameters of the node `name`: each with its default and what it is."""
-    return {**_PARAMETERS, **(_DASHBOARD if name == "orchestrator" else {})}
+    return {**_PARAMETERS, **({**_DASHBOARD, **_STORE} if name == "orchestrator" else {})}
 
 
 def _run(name: str) -> int:
@@ -121,8 +126,11 @@ def _app(link: Link, name: str) -> App:
         page="web" in parts,
         log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
+        store=values.get("store", ""),
         recording=recording,
     )
+    if values.get("standby"):
+        return take_over(model, parts, options, LOG.info)
     return build(model, parts, options)
 
 

@@ -7,12 +7,13 @@ import time
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from arboleda.adapters.plant_memory import LedElsewhere
 from arboleda.core.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import PlantModel
+from arboleda.wire.status import OK, WARN
 
 from .build import App, Options, build
 from .parts.waiting_room import WaitingRoom
@@ -60,37 +61,55 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
         import_module(each)
     others = leadership_of(store, model.name)
     room = WaitingRoom(model.name, state, options.web)
+    voice = options.link.standby() if options.link is not None else None
     with StateDir(state, plant=model.name, store=store) as here, interruptible():
         others.prepare()
         room.start(here.announce)
         try:
             tell(room.address)
-            _until_free(others, room, tell)
+            _until_free(others, _Told(room, voice, tell))
         finally:
             room.stop()
             others.close()
+            if voice is not None:
+                voice.close()
 
 
-def _until_free(others: Leadership, room: WaitingRoom, tell: Callable[[str], None]) -> None:
+class _Told:
+    """Whom it tells what it waits for: its page, `/diagnostics` each second, people where it changes."""
+
+    def __init__(self, room: WaitingRoom, voice: Any | None, tell: Callable[[str], None]) -> None:
+        self._room, self._voice, self._tell = room, voice, tell
+        self._said, self._said_at = "", 0.0
+
+    def waits(self, sentence: str, level: int, leader: str = "") -> None:
+        """`leader` is the page of the process that leads, "" where nobody knows it."""
+        self._room.show(sentence, leader)
+        now = time.monotonic()
+        if self._voice is not None and (sentence != self._said or now - self._said_at > SAY_S):
+            self._voice.say(level, sentence, {"leader": leader})
+            self._said_at = now
+        if sentence != self._said:
+            self._tell(f"standby: {sentence}")
+            self._said = sentence
+
+
+def _until_free(others: Leadership, told: _Told) -> None:
     """Look again and again; a database that is away says nothing of who leads."""
-    told, said_at = "", 0.0
+    said_at = 0.0
     while True:
         try:
             leader = others.leader()
             if not leader.leads:
                 others.wait_no_more()
+                told.waits("leads the plant from now on", OK)
                 return
             if time.monotonic() - said_at > SAY_S:
                 others.wait_here()
                 said_at = time.monotonic()
-            sentence = _led_by(leader)
-            room.show(sentence, leader.url)
+            told.waits(_led_by(leader), OK, leader.url)
         except ArboledaError as error:
-            sentence = f"waits for the database: {error}"
-            room.show(sentence, "")
-        if sentence != told:
-            tell(f"standby: {sentence}")
-            told = sentence
+            told.waits(f"waits for the database: {error}", WARN)
         time.sleep(LOOK_S)
 
 
