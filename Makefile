@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills hosts mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -18,6 +18,7 @@ DEVICE_CYCLES ?= 4
 CRASH_SEEDS ?= 6
 CRASH_CYCLES ?= 4
 KILLS ?= --kills 1000
+HOSTS ?= --faults 1000
 MUTANTS ?= --sample 400
 
 run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
@@ -64,6 +65,9 @@ crash-campaign: install  ## simulate plants that die again and again, also of po
 
 kills: install  ## kill a plant with -9 at 1000 random instants, count what came of its tasks; an hour; KILLS="--kills 12" for others
 	PYTHONPATH=kills $(BIN)/python -m arboleda_kills $(KILLS)
+
+hosts: install  ## a plant on hosts of its own (network namespaces; root): 1000 faults of hosts and links; HOSTS="--faults 60" for others
+	PYTHONPATH=kills:bench $(BIN)/python -m arboleda_kills.hosts $(HOSTS)
 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test

@@ -31,17 +31,27 @@ class Ended(Exception):
 
 
 class Plant:
-    """`arboleda up` as people start it, until `kill`; no board is there before `joined_at`."""
+    """`arboleda up` as people start it, until `kill`; no board is there before `joined_at`.
+
+    `command`: another one that runs the plant of `state`, instead.
+    """
 
     def __init__(
-        self, state: Path, log: Path, on_broker: Callable[[str, int], None], options: Sequence[str] = ()
+        self,
+        state: Path,
+        log: Path,
+        on_broker: Callable[[str, int], None],
+        options: Sequence[str] = (),
+        *,
+        command: Sequence[str] = (),
     ) -> None:
         self.started_at = time.time()
         self.joined_at = float("inf")
         self._state, self._log, self._on_broker = state, log, on_broker
         self._port: int | None = None
+        up = (sys.executable, "-c", UP, "up", "--no-ros", "--boards", "real", "--state", str(state))
         self._child = subprocess.Popen(
-            [sys.executable, "-c", UP, "up", "--no-ros", "--boards", "real", "--state", str(state), *options],
+            [*(command or up), *options],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -120,13 +130,13 @@ class Plant:
 
 
 class Boards:
-    """The process of `boards.py`; `deeds` grows while it runs."""
+    """The process of `boards.py`; `deeds` grows while it runs. `before`: what its command begins with."""
 
-    def __init__(self, rate: float, log: Path) -> None:
+    def __init__(self, rate: float, log: Path, before: Sequence[str] = ()) -> None:
         self.deeds: list[Deed] = []
         with log.open("wb") as errors:
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "arboleda_kills.boards", str(rate)],
+                [*before, sys.executable, "-m", "arboleda_kills.boards", str(rate)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=errors,

@@ -1,0 +1,131 @@
+"""`make hosts`: a plant on hosts of its own, each a network namespace, under faults of hosts and links.
+
+Two hosts for plants, one that leads and one that stands by, and one each for PostgreSQL, the MQTT broker, the
+bridge (over DDS) and the virtual boards. Faults at random instants of work: kill -9, freezes, a handover,
+links that are cut in one direction or both, that are late and lose packets, database, broker and bridge that
+are restarted or crash.
+
+Exit status 1 where a task was lost, a part was taken up or set down twice, or dropped, where a robot moved
+before anybody let it, where boards accepted a command of one leader after one of the next, or where something
+ended that should not. Status 2 where this machine makes no network namespaces. It needs root, iproute2,
+postgresql and mosquitto.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import shutil
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+from arboleda.app.waiting import interruptible
+from arboleda_bench.result import percentile
+
+from ..database import NoServer, programs
+from .faults import FAULTS
+from .namespaces import NoNamespaces
+from .run import Run
+
+NOT_HERE = 2
+
+
+def main() -> int:
+    wanted = _options()
+    folder = Path(tempfile.mkdtemp(prefix="arboleda-hosts-"))
+    folder.chmod(0o755)  # the broker gives up its rights
+    began = time.monotonic()
+
+    def say(line: str) -> None:
+        print(f"{time.monotonic() - began:7.1f} s  {line}", flush=True)
+
+    with interruptible():
+        return _tried(wanted, folder, say)
+
+
+def _tried(wanted: argparse.Namespace, folder: Path, say: Callable[[str], None]) -> int:
+    try:
+        programs()
+        if shutil.which("mosquitto") is None:
+            raise NoServer("mosquitto is not installed")
+        run = Run(folder, seed=wanted.seed, rate=wanted.rate)
+    except NoServer as error:
+        print(f"something is missing, so nothing was tried: {error}")
+        return NOT_HERE
+    except NoNamespaces as error:
+        print(f"no network namespaces here, so nothing was tried: {error}")
+        return 0 if wanted.if_possible else NOT_HERE
+    faults = [fault for fault in FAULTS if not wanted.only or fault.name in wanted.only]
+    dice = random.Random(wanted.seed)
+    try:
+        rounds = [fault for _ in range(wanted.faults) for fault in dice.sample(faults, len(faults))]
+        for number, fault in enumerate(rounds[: wanted.faults], start=1):
+            say(f"{number} of {wanted.faults}: {run.once(fault)}")
+        run.finish()
+    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - what was done so far is judged
+        run.trouble.append(f"{type(error).__name__}: {error}")
+    status = 1
+    try:
+        status = _report(run, folder)
+    finally:
+        run.close()
+        if status == 0 and not wanted.keep:
+            shutil.rmtree(folder, ignore_errors=True)
+    return status
+
+
+def _report(run: Run, folder: Path) -> int:
+    verdict, beside, rows = run.verdict()
+    for name, times in sorted(run.seconds.items()):
+        print(f"{name}: {len(times)}, p50 {percentile(times, 50):.2f} s, p99 {percentile(times, 99):.2f} s")
+    print(f"faults: {dict(sorted(run.counts.items()))}")
+    states = Counter(row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows)
+    print(f"{len(run.customers.accepted)} tasks accepted: {dict(states)}")
+    for words, count in sorted(run.ends.items()):
+        print(f"ended {count} times after {words}")
+    counted = {
+        "lost": verdict.lost,
+        "doubled": verdict.doubled,
+        "dropped": verdict.dropped,
+        "moved by itself": verdict.moved,
+        "two leaders": beside,
+        "trouble": run.trouble,
+    }
+    for name, sentences in counted.items():
+        print(f"{name}: {len(sentences)}")
+        print("".join(f"  {each}\n" for each in sentences[:20]), end="")
+    if any(counted.values()):
+        deeds = [deed.data() for deed in run.cast.boards.deeds]
+        (folder / "deeds.jsonl").write_text("".join(f"{json.dumps(deed)}\n" for deed in deeds))
+        (folder / "seen.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in run.cast.watch.seen))
+        changes = (*run.kills, *run.attendant.said)
+        (folder / "changes.txt").write_text("".join(f"{each}\n" for each in changes))
+        print(f"logs, deeds and changes are in {folder}")
+    return int(any(counted.values()))
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="make hosts", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--faults", type=int, default=1000, help="how many [1000]")
+    parser.add_argument("--seed", type=int, default=1, help="draws faults, instants and tasks [1]")
+    parser.add_argument("--rate", type=float, default=8.0, help="how many times as fast the robots are [8]")
+    names = [fault.name for fault in FAULTS]
+    parser.add_argument(
+        "--only", nargs="*", choices=names, metavar="FAULT", help="; ".join(names).replace("%", "%%")
+    )
+    parser.add_argument("--keep", action="store_true", help="keep the logs also where all is well")
+    parser.add_argument(
+        "--if-possible", action="store_true", help="status 0 also where there are no namespaces"
+    )
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,96 @@
+"""Which commands of two leaders boards accepted, and what the cable between hosts makes of a frame."""
+
+from __future__ import annotations
+
+import os
+import random
+import time
+
+import pytest
+
+from arboleda_kills.hosts.cable import Cable
+from arboleda_kills.hosts.run import two_leaders
+
+ONE_BY_ONE = [(1.0, "ra1", "7-1"), (2.0, "ra1", "7-2"), (3.0, "ra1", "8-1"), (3.1, "ra2", "8-2")]
+
+
+def test_leaders_one_after_the_other_are_no_breach() -> None:
+    assert two_leaders(ONE_BY_ONE) == []
+
+
+@pytest.mark.parametrize("robot", ["ra1", "ra2"], ids=["of the same robot", "of another robot"])
+def test_a_command_of_the_leader_before_is_a_breach(robot: str) -> None:
+    late = (4.0, robot, "7-3")
+    assert two_leaders([*ONE_BY_ONE, late]) == [f"{robot} accepted 7-3 after a command of plant 8"]
+
+
+def test_what_two_boards_accepted_may_be_told_in_another_order() -> None:
+    assert two_leaders([*ONE_BY_ONE, (3.2, "ra3", "7-3")]) == []
+
+
+class Wires(Cable):
+    """A cable whose ends are pipes."""
+
+    def __init__(self, hosts: str) -> None:
+        super().__init__((), random.Random(1))
+        self.pipes = {host: (os.pipe2(os.O_NONBLOCK), os.pipe2(os.O_NONBLOCK)) for host in hosts}
+
+    def send(self, host: str, frame: bytes) -> None:
+        (read, write), _ = self.pipes[host]
+        os.write(write, frame)
+        self.ends = {host: read} | {
+            other: pipes[1][1] for other, pipes in self.pipes.items() if other != host
+        }
+        self.read(host)
+
+    def heard(self) -> dict[str, bytes]:
+        found = {}
+        for host, (_, (read, _)) in self.pipes.items():
+            try:
+                found[host] = os.read(read, 100)
+            except BlockingIOError:
+                continue
+        return found
+
+    def close(self) -> None:
+        for pipes in self.pipes.values():
+            for each in (*pipes[0], *pipes[1]):
+                os.close(each)
+
+
+TO_ALL, A, B = b"\xff" * 6, b"aaaaaa", b"bbbbbb"
+
+
+@pytest.fixture
+def wires():
+    made = Wires("abc")
+    yield made
+    made.close()
+
+
+def test_a_frame_goes_to_all_until_its_receiver_was_heard(wires: Wires) -> None:
+    wires.send("a", TO_ALL + A)
+    assert sorted(wires.heard()) == ["b", "c"]
+    wires.send("b", A + B)
+    assert wires.heard() == {"a": A + B}
+
+
+def test_a_link_is_cut_in_one_direction(wires: Wires) -> None:
+    wires.links = {("a", "b"): (1.0, 0.0)}
+    wires.send("a", TO_ALL + A)
+    assert sorted(wires.heard()) == ["c"]
+    wires.send("b", TO_ALL + B)
+    assert sorted(wires.heard()) == ["a", "c"]
+
+
+def test_a_late_frame_comes_later_and_in_its_order(wires: Wires, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(time, "monotonic", lambda: 10.0)
+    wires.links = {("a", "b"): (0.0, 0.05)}
+    wires.send("a", TO_ALL + A + b"1")
+    wires.send("a", TO_ALL + A + b"2")
+    assert sorted(wires.heard()) == ["c"] and wires.wait_s == pytest.approx(0.05)
+    wires.deliver()
+    assert wires.heard() == {}
+    monkeypatch.setattr(time, "monotonic", lambda: 10.051)
+    wires.deliver()
+    assert wires.heard() == {"b": TO_ALL + A + b"1" + TO_ALL + A + b"2"}
