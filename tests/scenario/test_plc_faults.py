@@ -13,7 +13,7 @@ from arboleda.virtual import campaign
 from arboleda.virtual.modbus.campaign import ModbusTrial, Registers
 from arboleda.virtual.modbus.memory import FAULTS as MODBUS_FAULTS
 from arboleda.virtual.opcua.campaign import OpcUaTrial
-from arboleda.virtual.opcua.program import FAULTS as OPCUA_FAULTS
+from arboleda.virtual.opcua.faults import FAULTS as OPCUA_FAULTS
 from arboleda.virtual.plc.campaign import BeltTrial
 
 EXAMPLES = Path(__file__).parents[2] / "examples/plc_conveyor"

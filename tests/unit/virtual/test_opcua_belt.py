@@ -15,7 +15,8 @@ from arboleda.drivers.plc.shown import Unreadable
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 from arboleda.virtual.faults import Faults
-from arboleda.virtual.opcua.program import FAULTS, BeltProgram
+from arboleda.virtual.opcua.faults import FAULTS
+from arboleda.virtual.opcua.program import BeltProgram
 from arboleda.virtual.plc import machine
 
 EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor/opcua.yaml"

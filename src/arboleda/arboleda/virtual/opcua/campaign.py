@@ -13,7 +13,8 @@ from arboleda.model.plant_model import PlantModel
 from ..campaign import Causes
 from ..plc.campaign import NO_LINK, BeltTrial
 from ..plc.joined import Broken
-from .program import FAULTS, BeltProgram
+from .faults import FAULTS
+from .program import BeltProgram
 
 CAUSES: Causes = {
     "mute": NO_LINK,

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from typing import Annotated
 
 import typer
 
-from arboleda.adapters.opcua import need_library
-from arboleda.adapters.opcua_server import OpcUaServer
-from arboleda.drivers.port import DriverError
-from arboleda.model.errors import StartError
-
-from ..faults import Faults
 from ..serving import FaultNames, FaultPort, serve, with_faults
-from .program import FAULTS, BeltProgram
+from .faults import FAULTS
 
 HELP = with_faults(
     "Play a PLC with a belt, a gate and an eye over OPC UA, without a login; "
@@ -29,28 +22,6 @@ def run(
     fault: FaultNames = None,
     fault_port: FaultPort = 4716,
 ) -> None:
-    serve(lambda faults: Plc(faults, host=host, port=port), FAULTS, fault, fault_port)
+    from .server import Server  # it loads asyncio, which no other command needs
 
-
-class Plc:
-    """The belt, listening from `start` to `stop`."""
-
-    def __init__(self, faults: Faults, *, host: str = "127.0.0.1", port: int = 0) -> None:
-        self._host = host
-        self._server = OpcUaServer(BeltProgram(faults, time.monotonic), host=host, port=port)
-        self.port = 0
-
-    @property
-    def says(self) -> str:
-        return f"the virtual PLC speaks OPC UA on opc.tcp://{self._host}:{self.port}"
-
-    def start(self) -> None:
-        """StartError where asyncua is missing, or nothing can listen there."""
-        try:
-            need_library()
-            self.port = self._server.start()
-        except (OSError, DriverError) as error:
-            raise StartError(str(error)) from error
-
-    def stop(self) -> None:
-        self._server.stop()
+    serve(lambda faults: Server(faults, host=host, port=port), FAULTS, fault, fault_port)

@@ -7,16 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from arboleda.adapters.opcua_server import Bad
 
 from ..plc.machine import ADVANCE, GATE, LOAD, SCAN, Belt
-from ..plc.machine import FAULTS as BELT_FAULTS
 
-FAULTS = {
-    "mute": "requests are not answered, and connections stay",
-    "refuses_calls": "every method returns BadUserAccessDenied",
-    "bad_status": "the place of the part has the status BadSensorFailure",
-    "null": "the place of the part is null",
-    "text": "the place of the part is text where a number should be",
-    **BELT_FAULTS,
-}
 PLACES = ("part_at", "gate", "mm_s", "seen")
 ECHO = ("boot", "alive", "state", "reason", "failure", "accepted", "rejected", "failed", "done")
 VERBS = {"Load": LOAD, "Advance": ADVANCE, "Gate": GATE, "Scan": SCAN}

@@ -1,0 +1,37 @@
+"""The virtual PLC at work: the belt's program, served over OPC UA."""
+
+from __future__ import annotations
+
+import time
+
+from arboleda.adapters.opcua import need_library
+from arboleda.adapters.opcua_server import OpcUaServer
+from arboleda.drivers.port import DriverError
+from arboleda.model.errors import StartError
+
+from ..faults import Faults
+from .program import BeltProgram
+
+
+class Server:
+    """The belt, listening from `start` to `stop`."""
+
+    def __init__(self, faults: Faults, *, host: str = "127.0.0.1", port: int = 0) -> None:
+        self._host = host
+        self._server = OpcUaServer(BeltProgram(faults, time.monotonic), host=host, port=port)
+        self.port = 0
+
+    @property
+    def says(self) -> str:
+        return f"the virtual PLC speaks OPC UA on opc.tcp://{self._host}:{self.port}"
+
+    def start(self) -> None:
+        """StartError where asyncua is missing, or nothing can listen there."""
+        try:
+            need_library()
+            self.port = self._server.start()
+        except (OSError, DriverError) as error:
+            raise StartError(str(error)) from error
+
+    def stop(self) -> None:
+        self._server.stop()
