@@ -56,6 +56,7 @@ from .alarm_options import alarm_options
 from .client import Gone, PlantClient, Refused
 from .conformance import command as conformance
 from .firmware_config import command as firmware_config
+from .overview import Overview
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
@@ -74,6 +75,7 @@ UNDONE = {TaskState.FAILED.value, TaskState.CANCELLED.value}
 LONGEST = 1000  # characters of a line on the terminal
 
 cli = typer.Typer(
+    cls=Overview,
     help="Run robot cells by behavior trees: simulated on this machine, or real over MQTT and ROS 2.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,

@@ -26,7 +26,7 @@ def new(
         Path, typer.Argument(metavar="FOLDER", help="The folder to write; its name is that of the plant.")
     ],
 ) -> None:
-    """Write a plant of your own: an arm, a device, a recipe and a test; e.g. `arboleda new my_plant`."""
+    """Write a plant of your own: an arm, a device, a recipe and a test, in a folder of its own."""
     written = write(folder)
     command, plant = invocation.command(), shlex.quote(str(written[0]))
     for file in written:

@@ -18,6 +18,7 @@ from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
 from arboleda.recorder.errors import NoRecord
 
+from .overview import WholeSentences
 from .where import PlantFile, StateFolder, folder
 
 LONGEST = 300  # characters of a line
@@ -27,6 +28,7 @@ File = Annotated[
     typer.Argument(metavar="[FILE]", help="A file of the record. [default: the plant's last record]"),
 ]
 cli = typer.Typer(
+    cls=WholeSentences,
     help="The flight record of a plant: what went into its core and what came out, of every start.",
     no_args_is_help=True,
     rich_markup_mode=None,

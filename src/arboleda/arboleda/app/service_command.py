@@ -18,13 +18,14 @@ from arboleda.model.errors import StartError
 from arboleda.model.outside import plain
 
 from . import config
+from .overview import WholeSentences
 from .service_unit import unit
 from .state import default_state
 from .where import PlantFile, StateFolder
 
 TIMEOUT_S = 100.0  # longer than a unit may take to end
 HELP = "Have systemd run the plant: from the start of the machine on, and again where it breaks down."
-cli = typer.Typer(help=HELP, no_args_is_help=True, rich_markup_mode=None)
+cli = typer.Typer(cls=WholeSentences, help=HELP, no_args_is_help=True, rich_markup_mode=None)
 
 System = Annotated[
     bool,

@@ -40,7 +40,10 @@ def tree(
     live: Live = False,
     state: StateFolder = None,
 ) -> None:
-    """Draw the behavior tree of a recipe, e.g. `arboleda tree storage --format svg > storage.svg`."""
+    """Draw the behavior tree of a recipe, or the one that runs.
+
+    A picture of it: `arboleda tree storage --format svg > storage.svg`.
+    """
     if format is Format.PNG and sys.stdout.isatty():
         raise typer.BadParameter(f"a PNG is not for a terminal; add > {recipe}.png", param_hint="--format")
     if tree_file.is_tree_file(Path(recipe)) and not live:

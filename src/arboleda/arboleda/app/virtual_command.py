@@ -12,7 +12,10 @@ from arboleda.virtual.opcua import command as opcua
 from arboleda.virtual.trajectory import command as trajectory
 from arboleda.virtual.vda5050 import command as vda5050
 
+from .overview import WholeSentences
+
 cli = typer.Typer(
+    cls=WholeSentences,
     help="Play the controller of another maker over its own protocol, with motion and with faults.",
     no_args_is_help=True,
     rich_markup_mode=None,

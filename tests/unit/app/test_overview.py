@@ -1,0 +1,24 @@
+"""`arboleda --help`."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from arboleda.app import overview
+from arboleda.app.cli import cli
+
+
+def test_each_command_is_listed_below_one_heading() -> None:
+    listed = Counter(name for names in overview.SECTIONS.values() for name in names)
+    assert listed == Counter(list(get_command(cli).commands))  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("group", [(), ("virtual",), ("record",), ("service",)])
+def test_no_sentence_is_cut_off(group: tuple[str, ...]) -> None:
+    shown = CliRunner().invoke(cli, [*group, "--help"])
+    assert shown.exit_code == 0 and "..." not in shown.output.partition("[ARGS]...")[2]
+    assert "e.g.\n" not in shown.output
