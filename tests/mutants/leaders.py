@@ -28,10 +28,10 @@ LEADERS = (
     ),
     mutant(
         "old_numbers_have_no_effect",
-        "A board goes by the sequence and not by the number of who leads.",
-        edit(Receipts.objection, "(goal.epoch, goal.seq) <= (self.epoch, last)", "goal.seq <= last"),
+        "A board forgets under which number it has heard a leader beat.",
+        edit(Receipts.objection, "self.least is not None and goal.epoch < self.least", "False"),
         weather=LATE,
-        likely=4,
+        likely=27,
         standby=True,
     ),
     mutant(

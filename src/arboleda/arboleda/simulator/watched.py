@@ -65,8 +65,9 @@ class Watched:
         self._ends: dict[int, Callable[[], None]] = {}
         self._rests = 0  # a fault that is expected since before a rest never begins
         truth = GeneralTruth(self.world) if general else Truth(self.world)
-        leaders = None if hosts is None else Leaders(self.world, hosts)
-        self._look = Look(world=self.world, truth=truth, record=Record(self.world), leaders=leaders)
+        record = Record(self.world)
+        leaders = None if hosts is None else Leaders(self.world, hosts, record.boards)
+        self._look = Look(world=self.world, truth=truth, record=record, leaders=leaders)
         self._judges = Judges(self.invariants)
         self.world.watchers.append(self._check)
 

@@ -15,18 +15,20 @@ from ..hosts.database import Write
 from ..hosts.former import Said
 from ..hosts.hosts import Hosts
 from ..world import World
+from .boards import Boards
 
 NO_ORDERS = (Channel.STOP, Channel.BEAT)
 
 
 class Leaders:
-    """`twice` are numbers that were led more than once, or that went back; `heard` is, by board, the highest
-    number under which it carried out anything since it booted; `old` what a board carries out in this step of
-    a lower one. `history` is all that the store took of each task, `wrong` what of it is lost or doubled.
+    """`twice` are numbers that were led more than once, or that went back; `old` is what a board carries out
+    in this step of a number lower than one of which it has read a beat, or carried out something, since it
+    booted; `wrong` is what of the history of tasks is lost or doubled, and what was written by who leads no
+    more.
     """
 
-    def __init__(self, world: World, hosts: Hosts) -> None:
-        self._world, self._hosts = world, hosts
+    def __init__(self, world: World, hosts: Hosts, boards: Boards) -> None:
+        self._world, self._hosts, self._boards = world, hosts, boards
         self._known = 0  # of the numbers
         self._boots: dict[str, int] = {}
         self._heard: dict[str, int] = {}
@@ -66,7 +68,7 @@ class Leaders:
         if self._boots.get(board) != boot:
             self._boots[board] = boot
             self._heard.pop(board, None)
-        heard = self._heard.get(board, 0)
+        heard = max(self._heard.get(board, 0), self._boards.by_name[board].beat or 0)
         if goal.epoch < heard:
             self.old.append(f"{board} was led under number {heard}, and carries out {goal}")
         self._heard[board] = max(heard, goal.epoch)
