@@ -24,7 +24,7 @@ def each_number_is_led_once(look: Look) -> Iterable[str]:
 
 @invariant(When.OLD_NUMBER)
 def old_numbers_have_no_effect(look: Look) -> Iterable[str]:
-    """A board that was led under a number carries out nothing of a lower one, however late it comes."""
+    """A board that knows a number, by a beat or a command, carries out nothing of a lower one but stops."""
     return look.leaders.old
 
 
