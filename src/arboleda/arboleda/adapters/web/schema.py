@@ -75,6 +75,8 @@ class TaskText(_Asked):
 class TaskForm(_Asked):
     """A task as a form of `/api/recipes` has it; either for a `cell`, or for `any_of` several."""
 
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["cell"]}, {"required": ["any_of"]}]})
+
     cell: str = Field(default="", examples=["sis_a"])
     any_of: list[str] = Field(
         default=[], examples=[["sis_a", "sis_b"]], description="Cells of which the plant chooses one."
