@@ -21,7 +21,7 @@ from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
-from arboleda.core.text import spelled
+from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase
 from arboleda.testing import shipped
@@ -29,6 +29,7 @@ from arboleda.views.oee import Kept, Oee, Run, Work, oee
 
 PATIENCE_S = 30.0  # of a client, with a server that shares a busy machine
 QUEUED = {"id": "t-1", "text": "sis_a 0b 7", "cell": "sis_a", "state": "queued", "sentence": ""}
+PROMISE = {"hindrance": None, "full": False}
 TASK = QUEUED | {"reason": None, "elapsed_s": None}
 VIEW = {"plant": "demo", "epoch": 7, "at": 1.0, "ending": False, "cells": [], "robots": [], "zones": []}
 VIEW |= {"tasks": [TASK]}
@@ -70,6 +71,8 @@ class Plant:
 
     def __init__(self) -> None:
         self.texts: list[str] = []
+        self.choices: list[str] = []
+        self.seconds = 60.0
         self.asked_by: list[str] = []
         self.forms: list[tuple] = []
         self.queries: list[TaskQuery] = []
@@ -104,8 +107,15 @@ class Plant:
         self.oee_queries.append(query)
         return [oee("sis_a", FIGURES, 0.0, 100.0)]
 
-    def submit(self, text: str, asked_by: str) -> Future:
+    def promises(self, text: str) -> list[dict]:
+        return [
+            {**PROMISE, "text": each.text, "cell": each.cell, "seconds": self.seconds}
+            for each in alternatives(text, shipped())
+        ]
+
+    def submit(self, text: str, asked_by: str, choice: str = "") -> Future:
         self.texts.append(text)
+        self.choices.append(choice)
         self.asked_by.append(asked_by)
         future: Future = Future()
         if isinstance(self.answer, Exception):

@@ -96,6 +96,18 @@ def test_a_wrong_time_of_the_oee_is_refused(web, plant, query, sentence):
     assert plant.oee_queries == []
 
 
+def test_what_cells_promise_is_told(web):
+    rows = web.get("/api/promises", params={"text": "sis_a,sis_b 0b 7"}).json()
+    assert [(row["cell"], row["text"]) for row in rows] == [("sis_a", "sis_a 0B 7"), ("sis_b", "sis_b 0B 7")]
+    refused = web.get("/api/promises", params={"text": "sis_z 0b 7"})
+    assert refused.status_code == 422 and "'sis_z' is not a cell" in refused.json()["sentence"]
+
+
+def test_why_a_task_was_given_to_a_plant_comes_with_it(web, plant):
+    assert web.post("/api/tasks", json={"text": "sis_a 0B 7", "why": "it is first"}).status_code == 202
+    assert plant.choices == ["it is first"]
+
+
 def test_a_form_for_several_cells_names_them_all(web, plant):
     form = {"any_of": ["sis_b", "sis_a"], "values": {"station": 7, "path": "0b"}, "id": "lot1"}
     assert web.post("/api/tasks", json=form).status_code == 202

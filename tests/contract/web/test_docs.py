@@ -18,6 +18,7 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/history",
         "/api/history.csv",
         "/api/oee",
+        "/api/promises",
         "/api/tasks",
         "/api/tasks/{task_id}",
         "/api/plant/{verb}",

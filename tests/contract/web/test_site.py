@@ -21,6 +21,7 @@ from arboleda.adapters.web.server import Server
 from arboleda.app.site.places import Place
 from arboleda.app.site.reach import ANSWER_S, NO_ANSWER
 from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED_ALL, Site
+from arboleda.dashboard.frames import ended
 from arboleda.dashboard.site.side import PlantSeen
 from arboleda.model.messages import OperatorAnswer, Verb
 
@@ -210,3 +211,22 @@ def test_a_plant_of_a_network_is_shown_its_token(token: str) -> None:
         assert plant.silent is None
     else:
         assert "wants a token" in str(plant.silent)
+
+
+def test_a_task_that_swallows_a_cancellation_ends_all_the_same() -> None:
+    async def run() -> bool:
+        swallowed = asyncio.Event()
+
+        async def stubborn() -> None:
+            try:
+                await asyncio.sleep(PATIENCE_S)
+            except asyncio.CancelledError:
+                swallowed.set()
+            await asyncio.sleep(PATIENCE_S)
+
+        task = asyncio.create_task(stubborn())
+        await asyncio.sleep(0)
+        await ended(task)
+        return swallowed.is_set() and task.cancelled()
+
+    assert asyncio.run(run())

@@ -41,7 +41,10 @@ class Plant:
     def operate(self, *_args: object, **_options: object) -> Future:
         return Future()
 
-    def submit(self, _text: str, _asked_by: str) -> Future:
+    def promises(self, _text: str) -> list[dict]:
+        return []
+
+    def submit(self, _text: str, _asked_by: str, _choice: str = "") -> Future:
         self.asked.append(Future())
         return self.asked[-1]
 

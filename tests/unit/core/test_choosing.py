@@ -6,11 +6,12 @@ import pytest
 
 from arboleda.core.choosing import CHOSEN, CHOSEN_IN_TROUBLE, FULL, HINDERED, LATER, PastTimes
 from arboleda.model.errors import TextError
-from arboleda.model.messages import TaskChanged, TaskState, Verb
+from arboleda.model.messages import TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.model.task import Order, Task
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
+from arboleda.views.view import promises
 
 TASK = "sis_a,sis_b 0B 7"
 
@@ -164,3 +165,21 @@ def test_expected_of_what_was_never_done_is_what_is_most_like_it() -> None:
     assert times.expected(order("sis_c 0C 4")) == 25.0, "its recipe in other cells"
     assert times.expected(order("sis_c other", recipe="other")) == 20.0, "whatever was done"
     assert PastTimes([]).expected(order("sis_a 0B 1")) == 60.0
+
+
+def test_what_cells_promise_is_said_without_giving_them_anything(rig: Rig) -> None:
+    rig.submit("sis_a 0B 1")
+    rows = promises(rig.plant, TASK)
+    assert [(row["cell"], row["seconds"], row["hindrance"], row["full"]) for row in rows] == [
+        ("sis_a", 120.0, None, False),
+        ("sis_b", 60.0, None, False),
+    ]
+    assert len(rig.plant.intake.tasks) == 1
+
+
+def test_who_chose_between_plants_says_why_and_it_is_kept_with_the_task(rig: Rig) -> None:
+    asked = TaskRequest(at=rig.now, text="sis_a 0B 1 #lot7", choice="north/sis_a is first")
+    rig.tell(asked)
+    assert str(rig.plant.intake.tasks["lot7"].choice) == "north/sis_a is first"
+    rig.tell(TaskRequest(at=rig.now, text="sis_a 0B 1 #lot7", choice="another reason"))
+    assert str(rig.plant.intake.tasks["lot7"].choice) == "north/sis_a is first"

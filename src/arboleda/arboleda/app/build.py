@@ -203,8 +203,11 @@ class App:
         """Have a snapshot told when more than a position changed; in the plant's thread, before `start`."""
         self._plant.watchers.append(watcher)
 
-    def submit(self, text: str, asked_by: str = COMMAND) -> Future[TaskChanged]:
-        return self._plant.submit(text, asked_by)
+    def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
+        return self._plant.submit(text, asked_by, choice)
+
+    def promises(self, text: str) -> list[dict[str, Any]]:
+        return self._plant.promises(text)
 
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
         return self._plant.operate(verb, scope, by_hand)

@@ -39,9 +39,7 @@ class Intake:
 
         `choose` is asked where the text of a new one names several cells.
         """
-        if self.closed:
-            raise QueueFull(ENDING())
-        orders = text.alternatives(words, self.model)
+        orders = self.orders(words)
         id = orders[0].id
         known = self.tasks.get(id) if id else None
         if known is None:
@@ -51,6 +49,12 @@ class Intake:
         if all(known.order.text != order.text for order in orders):
             raise TextError(ID_TAKEN(id=known.id, text=known.order.text))
         return known
+
+    def orders(self, words: str) -> Sequence[Order]:
+        """Those that a text allows; TextError or QueueFull says why there is none."""
+        if self.closed:
+            raise QueueFull(ENDING())
+        return text.alternatives(words, self.model)
 
     def take_back(self, kept: KeptTask, now: float) -> Task:
         """A task of an earlier start under its old id; one that waited for what this plant does not offer any

@@ -39,7 +39,7 @@ from arboleda.model.messages import (
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Builders
-from arboleda.model.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
 
@@ -165,6 +165,10 @@ class Plant:
     def refusal(self, request: OperatorRequest) -> Sentence | None:
         """Why a request of an operator would be refused now; None where it would be done."""
         return self._operator.refusal(request)
+
+    def prospects(self, text: str) -> list[Prospect]:
+        """What each cell that a task text names promises now; TextError or QueueFull where there is none."""
+        return self._prospects(self.intake.orders(text))
 
     @property
     def at_rest(self) -> bool:
@@ -430,6 +434,8 @@ class Plant:
                 self.intake.recall(request.kept)
             task = self.intake.task(request.text, lambda orders: best(self._prospects(orders)))
             if not self.intake.knows(task):
+                if request.choice and task.choice is None:
+                    task.choice = OWN(text=plain(request.choice))
                 self._refuse_trigger(request, task)
                 self.cells[task.order.cell].enqueue(task)
                 self.intake.remember(task)

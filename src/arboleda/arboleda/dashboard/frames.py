@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from typing import Protocol
 
@@ -9,6 +10,7 @@ from arboleda.views.changes import changed
 
 from .faces import Face
 
+AGAIN_S = 0.5
 BEHIND = 30  # frames that a browser may not have seen yet; it gets no more before it has
 
 
@@ -81,3 +83,11 @@ class Frames:
             return True
         seen.whole = True
         return False
+
+
+async def ended(task: asyncio.Task[None]) -> None:
+    """Cancel a task and wait for its end. Before Python 3.12 `asyncio.wait_for` may swallow a cancellation
+    that comes just as what it waits for is there: then it is cancelled once more."""
+    while not task.done():
+        task.cancel()
+        await asyncio.wait([task], timeout=AGAIN_S)

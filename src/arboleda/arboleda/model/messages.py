@@ -295,7 +295,8 @@ class TaskRequest:
     """Somebody asks for a task; `request` comes back in the TaskChanged that answers it.
 
     `trigger` marks a machine's start signal, which may be refused during the arm's own cycle. `kept` is the
-    task of this id, where an earlier start has accepted it: no part of what is asked.
+    task of this id, where an earlier start has accepted it: no part of what is asked. `choice` is why it was
+    given to its cell, in the words of who chose between plants.
     """
 
     at: float
@@ -303,6 +304,7 @@ class TaskRequest:
     request: str | None = None
     trigger: bool = False
     kept: KeptTask | None = field(default=None, repr=False)
+    choice: str = field(default="", repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -132,6 +132,21 @@ def devices_once(cells: Iterable[dict[str, Any]]) -> Iterator[tuple[str, dict[st
                 yield cell["name"], device
 
 
+def promises(plant: Plant, text: str) -> list[dict[str, Any]]:
+    """What each cell that a task text names promises now: in how many s it would have done it, what is in the
+    way of that, whether its queue is full. TextError or QueueFull."""
+    return [
+        {
+            "cell": each.order.cell,
+            "text": each.order.text,
+            "seconds": each.seconds,
+            "hindrance": each.hindrance,
+            "full": each.is_full,
+        }
+        for each in plant.prospects(text)
+    ]
+
+
 def task_by_id(plant: Plant, id: str) -> dict[str, Any] | None:
     """One task by its id, None where the plant knows none."""
     known = plant.intake.tasks.get(id)

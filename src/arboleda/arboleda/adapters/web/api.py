@@ -36,6 +36,7 @@ from .schema import (
     Done,
     KeptTask,
     Offer,
+    Promise,
     Sentence,
     Snapshot,
     Task,
@@ -43,6 +44,7 @@ from .schema import (
     TaskText,
     Wanted,
     WantedOee,
+    WantedPromises,
 )
 
 log = logging.getLogger(__name__)
@@ -142,6 +144,11 @@ def _look(api: APIRouter, side: PlantSide) -> None:
         """What each cell can be asked for: its recipes, their parameters, and what these can be."""
         return PlainJson(side.offers())
 
+    @api.get("/promises", response_model=list[Promise], responses=WRONG, openapi_extra=_query(WantedPromises))
+    async def promises(request: Request) -> JSONResponse:
+        """When each cell that a task text names would have done it; nothing is asked of them."""
+        return PlainJson(side.promises(asked(request, WantedPromises).text))
+
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
         """One task."""
@@ -165,7 +172,8 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
         asked = task_asked(await request.body())
         text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
-        task = await in_time(side.submit(text, COMMAND if is_ours else HTTP))
+        why = asked.why if isinstance(asked, TaskText) else ""
+        task = await in_time(side.submit(text, COMMAND if is_ours else HTTP, why))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
 

@@ -37,9 +37,12 @@ class PlantSide(Protocol):
     def oee(self, query: OeeQuery) -> list[Oee]:
         """The figures of its cells, in the order of the plant file; it waits for the disk."""
 
-    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
+    def promises(self, text: str) -> list[dict[str, Any]]:
+        """What each cell that a task text names promises now; TextError, QueueFull."""
+
+    def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
         """A future of the task. A state `refused` or a TextError in it is the caller's mistake, any other
-        ArboledaError means "not now"."""
+        ArboledaError means "not now". `choice` is why it was given to its cell, where somebody chose."""
 
     def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
         """A future of what became of the verb; `scope` is "" for the whole plant."""

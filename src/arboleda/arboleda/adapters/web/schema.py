@@ -68,8 +68,19 @@ class WantedOee(BaseModel):
         return OeeQuery(cell=self.cell, since_s=self.since, until_s=self.until)
 
 
+class WantedPromises(BaseModel):
+    """Of which task."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    text: str = Field(max_length=200, examples=["sis_a,sis_b 0B 7"])
+
+
 class TaskText(_Asked):
     text: str = Field(examples=["sis_a 0B 7"], description="A task, as on the command line.")
+    why: str = Field(
+        default="", max_length=500, description="Why it is given to this cell, by who chose between plants."
+    )
 
 
 class TaskForm(_Asked):
@@ -137,6 +148,16 @@ class Task(_Told):
     values: dict[str, Any] | None = None
     answers: list[TaskAnswer] = Field(default=[], description="Of this task, in the order they came.")
     choice: str | None = Field(default=None, description=CHOICE)
+
+
+class Promise(_Told):
+    """What a cell promises of a task that it was not given."""
+
+    cell: str
+    text: str = Field(description="The task for this cell.")
+    seconds: float = Field(description="Until it would have done it, as far as past tasks tell.")
+    hindrance: str | None = Field(description="Why it could not begin it now.")
+    full: bool = Field(description="Whether its queue has no room.")
 
 
 class KeptTask(_Told):

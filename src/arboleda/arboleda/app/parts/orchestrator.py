@@ -192,11 +192,14 @@ class Orchestrator:
                 TASKS.warning("%s", run.why_paused)
         self.loop.start()
 
-    def submit(self, text: str, asked_by: str = COMMAND) -> Future[TaskChanged]:
-        """Ask for a task; the future holds the answer: queued, refused, or the known task's state."""
+    def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
+        """Ask for a task; the future holds the answer: queued, refused, or the known task's state.
+
+        `choice` is why it was given to its cell, where somebody chose between plants.
+        """
         answer, token = self._expect()
         self._asked_by[token] = asked_by
-        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token))
+        self.hear(TaskRequest(at=clock.seconds(), text=text, request=token, choice=choice))
         return answer
 
     def operate(self, verb: Verb, scope: str = "", by_hand: bool = False) -> Future[OperatorAnswer]:
@@ -205,6 +208,10 @@ class Orchestrator:
         now = clock.seconds()
         self.loop.post(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
         return answer
+
+    def promises(self, text: str) -> list[dict[str, Any]]:
+        """What each cell that a task text names promises now; TextError, QueueFull."""
+        return self.loop.read(lambda plant: view.promises(plant, text))
 
     def offers(self) -> list[dict[str, Any]]:
         """What each cell can be asked for."""

@@ -43,7 +43,8 @@ class Asked(Protocol):
     def history(self, query: TaskQuery) -> list[TaskRow]: ...
     def oee(self, query: OeeQuery) -> list[Oee]: ...
     def spelled(self, *, cell: str, recipe: str, values: Mapping[str, Value], id: str) -> str: ...
-    def submit(self, text: str, asked_by: str) -> Future[TaskChanged]: ...
+    def submit(self, text: str, asked_by: str, choice: str = "") -> Future[TaskChanged]: ...
+    def promises(self, text: str) -> list[dict[str, Any]]: ...
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
 
 
@@ -66,11 +67,12 @@ class Side:
         self.history = plant.history
         self.oee = plant.oee
         self.spelled = plant.spelled
+        self.promises = plant.promises
         self.operate = plant.operate
 
-    def submit(self, text: str, asked_by: str) -> Future[dict[str, Any]]:
+    def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()
-        self._plant.submit(text, asked_by).add_done_callback(lambda answer: _pass_on(answer, plain))
+        self._plant.submit(text, asked_by, choice).add_done_callback(lambda answer: _pass_on(answer, plain))
         return plain
 
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:

@@ -80,6 +80,6 @@ class Reach:
         if answer.is_success:
             return said
         sentence = plain(str(said.get("sentence", "") if isinstance(said, dict) else ""))[:LONGEST]
-        if answer.status_code in (409, 422):
+        if sentence and answer.status_code in (404, 409, 422):
             raise Said(sentence)
         raise Silent(REFUSED(status=answer.status_code, said=sentence))

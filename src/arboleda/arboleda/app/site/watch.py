@@ -6,13 +6,14 @@ import asyncio
 import logging
 from collections import defaultdict
 from collections.abc import Iterator
-from contextlib import suppress
 from typing import Any
 
+from arboleda.dashboard.frames import ended
 from arboleda.dashboard.site.side import Asked, PlantSeen
 from arboleda.model.errors import ArboledaError
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.model.sentence import BOTH, Phrase, Sentence
 
+from .choosing import LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
 from .places import Find, Place
 from .reach import NO_PLANT, NOT_REACHED, Reach, Said, Silent
 
@@ -34,7 +35,6 @@ NOT_STOPPED = Phrase(
     "NOT STOPPED, use the hard-wired button there: {silent}; {count} other plants heard the stop",
 )
 NOT_STOPPED_THAT = Phrase("site.not_stopped_that", "{plant} ({why})")
-NO_SUCH = Phrase("site.no_such", "there is no plant {plant} on this page")
 
 
 class Watched:
@@ -46,6 +46,7 @@ class Watched:
         self.snapshot: dict[str, Any] | None = None
         self.oee: list[dict[str, Any]] = []
         self.stands_by = False
+        self.is_left = False  # nobody wants to know of it any more
         self._name = place.plant
         self._oee_at = 0.0
 
@@ -62,7 +63,7 @@ class Watched:
         """Look again and again, until cancelled."""
         try:
             await asyncio.sleep(after_s)
-            while True:
+            while not self.is_left:
                 await self.look()
                 await asyncio.sleep(LOOK_S)
         finally:
@@ -103,29 +104,31 @@ class Site:
 
     async def close(self) -> None:
         running = [*self._tasks.values(), *([self._finding] if self._finding else [])]
-        for task in running:
-            task.cancel()
-        for task in running:
-            with suppress(asyncio.CancelledError):
-                await task
+        await asyncio.gather(*map(ended, running))
 
     def plants(self) -> list[PlantSeen]:
         """A row for each plant, whatever number of processes there is for it."""
         return [_seen(name, those) for name, those in self._rows()]
 
     async def submit(self, plant: str, text: str) -> Asked:
-        """Have that plant take a task."""
-        row = next((each for each in self._rows() if each[0] == plant), None)
-        if row is None:
-            return Asked(good=False, sentence=NO_SUCH(plant=plant))
+        """Have that plant take a task; a text that names plants goes to the best of those."""
+        reaches = {name: those[0].reach for name, those in self._rows()}
+        choice = Choice(plant=plant, text=text, why=None)
         try:
-            task = await row[1][0].reach.post("/api/tasks", {"text": text})
-            taken = TAKEN(plant=plant, text=str(task["text"]), id=str(task["id"]))
+            if names_plants(text):
+                choice = await chosen(text, reaches)
+            if choice.plant not in reaches:
+                raise Refused(NO_SUCH(plant=choice.plant or "-"))
+            why = {"why": str(choice.why)[:LONGEST]} if choice.why else {}
+            task = await reaches[choice.plant].post("/api/tasks", {"text": choice.text, **why})
+            taken = TAKEN(plant=choice.plant, text=str(task["text"]), id=str(task["id"]))
+        except Refused as error:
+            return Asked(good=False, sentence=error.sentence)
         except (Silent, Said) as error:
-            return Asked(good=False, sentence=NOT_TAKEN(plant=plant, why=error.sentence))
+            return Asked(good=False, sentence=NOT_TAKEN(plant=choice.plant, why=error.sentence))
         except (KeyError, TypeError):
-            return Asked(good=False, sentence=NO_PLANT(url=row[1][0].url))
-        return Asked(good=True, sentence=taken)
+            return Asked(good=False, sentence=NO_PLANT(url=reaches[choice.plant].place.url))
+        return Asked(good=True, sentence=BOTH(first=taken, second=choice.why) if choice.why else taken)
 
     async def stop(self, plant: str = "") -> Asked:
         """Have one plant stop, or all of them; who asks for the same meanwhile gets the same answer."""
@@ -176,8 +179,8 @@ class Site:
     def _follow(self, places: list[Place]) -> None:
         """Watch those that are new, and those no more that are gone."""
         for place in self._watched.keys() - set(places):
+            self._watched.pop(place).is_left = True
             self._tasks.pop(place).cancel()
-            del self._watched[place]
         fresh = [place for place in dict.fromkeys(places) if place not in self._watched]
         for number, place in enumerate(fresh):
             watched = self._watched[place] = Watched(place)

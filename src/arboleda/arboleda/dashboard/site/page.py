@@ -12,11 +12,14 @@ from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
 from nicegui.events import GenericEventArguments
 
+from arboleda.adapters.web.api import task_asked
 from arboleda.adapters.web.auth import SUBMIT, Role, allowed, require
+from arboleda.adapters.web.schema import TaskText
+from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
 
 from .. import header, shell
-from ..frames import Frames
+from ..frames import Frames, ended
 from ..plant_side import Layout
 from ..shell import language_of, role_shown
 from ..tags import act_button, rows, tag
@@ -66,6 +69,17 @@ def _serve(server: FastAPI, site: SiteSide) -> None:
         sentence = words(language_of(request)).say(answer.sentence)
         return JSONResponse({"sentence": sentence}, status_code=200 if answer.good else 502)
 
+    async def add_task(request: Request) -> JSONResponse:
+        """A task for the best of the plants that it names, `north/sis_a,south/sis_a 0B 7`, or refused."""
+        require(request.scope["arboleda.role"], SUBMIT)
+        asked = task_asked(await request.body())
+        if not isinstance(asked, TaskText):
+            raise PayloadError('The body must be JSON like {"text": "north/sis_a,south/sis_a 0B 7"}.')
+        answer = await site.submit("", asked.text)
+        sentence = words(language_of(request)).say(answer.sentence)
+        return JSONResponse({"sentence": sentence}, status_code=202 if answer.good else 422)
+
+    server.add_api_route("/api/tasks", add_task, methods=["POST"], include_in_schema=False)
     server.add_api_route("/api/plants/stop", stop, methods=["POST"], include_in_schema=False)
     server.add_api_route("/api/plants/{plant}/stop", stop, methods=["POST"], include_in_schema=False)
 
@@ -158,10 +172,7 @@ def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None
         running.append(asyncio.create_task(run()))
 
     async def stop() -> None:
-        for task in running:
-            task.cancel()
-            with suppress(asyncio.CancelledError):
-                await task
+        await asyncio.gather(*map(ended, running))
         await site.close()
 
     app.on_startup(start)
