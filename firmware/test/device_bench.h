@@ -34,12 +34,14 @@ public:
     }
 
     void order(const char* text) {
+        step();
         const auto* bytes = reinterpret_cast<const uint8_t*>(text);
         board.receive(now_us, decode_order(kDevice, bytes, strlen(text), false));
         step();
     }
 
     void send(Channel channel, const char* text) {
+        step();
         const auto* bytes = reinterpret_cast<const uint8_t*>(text);
         board.receive(now_us, decode(channel, bytes, strlen(text), false, 0));
         step();

@@ -41,3 +41,13 @@ def test_the_core_is_built_with_the_ramps_flags(project: ConfigParser) -> None:
 
 def test_the_default_environment_is_one_of_the_file(project: ConfigParser) -> None:
     assert f"env:{project['platformio']['default_envs']}" in project.sections()
+
+
+@pytest.mark.parametrize("name", ["device", "device-tls"])
+def test_a_declared_device_is_built_from_its_own_sources_and_no_arm(name: str, project: ConfigParser) -> None:
+    env = project[f"env:{name}"]
+    assert "-DARBOLEDA_DEVICE" in (project["env:device"]["build_flags"] + env["build_flags"]).split()
+    sources = project["env:device"]["build_src_filter"].split()
+    assert {"-<motion.cpp>", "-<machine.cpp>", "+<../../core/*.cpp>"} <= set(sources)
+    assert "-<device_*.cpp>" in project["env"]["build_src_filter"].split()
+    assert {"device_motion.cpp", "device_machine.cpp"} <= {path.name for path in (PORT / "src").iterdir()}
