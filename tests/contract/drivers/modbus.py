@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from pathlib import Path
 
 from arboleda.adapters.modbus_server import ModbusServer
-from arboleda.app.build import App, Options, build
 
-from .bench import HALT, LATCH, Bench, Device
-from .press import Order, Press, Words, plant
+from .bench import HALT, LATCH
+from .plc import bench
+from .press import Order, Words
 
 DRIVER = """
           modbus:
@@ -100,23 +99,4 @@ class ModbusWire:
         return b"" if sent and self._silent.is_set() else packet
 
 
-class PolledPress(Press):
-    """Its silence is that of its PLC: what only it says is read again and again."""
-
-    def __init__(self, wire: ModbusWire) -> None:
-        super().__init__(wire.connect)
-        self._plc = wire
-
-    def hush(self) -> None:
-        super().hush()
-        self._plc.hush()
-
-
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
-    wire = ModbusWire()
-    app = build(plant(folder, DRIVER % wire.port), ("orchestrator",), Options(state_dir=state))
-
-    return app, lambda app: PolledPress(wire)
-
-
-BENCH = Bench(open=_open, asks=True)
+BENCH = bench(ModbusWire, DRIVER)

@@ -9,10 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from arboleda.adapters.opcua_server import OpcUaServer
-from arboleda.app.build import App, Options, build
 
-from .bench import HALT, LATCH, Bench, Device
-from .press import Order, Press, Words, plant
+from .bench import HALT, LATCH
+from .plc import bench
+from .press import Order, Words
 
 DRIVER = """
           opcua:
@@ -116,23 +116,4 @@ class OpcUaWire:
         self._server.stop()
 
 
-class ReadPress(Press):
-    """Its silence is that of its PLC: what only it says is read again and again."""
-
-    def __init__(self, wire: OpcUaWire) -> None:
-        super().__init__(wire.connect)
-        self._plc = wire
-
-    def hush(self) -> None:
-        super().hush()
-        self._plc.hush()
-
-
-def _open(folder: Path, state: Path) -> tuple[App, Callable[[App], Device]]:
-    wire = OpcUaWire()
-    app = build(plant(folder, DRIVER % wire.port), ("orchestrator",), Options(state_dir=state))
-
-    return app, lambda app: ReadPress(wire)
-
-
-BENCH = Bench(open=_open, asks=True)
+BENCH = bench(OpcUaWire, DRIVER)

@@ -7,41 +7,23 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.app.plant_file import settings
-from arboleda.app.plant_file.document import Document
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
 
-EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor"
+from .mappings import EXAMPLE, Example
+
 GATE_FACT = "gate: {discrete: 0, words: {closed: 0, open: 1}}"
 LOAD = "load: {write: [{holding: 0, value: 1}]}"
 
 
-PLACE = ("cells", "line", "devices", "belt", "driver", "modbus")
-UNCHANGED = (EXAMPLE / "plant.yaml").read_text("utf-8")
+MAPPED = Example(file="plant.yaml", driver="modbus", settings=Settings)
+UNCHANGED = MAPPED.text
 
 
 @pytest.fixture(scope="module")
 def belt() -> Robot:
     return config.load(EXAMPLE / "plant.yaml").robots["belt"]
-
-
-def problems(belt: Robot, old: str, new: str) -> tuple[str, ...]:
-    """What is told of the example with this change."""
-    assert UNCHANGED.count(old) == 1, old
-    document = Document("plant.yaml", UNCHANGED.replace(old, new).encode())
-    try:
-        read = settings.read(document, PLACE, settings.shape("modbus", Settings), Settings)
-        for inside, sentence in read.problems(belt) if read is not None else ():
-            document.problem((*PLACE, *inside), sentence)
-    except settings.Unfit as unfit:
-        document.problem(unfit.place, str(unfit))
-    try:
-        document.finish()
-    except ConfigError as error:
-        return error.problems
-    return ()
 
 
 def changed(folder: Path, old: str, new: str) -> ConfigError:
@@ -54,7 +36,7 @@ def changed(folder: Path, old: str, new: str) -> ConfigError:
 
 
 def test_the_example_is_good(belt: Robot) -> None:
-    assert problems(belt, "name: plc_conveyor", "name: another") == ()
+    assert MAPPED.problems(belt, "name: plc_conveyor", "name: another") == ()
 
 
 def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -> None:
@@ -138,14 +120,14 @@ def test_what_cannot_be_read_is_told_with_file_and_line(tmp_path: Path) -> None:
     ],
 )
 def test_what_is_wrong_has_its_place_and_a_hint(belt: Robot, old: str, new: str, told: str) -> None:
-    found = problems(belt, old, new)
+    found = MAPPED.problems(belt, old, new)
     assert any(told in each for each in found), found
     assert all("plant.yaml:" in each for each in found)
 
 
 def test_ids_need_numbers_that_the_plc_echoes(belt: Robot) -> None:
     start, end = UNCHANGED.index("            sequence:"), UNCHANGED.index("            facts:")
-    found = problems(belt, UNCHANGED[start:end], "")
+    found = MAPPED.problems(belt, UNCHANGED[start:end], "")
     assert any("evidence: ids needs sequence" in each for each in found), found
 
 

@@ -7,15 +7,14 @@ from pathlib import Path
 import pytest
 
 from arboleda.app import config
-from arboleda.app.plant_file import settings
-from arboleda.app.plant_file.document import Document
 from arboleda.drivers.opcua.settings import Settings
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Robot
 
-EXAMPLE = Path(__file__).parents[3] / "examples/plc_conveyor"
-PLACE = ("cells", "line", "devices", "belt", "driver", "opcua")
-UNCHANGED = (EXAMPLE / "opcua.yaml").read_text("utf-8")
+from .mappings import EXAMPLE, Example
+
+MAPPED = Example(file="opcua.yaml", driver="opcua", settings=Settings)
+UNCHANGED = MAPPED.text
 LOAD = "load: {call: ns=2;s=Load, on: ns=2;s=Device}"
 URL = "url: opc.tcp://127.0.0.1:4840"
 MM_S = "mm_s: {node: ns=2;s=mm_s}"
@@ -26,25 +25,8 @@ def belt() -> Robot:
     return config.load(EXAMPLE / "opcua.yaml").robots["belt"]
 
 
-def problems(belt: Robot, old: str, new: str) -> tuple[str, ...]:
-    """What is told of the example with this change."""
-    assert UNCHANGED.count(old) == 1, old
-    document = Document("plant.yaml", UNCHANGED.replace(old, new).encode())
-    try:
-        read = settings.read(document, PLACE, settings.shape("opcua", Settings), Settings)
-        for inside, sentence in read.problems(belt) if read is not None else ():
-            document.problem((*PLACE, *inside), sentence)
-    except settings.Unfit as unfit:
-        document.problem(unfit.place, str(unfit))
-    try:
-        document.finish()
-    except ConfigError as error:
-        return error.problems
-    return ()
-
-
 def test_the_example_is_good(belt: Robot) -> None:
-    assert problems(belt, "name: opcua_conveyor", "name: another") == ()
+    assert MAPPED.problems(belt, "name: opcua_conveyor", "name: another") == ()
 
 
 def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -> None:
@@ -106,14 +88,14 @@ def test_what_does_not_fit_the_kind_is_told_with_file_and_line(tmp_path: Path) -
     ],
 )
 def test_what_is_wrong_has_its_place_and_a_hint(belt: Robot, old: str, new: str, told: str) -> None:
-    found = problems(belt, old, new)
+    found = MAPPED.problems(belt, old, new)
     assert any(told in each for each in found), found
     assert all("plant.yaml:" in each for each in found)
 
 
 def test_ids_need_numbers_that_the_server_echoes(belt: Robot) -> None:
     start, end = UNCHANGED.index("            sequence:"), UNCHANGED.index("            facts:")
-    found = problems(belt, UNCHANGED[start:end], "")
+    found = MAPPED.problems(belt, UNCHANGED[start:end], "")
     assert any("evidence: ids needs sequence" in each for each in found), found
 
 
