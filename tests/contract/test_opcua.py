@@ -18,6 +18,7 @@ from typing import IO, Any
 import asyncua
 import pytest
 from asyncua import ua
+from asyncua.common.utils import NotEnoughData
 
 from arboleda.adapters.opcua import OpcUa
 from arboleda.app.config import load
@@ -280,6 +281,13 @@ class Played:
         """There is none."""
 
 
+class Garbled(Played):
+    """One that has heard bytes of no meaning."""
+
+    async def connect(self) -> None:
+        raise NotEnoughData("1 byte")
+
+
 class Stubborn(Played):
     """One that no cancellation ends."""
 
@@ -287,6 +295,12 @@ class Stubborn(Played):
         while True:
             with suppress(asyncio.CancelledError):
                 await asyncio.sleep(60)
+
+
+def test_what_cannot_be_read_is_said(belt: Device, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(asyncua, "Client", Garbled)
+    with driven(belt, settings(belt, 4840)) as (_, heard):
+        assert "has sent what cannot be read: 1 byte" in str(heard.until(is_lost).lost)
 
 
 def test_a_method_that_refuses_late_is_heard_as_of_then(

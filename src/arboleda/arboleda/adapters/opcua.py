@@ -307,4 +307,9 @@ def _why(settings: Settings, error: Exception) -> str:
         return f"{settings.url} is not there"
     if isinstance(error, asyncio.TimeoutError):
         return f"{settings.url} does not answer"
-    return f"{settings.url}: {error or type(error).__name__}"
+    from asyncua.common.utils import NotEnoughData
+    from asyncua.ua.uaerrors import UaError
+
+    if isinstance(error, UaError | OSError) and not isinstance(error, NotEnoughData):
+        return f"{settings.url}: {error or type(error).__name__}"
+    return f"{settings.url} has sent what cannot be read: {error or type(error).__name__}"
