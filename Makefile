@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign kills hosts mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -17,6 +17,8 @@ DEVICE_SEEDS ?= 12
 DEVICE_CYCLES ?= 4
 CRASH_SEEDS ?= 6
 CRASH_CYCLES ?= 4
+STANDBY_SEEDS ?= 20
+STANDBY_CYCLES ?= 3
 KILLS ?= --kills 1000
 HOSTS ?= --faults 1000
 MUTANTS ?= --sample 400
@@ -62,6 +64,9 @@ crash-campaign: install  ## simulate plants that die again and again, also of po
 	@for plant in lab_bench machine_tending own_tree; do \
 		$(BIN)/arboleda simulate --faults crashes --plant examples/$$plant/plant.yaml --seeds $(CRASH_SEEDS) --cycles $(CRASH_CYCLES) || exit 1; \
 	done
+
+standby-campaign: install  ## simulate plants on two hosts, one of which stands by; STANDBY_SEEDS=... for more seeds
+	$(BIN)/arboleda simulate --standby --seeds $(STANDBY_SEEDS) --cycles $(STANDBY_CYCLES)
 
 kills: install  ## kill a plant with -9 at 1000 random instants, count what came of its tasks; an hour; KILLS="--kills 12" for others
 	PYTHONPATH=kills $(BIN)/python -m arboleda_kills $(KILLS)
