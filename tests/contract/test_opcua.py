@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import queue
 import subprocess
 import sys
@@ -288,6 +289,13 @@ class Garbled(Played):
         raise NotEnoughData("1 byte")
 
 
+class Untidy(Played):
+    """One that leaves a task behind which fails, and of which nobody asks what became."""
+
+    async def connect(self) -> None:
+        self.left = asyncio.get_running_loop().create_task(self.call_method())
+
+
 class Stubborn(Played):
     """One that no cancellation ends."""
 
@@ -301,6 +309,18 @@ def test_what_cannot_be_read_is_said(belt: Device, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(asyncua, "Client", Garbled)
     with driven(belt, settings(belt, 4840)) as (_, heard):
         assert "has sent what cannot be read: 1 byte" in str(heard.until(is_lost).lost)
+
+
+def test_what_the_library_leaves_behind_writes_no_traceback(
+    belt: Device, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(asyncua, "Client", Untidy)
+    with driven(belt, settings(belt, 4840)) as (driver, heard):
+        began = heard.until(is_heard).at
+        heard.until(lambda report: report.at > began + 0.2)
+    del driver
+    gc.collect()
+    assert [each.message for each in caplog.records if each.name == "asyncio"] == []
 
 
 def test_a_method_that_refuses_late_is_heard_as_of_then(

@@ -106,6 +106,7 @@ class OpcUa:
 
     def _run(self) -> None:
         asyncio.set_event_loop(self._loop)
+        self._loop.set_exception_handler(_quiet)
         self._loop.run_until_complete(self._live())
         self._loop.close()
 
@@ -289,6 +290,10 @@ async def _ended(tasks: Iterable[asyncio.Task[Any]]) -> None:
         task.cancel()
     if waited_for:
         await asyncio.wait(waited_for, timeout=END_S)
+
+
+def _quiet(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """What becomes of asyncua's own tasks is no news: where it matters, a read says so."""
 
 
 def need_library() -> None:
