@@ -20,7 +20,7 @@ from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
 from arboleda.app.site.places import Place
 from arboleda.app.site.reach import ANSWER_S, NO_ANSWER
-from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED_ALL, Site
+from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
 from arboleda.dashboard.frames import ended
 from arboleda.dashboard.site.side import PlantSeen
 from arboleda.model.messages import OperatorAnswer, Verb
@@ -135,6 +135,19 @@ def test_a_stop_of_one_reaches_that_one() -> None:
     assert answer.good and (first.acts, second.acts) == ([], [(Verb.STOP, "", False)])
 
 
+def test_where_there_is_no_plant_or_no_such_one_it_says_so() -> None:
+    async def ask(site: Site) -> list[str]:
+        answers = [await site.stop(), await site.stop("west"), await site.submit("", "sis_a 0b 7")]
+        assert not any(each.good for each in answers)
+        return [str(each.sentence) for each in answers]
+
+    assert watched([], ask) == [
+        "no plant is on this page",
+        "there is no plant west on this page",
+        "write plant/cell,plant/cell and the task, e.g. north/sis_a,south/sis_a 0B 7",
+    ]
+
+
 def test_the_same_stop_that_comes_by_two_ways_is_said_once() -> None:
     plant = called("first")
     plant.unanswered = []
@@ -151,7 +164,7 @@ def test_the_same_stop_that_comes_by_two_ways_is_said_once() -> None:
     with running(plant) as web:
         answers = watched([Place(url=web.origin)], stop)
     assert len(plant.acts) == 1
-    assert {each.sentence.phrase for each in answers} == {STOPPED_ALL}
+    assert {each.sentence.phrase for each in answers} == {STOPPED}
 
 
 def test_a_task_goes_to_its_plant_and_a_refusal_is_told() -> None:
@@ -198,6 +211,7 @@ def test_two_that_both_lead_a_plant_of_one_name_are_two_rows_and_both_are_stoppe
     with running(first) as one, running(second) as two:
         answer = watched([Place(url=one.origin), Place(url=two.origin)], stop)
     assert answer.good and first.acts == second.acts == [(Verb.STOP, "", False)]
+    assert answer.sentence == STOPPED_ALL(count=2)
 
 
 @pytest.mark.parametrize("token", [TOKENS[Role.OPERATOR], ""])

@@ -13,7 +13,7 @@ from arboleda.dashboard.site.side import Asked, PlantSeen
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
-from .choosing import LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
+from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
 from .places import Find, Place
 from .reach import NO_PLANT, NOT_REACHED, Reach, Said, Silent
 
@@ -30,6 +30,7 @@ STOPPED = Phrase("site.stopped", "{plants} heard the stop; each plant's own page
 STOPPED_ALL = Phrase(
     "site.stopped_all", "all {count} plants heard the stop; each plant's own page says when its robots stand"
 )
+NO_PLANTS = Phrase("site.no_plants", "no plant is on this page")
 NOT_STOPPED = Phrase(
     "site.not_stopped",
     "NOT STOPPED, use the hard-wired button there: {silent}; {count} other plants heard the stop",
@@ -118,7 +119,7 @@ class Site:
             if names_plants(text):
                 choice = await chosen(text, reaches)
             if choice.plant not in reaches:
-                raise Refused(NO_SUCH(plant=choice.plant or "-"))
+                raise Refused(NO_SUCH(plant=choice.plant) if choice.plant else FORM(example=EXAMPLE))
             why = {"why": str(choice.why)[:LONGEST]} if choice.why else {}
             task = await reaches[choice.plant].post("/api/tasks", {"text": choice.text, **why})
             taken = TAKEN(plant=choice.plant, text=str(task["text"]), id=str(task["id"]))
@@ -140,7 +141,7 @@ class Site:
     async def _stop(self, plant: str) -> Asked:
         rows = [row for row in self._rows() if plant in ("", row[0])]
         if not rows:
-            return Asked(good=False, sentence=NO_SUCH(plant=plant or "-"))
+            return Asked(good=False, sentence=NO_SUCH(plant=plant) if plant else NO_PLANTS())
         answers = await asyncio.gather(*(_stop_plant(those) for _, those in rows))
         silent = [
             NOT_STOPPED_THAT(plant=name, why=why)
@@ -151,8 +152,8 @@ class Site:
             return Asked(
                 good=False, sentence=NOT_STOPPED(silent=tuple(silent), count=len(rows) - len(silent))
             )
-        if plant:
-            return Asked(good=True, sentence=STOPPED(plants=plant))
+        if len(rows) == 1:
+            return Asked(good=True, sentence=STOPPED(plants=rows[0][0]))
         return Asked(good=True, sentence=STOPPED_ALL(count=len(rows)))
 
     def _rows(self) -> Iterator[tuple[str, list[Watched]]]:
