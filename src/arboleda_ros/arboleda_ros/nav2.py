@@ -86,12 +86,13 @@ def index_of(missed: Any) -> int:
 
 
 def pose_of(pose: Any) -> Pose:
-    """What of a pose lies on the floor."""
+    """What of a pose lies on the floor; an orientation that is none has no yaw."""
     turned = pose.orientation
     # Products, not powers: a power that is too large for a number raises.
     across = turned.w * turned.z + turned.x * turned.y
     along = turned.y * turned.y + turned.z * turned.z
-    yaw = math.atan2(2 * across, 1 - 2 * along)
+    length = turned.x * turned.x + turned.w * turned.w + along
+    yaw = math.atan2(2 * across, 1 - 2 * along) if abs(length - 1) < 0.1 else math.nan
     return Pose(pose.position.x, pose.position.y, yaw)
 
 

@@ -210,6 +210,15 @@ def test_localisation_that_was_there_before_counts_from_the_first_odometry() -> 
     assert [each.node for each in said if isinstance(each, Report)] == [4]
 
 
+def test_localisation_of_a_time_without_odometry_counts_for_nothing(rig: Rig) -> None:
+    rig.at, rig.counts = on_map(1), False
+    rig.now += 0.9
+    rig.localise()  # odometry last spoke on node 0
+    rig.counts = True
+    rig.wait(0.6)
+    assert rig.last.node == 1
+
+
 def test_too_far_without_a_word_of_localisation_is_lost(rig: Rig) -> None:
     for step in range(25):
         rig.at = replace(on_map(0), x=9.0 - step / 10)

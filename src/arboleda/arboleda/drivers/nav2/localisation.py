@@ -16,6 +16,7 @@ from ..ros_action.goal import Rest
 from .pose import Pose, wrapped
 
 SILENT_S = 1.0  # odometry comes many times a second
+TOGETHER_S = 0.5  # so far apart, two measurements are still of about the same moment
 KEPT = 200  # poses of odometry, some seconds of it
 STILL_M = 0.005  # or rad; less than this is noise
 
@@ -94,6 +95,8 @@ class Localisation:
             self._early = seen
             return
         then = min(self._counted, key=lambda each: abs(_seconds(each) - _seconds(seen)))
+        if self._map is not None and abs(_seconds(then) - _seconds(seen)) > TOGETHER_S:
+            return  # odometry was silent then: nobody knows how far the base has come since
         self._map, self._gone_m = seen.pose @ then.pose.inverse, 0.0
 
 

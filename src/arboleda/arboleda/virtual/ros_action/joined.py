@@ -14,7 +14,6 @@ from arboleda.drivers.ros_action.events import (
     Ended,
     Event,
     Found,
-    Seen,
     SendGoal,
     Unsent,
 )
@@ -47,6 +46,7 @@ class Joined:
         self._look_at = now
         self._starts, self._was_off = 1, False
         self._open: dict[str, bool] = {}  # goals that have no end, and whether they are accepted
+        self._early: dict[str, Ended] = {}  # ends of goals that are not yet accepted
         self._to_driver: deque[Event] = deque()
 
     @property
@@ -65,6 +65,7 @@ class Joined:
         if self._server.is_off and not self._was_off:
             self._starts += 1
             self._open.clear()
+            self._early.clear()
             self._to_driver.clear()
         self._was_off = self._server.is_off
         self._step_server()
@@ -108,10 +109,21 @@ class Joined:
             if isinstance(message, CancelDecided):
                 decided.append(message)
                 continue
-            if isinstance(message, Answered) and message.accepted:
-                self._open[message.id] = True
-            elif isinstance(message, Answered | Ended):
-                self._open.pop(message.id, None)
-            if isinstance(message, Answered | Ended | Seen):
+            if isinstance(message, Answered | Ended):
+                self._tell(message)
+            else:
                 self._to_driver.append(message)
         return decided
+
+    def _tell(self, message: Answered | Ended) -> None:
+        """A client asks for the end of a goal once that is accepted, and hears of none before."""
+        if isinstance(message, Ended) and self._open.get(message.id) is False:
+            self._early[message.id] = message
+            return
+        self._to_driver.append(message)
+        if isinstance(message, Answered) and message.accepted and message.id in self._open:
+            self._open[message.id] = True
+            if (end := self._early.pop(message.id, None)) is not None:
+                self._tell(end)
+        else:
+            self._open.pop(message.id, None)
