@@ -199,7 +199,7 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
         "facts: {lid:",
         "facts: {a: text, b: text, c: text, d: text, e: text, f: text, lid:",
         "24:20: ",
-        "all that a oven can say at once: the message would have 549 bytes; at most 512 are allowed",
+        "all that a oven can say at once: the message would have 572 bytes; at most 512 are allowed",
     ),
     "a word that is too long for its board": (
         "answers: [good, bad]",

@@ -273,10 +273,13 @@ def test_a_command_that_waited_for_its_driver_for_too_long_never_leaves_and_a_st
 
     there = running(Slow(), stale_after_s=1.0)
     there.is_up()
+    speaker = threading.Thread(target=speak, args=(there.made[0], go))
+    speaker.start()
     for command in (GO, LIGHT, HALT):
         there.part.send(command)
-    there.is_lost()
+    assert "has not come back from send" in there.is_lost()
     go.set()
+    speaker.join()
     undelivered = there.hears(lambda event: isinstance(event, Undelivered))
     assert undelivered.id == LIGHT.id and "must not leave any more" in str(undelivered.sentence)
     assert [there.made[0].sent.get(timeout=WAIT_S) for _ in range(2)] == [GO, HALT]
