@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -38,6 +39,8 @@ class PostgresHistory(History):
                 self._opened = None
 
     def _db(self) -> Impatient | None:
+        if self._opened is not None and _was_ended(self._opened):
+            self._opened.close()
         if self._opened is None or self._opened.closed:
             db = connected(self._address, self._schema)
             try:
@@ -68,3 +71,8 @@ class _Reader:
 
     def execute(self, statement: str, values: tuple[object, ...] = ()) -> Iterable[tuple[Any, ...]]:
         return self._db.execute(translated(statement), plain_values(values))
+
+
+def _was_ended(db: Impatient) -> bool:
+    """Whether the server has said something unasked, as when it ends: nobody waits for an answer here."""
+    return not db.closed and bool(select.select([db.fileno()], [], [], 0.0)[0])
