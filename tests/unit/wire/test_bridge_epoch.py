@@ -113,6 +113,14 @@ def test_a_bridge_that_starts_begins_above_what_has_beaten(bench, sent) -> None:
     assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 6))]
 
 
+def test_a_bridge_that_has_led_in_silence_does_not_rise_above_the_next(bench, sent) -> None:
+    bench.connect()
+    bench.tell(least_epoch=EPOCH)
+    bench.tell(least_epoch=EPOCH + 9)
+    assert sent(bench.heartbeat()) == []
+    assert sent(bench.order(grip(1))) == [("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH))]
+
+
 def test_a_bridge_that_was_superseded_hears_it_and_does_not_rise_above_the_next(
     linked, sent, reports
 ) -> None:

@@ -52,6 +52,7 @@ class Labels:
         self._issued: OrderedDict[int, Issued] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
         self._spoken = False
+        self._led = False  # whether the board has said that this bridge is the newest that it hears
         self._raised = False
         self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
         self._heard_failures: tuple[tuple[int, str], ...] = ()
@@ -92,8 +93,10 @@ class Labels:
         """Take over what telemetry says about our commands; the seqs that it reports ended."""
         acknowledged = -1 if said.ack_epoch is None else said.ack_epoch
         self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
-        if not self._spoken and (acknowledged >= self.epoch or self._least > self.epoch):
+        begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
+        if begins and (acknowledged >= self.epoch or self._least > self.epoch):
             self._raise_above(self._least)
+        self._led = self._led or self._least == self.epoch
         self.foreign = self._strange(said)
         refused = self._refused(said)
         ours = said.ack_epoch == self.epoch
