@@ -16,11 +16,15 @@ from arboleda.model.messages import Fact, Remember
 from arboleda.simulator.hosts.database import LeaderRow
 
 NOW = 1000.0
-AGES_S = (0.3, LEASE_S - 0.5, LEASE_S + 0.5, WANTED_S - 5.0, WANTED_S + 5.0)
+AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0)
 
 
 class Both:
-    """A row and a database to which the same is done; time passes in both as their times grow older."""
+    """A row and a database to which the same is done; time passes in both as their times grow older.
+
+    Before each deed the times of the database are made as old as those of the row: how long the deeds before
+    it took does not count.
+    """
 
     def __init__(self, server: Server, address: str, plant: str) -> None:
         self.row = LeaderRow(epoch=0)
@@ -30,6 +34,7 @@ class Both:
         self.others.prepare()
 
     def lead(self, proposed: int) -> None:
+        self._agree()
         expected = self.row.lead(proposed, NOW)
         if expected is None:  # the process itself would wait for the lease to end
             with self._connection() as db:
@@ -42,6 +47,7 @@ class Both:
         self.processes.append((memory, expected[0]))
 
     def renew(self, memory: PostgresMemory, epoch: int) -> None:
+        self._agree()
         expected = self.row.renew(epoch, NOW)
         if expected is None:
             with pytest.raises(Superseded):
@@ -73,14 +79,9 @@ class Both:
     def grow_older(self, seconds: float) -> None:
         self.row.seen = None if self.row.seen is None else self.row.seen - seconds
         self.row.wanted = None if self.row.wanted is None else self.row.wanted - seconds
-        with self._connection() as db:
-            db.execute(
-                "UPDATE leader SET seen = seen - %s * interval '1 second',"
-                " wanted = wanted - %s * interval '1 second'",
-                (seconds, seconds),
-            )
 
     def compare(self) -> None:
+        self._agree()
         leader = self.others.leader()
         assert (leader.epoch, leader.leads) == (self.row.epoch, self.row.leads(NOW))
 
@@ -88,6 +89,17 @@ class Both:
         for memory, _ in self.processes:
             memory.close()
         self.others.close()
+
+    def _agree(self) -> None:
+        ages = [None if at is None else NOW - at for at in (self.row.seen, self.row.wanted)]
+        with self._connection() as db:
+            known = db.execute("SELECT seen IS NULL, wanted IS NULL FROM leader").fetchone()
+            assert known in (None, tuple(age is None for age in ages))
+            db.execute(
+                "UPDATE leader SET seen = clock_timestamp() - %s * interval '1 second',"
+                " wanted = clock_timestamp() - %s * interval '1 second'",
+                ages,
+            )
 
     def _connection(self) -> psycopg.Connection:
         db = self._server.connection()

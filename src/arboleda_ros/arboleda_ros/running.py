@@ -22,7 +22,6 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load_recorded
 from arboleda.app.log_file import LogFile
 from arboleda.app.log_queue import log_to
-from arboleda.app.standby import take_over
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 
@@ -130,6 +129,8 @@ def _app(link: Link, name: str) -> App:
         recording=recording,
     )
     if values.get("standby"):
+        from arboleda.app.standby import take_over  # it shows a page, which no other start needs
+
         return take_over(model, parts, options, LOG.info)
     return build(model, parts, options)
 
