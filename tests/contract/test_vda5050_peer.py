@@ -16,13 +16,13 @@ from arboleda.adapters.mqtt import MqttClient
 from arboleda.adapters.vda5050.driver import Vda5050
 from arboleda.app.config import load
 from arboleda.drivers import FollowPath, MotionState, Report, Stop, StopMode
-from arboleda.drivers.vda5050.settings import Settings
+from arboleda.drivers.vda5050.settings import EdgeAction, Settings
 from arboleda.kinds.declared import Device
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Robot
 from arboleda.wire.transport import Delivery
 
-from .conftest import Inbox, Mosquitto
+from .conftest import PATIENCE_S, Inbox, Mosquitto
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("node")]
 
@@ -63,6 +63,7 @@ def home(cell):
     return cell.device("cart").go("home")
 """
 INSTANT = ("noop", "stop_charging")
+EDGES = (EdgeAction(between=("0", "3"), action="noop", values={"duration": 0.1}),)
 
 
 class Hall:
@@ -76,9 +77,8 @@ class Hall:
         self._spy.start()
         self.wire.wait(lambda inbox: any(inbox.links))
         where = f"{broker.address.host}:{broker.address.port}"
-        settings = Settings(
-            broker=where, manufacturer="peer", serial="agv1", version="2.0", base=1, instant=INSTANT
-        )
+        vehicle = {"broker": where, "manufacturer": "peer", "serial": "agv1", "version": "2.0"}
+        settings = Settings(base=1, instant=INSTANT, edges=EDGES, **vehicle)  # type: ignore[arg-type]
         self._driver = Vda5050(settings)
         self._driver.start(list(robots.values()), self.reports.put, time.monotonic)
         self.vehicle = self.boot()
@@ -105,13 +105,15 @@ class Hall:
     def stop(self, mode: StopMode) -> None:
         self._driver.send(Stop(id="", robot="cart", mode=mode))
 
-    def hears(self, robot: str, **said: object) -> Report:
+    def hears(self, robot: str, **wanted: object) -> Report:
         """The first report of a robot, from now on, that says all of this."""
         began = len(self.reports)
 
         def found(reports: Inbox) -> Report | None:
             mine = (each for each in reports[began:] if each.robot == robot)
-            return next((each for each in mine if all(getattr(each, key) == said[key] for key in said)), None)
+            return next(
+                (each for each in mine if all(getattr(each, key) == wanted[key] for key in wanted)), None
+            )
 
         return self.reports.wait(found)
 
@@ -146,6 +148,39 @@ def test_a_way_is_driven_to_its_end_by_updates_on_the_way(hall: Hall) -> None:
     assert hall.hears("cart", done="1-1").node == 5
     assert [each["orderUpdateId"] for each in hall.told("/order")] == [0, 1, 2]
     assert any(state["driving"] and state["orderUpdateId"] for state in hall.told("/state"))
+
+
+def test_its_factsheet_is_read_what_it_lacks_is_told_and_orders_are_as_long_as_it_takes_them(
+    hall: Hall, caplog: pytest.LogCaptureFixture
+) -> None:
+    lines = told_in_log(caplog, "factsheet")
+    assert lines == [
+        "peer/agv1 by its factsheet: it has no action dance at a node, which is for forks dance;"
+        " it has noop, startCharging, stopCharging, pick"
+    ]
+    hall.drive("1-1", 0, 1, 2, 5, 8)
+    assert hall.hears("cart", done="1-1").node == 8
+    assert max(len(each["nodes"]) for each in hall.told("/order")) == 3
+
+
+def told_in_log(caplog: pytest.LogCaptureFixture, word: str) -> list[str]:
+    """Lines with a word, also those of before the test began; waits for the first."""
+    end = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        lines = [each.getMessage() for each in (*caplog.get_records("setup"), *caplog.records)]
+        if found := [line for line in lines if word in line]:
+            return found
+        time.sleep(0.02)
+    return []
+
+
+def test_an_action_of_an_edge_is_done_on_the_way(hall: Hall) -> None:
+    hall.drive("1-1", 0, 3)
+    assert hall.hears("cart", done="1-1").node == 3
+    (edge,) = hall.told("/order")[0]["edges"]
+    states = [each for state in hall.told("/state") for each in state["actionStates"]]
+    (horn,) = edge["actions"]
+    assert (horn["actionId"], "FINISHED") in {(each["actionId"], each["actionStatus"]) for each in states}
 
 
 def test_an_action_at_a_node_is_done_with_its_fact(hall: Hall) -> None:

@@ -4,7 +4,60 @@
 const [folder, brokerUrl, serialNumber] = process.argv.slice(2);
 const { AgvController, VirtualAgvAdapter } = require(folder);
 
-const vehicle = new AgvController(
+const action = (actionType, actionScopes, ...needs) => ({
+    actionType,
+    actionScopes,
+    actionParameters: [...needs, "duration"].map((key) => ({
+        key,
+        valueDataType: "STRING",
+        isOptional: key === "duration",
+    })),
+});
+
+// It has none of its own; this one is true of it, but for the limit of an order.
+const FACTSHEET = {
+    typeSpecification: {
+        seriesName: "virtual",
+        agvKinematic: "DIFF",
+        agvClass: "CARRIER",
+        maxLoadMass: 50,
+        localizationTypes: ["NATURAL"],
+        navigationTypes: ["VIRTUAL_LINE_GUIDED"],
+    },
+    physicalParameters: {
+        speedMin: 0,
+        speedMax: 1,
+        accelerationMax: 1,
+        decelerationMax: 1,
+        heightMin: 0.3,
+        heightMax: 0.3,
+        width: 0.4,
+        length: 0.6,
+    },
+    protocolLimits: {
+        maxStringLens: {},
+        maxArrayLens: { "order.nodes": 3 },
+        timing: { minOrderInterval: 0, minStateInterval: 0 },
+    },
+    protocolFeatures: {
+        optionalParameters: [],
+        agvActions: [
+            ...["cancelOrder", "startPause", "stopPause"].map((name) => action(name, ["INSTANT"])),
+            ...["noop", "startCharging", "stopCharging"].map((name) => action(name, ["INSTANT", "NODE", "EDGE"])),
+            action("pick", ["NODE"], "stationType", "loadType"),
+        ],
+    },
+    agvGeometry: {},
+    loadSpecification: {},
+};
+
+class Vehicle extends AgvController {
+    updateFactsheet() {
+        super.updateFactsheet(FACTSHEET);
+    }
+}
+
+const vehicle = new Vehicle(
     { manufacturer: "peer", serialNumber },
     { interfaceName: "uagv", transport: { brokerUrl }, vdaVersion: "2.0.0" },
     { agvAdapterType: VirtualAgvAdapter, publishVisualizationInterval: 0, publishStateInterval: 2000 },

@@ -6,10 +6,11 @@ import pytest
 
 from arboleda.drivers import MotionState, NotSent, Stop, StopMode
 from arboleda.drivers.vda5050.machine import AGAIN_S
+from arboleda.drivers.vda5050.settings import EdgeAction, Settings
 from arboleda.kinds.mobile import FollowPath
 from arboleda.virtual.vda5050.faults import FAULTS
 
-from .vda5050_rig import Rig
+from .vda5050_rig import Rig, devices
 
 WAY_S = 4.0  # three edges of 0.4 m at 0.5 m/s
 
@@ -17,6 +18,15 @@ WAY_S = 4.0  # three edges of 0.4 m at 0.5 m/s
 @pytest.fixture
 def rig() -> Rig:
     rig = Rig()
+    rig.run(0.5)
+    return rig
+
+
+@pytest.fixture(params=["2.0", "2.1", "3.0"])
+def horned(request: pytest.FixtureRequest) -> Rig:
+    """A horn is sounded between the nodes 3 and 6."""
+    horn = EdgeAction(between=("3", "6"), action="sound_horn", values={"loudness_db": 60})
+    rig = Rig(request.param, edges=(horn,))
     rig.run(0.5)
     return rig
 
@@ -99,6 +109,55 @@ def test_an_instant_verb_is_done_on_the_way() -> None:
     rig.do("drop")
     rig.run(1.3)
     assert (rig.said["forks"].done, rig.said["cart"].done) == ("1-2", None)
+
+
+def test_an_edge_has_its_action_in_both_directions_and_counts_for_the_end(horned: Rig) -> None:
+    rig = horned
+    rig.drive(0, 3, 6, 3)
+    edges = next(said["edges"] for topic, said in rig.told if topic == "order")
+    assert [[each["actionType"] for each in edge["actions"]] for edge in edges] == [
+        [],
+        ["soundHorn"],
+        ["soundHorn"],
+    ]
+    assert edges[1]["actions"][0]["actionParameters"] == [{"key": "loudnessDb", "value": 60}]
+    assert edges[1]["actions"][0]["blockingType"] == "NONE"
+    rig.run(2.5)
+    assert (rig.agv.node, rig.said["cart"].done) == ("3", None)  # the horn of the way back is still heard
+    rig.run(1.0)
+    assert rig.said["cart"].done == "1-1"
+
+
+def test_an_action_of_an_edge_that_fails_fails_the_way(horned: Rig) -> None:
+    rig = horned
+    rig.faults.switch("action_fails", on=True)
+    rig.drive(0, 3, 6, 7, 8)
+    rig.run(WAY_S)
+    assert (rig.said["cart"].failed, rig.said["cart"].failure) == ("1-1", "actionError")
+
+
+def test_an_action_that_blocks_holds_the_vehicle_on_its_edge() -> None:
+    rig = Rig(edges=(EdgeAction(between=("0", "3"), action="wait", blocking="HARD"),))
+    rig.run(0.5)
+    rig.drive(0, 3)
+    rig.run(0.9)
+    assert (rig.agv.node, rig.said["cart"].state) == ("0", MotionState.MOVING)
+    rig.run(1.5)
+    assert rig.said["cart"].done == "1-1"
+
+
+@pytest.mark.parametrize(
+    ("between", "why"),
+    [
+        (("0", "9"), "no node '9'; there are 0, 1, 2, 3, 4, 5, 6, 7, 8"),
+        (("0", "8"), "0 and 8 are no neighbours on the grid"),
+    ],
+)
+def test_an_edge_that_is_none_is_named_in_the_plant_file(between: tuple[str, str], why: str) -> None:
+    edges = (EdgeAction(between=("0", "1"), action="a"), EdgeAction(between=between, action="b"))
+    settings = Settings(broker="nowhere", manufacturer="arboleda", serial="agv1", edges=edges)
+    cart = devices()[0]
+    assert list(settings.problems(cart)) == [(("edges", 1, "between"), why)]
 
 
 def test_a_question_is_answered_by_the_result_of_its_action(rig: Rig) -> None:

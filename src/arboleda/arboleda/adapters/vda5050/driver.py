@@ -20,6 +20,7 @@ from .messages import Headers, Unfit, from_bytes, to_bytes
 
 LOG = logging.getLogger("arboleda.drivers.vda5050")
 LONGEST_TOPIC = 300
+HEARD = {"state": Vehicle.state, "connection": Vehicle.connection, "factsheet": Vehicle.factsheet}
 
 
 @driver("vda5050", settings=Settings)
@@ -43,7 +44,10 @@ class Vda5050:
         self._hear, self._clock = hear, clock
         self._vehicle = Vehicle(devices, settings, mark=mark)
         self._headers = Headers(settings.version, settings.manufacturer, settings.serial)
-        topics = (f"{settings.topics}/state", f"{settings.interface}/+/+/+/connection")
+        topics = (
+            *(f"{settings.topics}/{topic}" for topic in ("state", "factsheet")),
+            f"{settings.interface}/+/+/+/connection",
+        )
         self._client = MqttClient(
             f"arboleda-{mark}",
             address(settings.broker),
@@ -102,12 +106,13 @@ class Vda5050:
             if (said["manufacturer"], said["serialNumber"]) != (settings.manufacturer, settings.serial):
                 raise Unfit(f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}")
         except Unfit as error:
-            what = f"a message on {delivery.topic} is refused: {error}"
-            if self._seldom.is_due(what, self._clock()):
-                LOG.warning("%s", plain(what))
+            self._warn(f"a message on {delivery.topic} is refused: {error}")
             return
-        heard = {"state": self._vehicle.state, "connection": self._vehicle.connection}[topic]
-        self._try(heard(self._clock(), said))
+        self._try(HEARD[topic](self._vehicle, self._clock(), said))
+
+    def _warn(self, what: str) -> None:
+        if self._seldom.is_due(what, self._clock()):
+            LOG.warning("%s", plain(what, 300))
 
     def _try(self, messages: Iterable[Message]) -> None:
         """Do what was not asked for by a command: what cannot leave will be missed soon enough."""
@@ -122,6 +127,8 @@ class Vda5050:
                 self._hear(message)
             elif isinstance(message, Publish):
                 self._publish(message)
+            else:
+                self._warn(message.text)
 
     def _publish(self, message: Publish) -> None:
         assert self._client is not None

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from arboleda.kinds.declared import Device, Told
@@ -21,6 +22,7 @@ from arboleda.model.outside import plain
 from arboleda.model.plant_model import MotionState, Robot
 
 from ..port import NotSent, lost
+from . import factsheet
 from .link import Link
 from .map import GridMap
 from .orders import Action, Order, action_of, instant
@@ -28,8 +30,10 @@ from .settings import Settings
 from .state import ENDS_ORDER, FACTS, Said, VehicleState, read
 
 BEAT_S = 0.3
-AGAIN_S = 2.0  # after which a stop is said again that the vehicle does not tell the end of
+AGAIN_S = 2.0  # after which a stop whose end the vehicle does not tell is said again, and a question
+FACTSHEET_TRIES = 3  # not all vehicles have one
 NEIGHBOURS = 20  # that a sentence may name
+LONGEST_COMMAND = "1800000000-99999"  # an id as the plant makes them, by its start and a number
 OURS = "arboleda-"  # what the ids of all orders of plants begin with
 STOPS = {
     StopMode.HALT: ("cancelOrder",),
@@ -47,7 +51,14 @@ class Publish:
     body: Mapping[str, Any]
 
 
-Message = Report | Publish
+@dataclass(frozen=True, kw_only=True)
+class Tell:
+    """A sentence for the log."""
+
+    text: str
+
+
+Message = Report | Publish | Tell
 
 
 class Vehicle:
@@ -69,6 +80,8 @@ class Vehicle:
         ] = {}  # their types, each with all actions of it, of which none is over
         self._stops_at = -math.inf  # when the last one was said
         self._count = 0  # of actions
+        self._most_nodes: int | None = None  # of an order
+        self._has_sheet, self._asked_for_sheet, self._ask_at = False, 0, -math.inf
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._devices}
         self.next_deadline = 0.0
 
@@ -77,7 +90,7 @@ class Vehicle:
         if now < self.next_deadline:
             return []
         self._lose_what_is_silent(now)
-        return [*self._say_stops_again(now), *self._reports(now)]
+        return [*self._ask(now), *self._say_stops_again(now), *self._reports(now)]
 
     def connected(self, now: float, *, up: bool) -> list[Message]:
         """The broker is there, or is not."""
@@ -93,8 +106,19 @@ class Vehicle:
         if not self._link.is_online:
             self._forget()
         elif not was_online:
-            return [self._request("stateRequest"), *self._reports(now)]
-        return list(self._reports(now))
+            self._ask_at, self._asked_for_sheet = now, 0
+        return [*self._ask(now), *self._reports(now)]
+
+    def _ask(self, now: float) -> list[Message]:
+        """Ask for what it has not told: it may begin to listen a while after it has said that it is there."""
+        if not self._link.is_online or now < self._ask_at:
+            return []
+        self._ask_at = now + AGAIN_S
+        missing = [] if self._state is not None else ["stateRequest"]
+        if not self._has_sheet and self._asked_for_sheet < FACTSHEET_TRIES:
+            self._asked_for_sheet += 1
+            missing.append("factsheetRequest")
+        return [*self._request(*missing)]
 
     def neighbour(self, vehicle: str) -> None:
         """Another vehicle, or this one by another version, is at the broker."""
@@ -114,6 +138,15 @@ class Vehicle:
         self._judge_instants(state)
         return [*messages, *self._reports(now)]
 
+    def factsheet(self, now: float, said: Said) -> list[Message]:
+        """What it can do: orders are as long as it takes them, and what it lacks is told."""
+        sheet, self._has_sheet = factsheet.read(said), True
+        self._most_nodes = None if sheet.most_nodes is None else max(2, sheet.most_nodes)
+        wanted = factsheet.wanted(self._devices.values(), self._settings)
+        ids = (f"{OURS}{self._mark}-{LONGEST_COMMAND}", *self._map.edge_ids)
+        name = self._settings.vehicle
+        return [Tell(text=f"{name} by its factsheet: {each}") for each in factsheet.lacks(sheet, wanted, ids)]
+
     # --- what it is told ---
 
     def command(self, now: float, command: Command) -> list[Message]:
@@ -128,7 +161,7 @@ class Vehicle:
             raise NotSent(f"VDA 5050 has no word for {type(command).__name__}")
         if command.verb not in self._settings.instant:
             return self._begin(command, (self._place(command),), verb=command)
-        action = action_of(self._new_action(), command, blocking="NONE")
+        action = self._new("NONE", command.verb, command.values)
         self._instants[action.id] = command
         return [Publish(topic="instantActions", body=instant([action], self._settings.version))]
 
@@ -148,33 +181,56 @@ class Vehicle:
         if state is not None and state.ahead:
             other = plain(state.order, 60)
             raise NotSent(f"the vehicle is at the order {other} of somebody else; stop it, then clear")
-        actions = () if verb is None else (action_of(self._new_action(), verb, blocking="HARD"),)
-        released = min(len(nodes), 1 + self._settings.base) if self._settings.base else len(nodes)
-        id = f"{OURS}{self._mark}-{command.id}"
-        self._order = Order(id=id, command=command, nodes=nodes, released=released, actions=actions)
+        actions = () if verb is None else (self._new("HARD", verb.verb, verb.values),)
+        self._order = Order(
+            id=f"{OURS}{self._mark}-{command.id}",
+            command=command,
+            nodes=nodes,
+            released=min(len(nodes), 1 + self._base) if self._base else len(nodes),
+            actions=actions,
+            passing={step: self._on_edge({*ends}) for step, ends in enumerate(pairwise(nodes))},
+        )
         return [self._sent(self._order)]
 
+    @property
+    def _base(self) -> int:
+        """How many nodes ahead of it are released, 0: all of them."""
+        limit = 0 if self._most_nodes is None else self._most_nodes - 1
+        return (
+            min(self._settings.base, limit) if self._settings.base and limit else self._settings.base or limit
+        )
+
+    def _on_edge(self, ends: set[str]) -> tuple[Action, ...]:
+        here = (edge for edge in self._settings.edges if {*edge.between} == ends)
+        return tuple(self._new(edge.blocking, edge.action, tuple(edge.values.items())) for edge in here)
+
+    def _new(self, blocking: str, verb: str, values: Facts) -> Action:
+        return action_of(self._new_action(), verb, values, blocking=blocking)
+
     def _sent(self, order: Order, first: int = 0) -> Publish:
-        return Publish(topic="order", body=order.message(self._map.position, self._settings.map, first))
+        body = order.message(self._map.position, self._settings.map, first, self._most_nodes)
+        return Publish(topic="order", body=body)
 
     def _stop(self, now: float, *types: str) -> list[Message]:
         """Instant actions that have to be over before the vehicle counts as standing."""
-        message, self._stops_at = self._request(*types), now
-        for action in message.body["actions"]:
+        messages, self._stops_at = self._request(*types), now
+        for action in (each for message in messages for each in message.body["actions"]):
             self._stops.pop(OPPOSITE.get(action["actionType"], ""), None)
             self._stops.setdefault(action["actionType"], []).append(action["actionId"])
         if self._order is not None and "cancelOrder" in types:
             self._order.cancelled = True
-        return [message]
+        return [*messages]
 
     def _say_stops_again(self, now: float) -> list[Message]:
         """A message may be lost, a vehicle deaf for a while: what is to stop it is said until it is over."""
         due = self._stops and now - self._stops_at >= AGAIN_S and self._link.trouble is None
         return self._stop(now, *self._stops) if due else []
 
-    def _request(self, *types: str) -> Publish:
+    def _request(self, *types: str) -> list[Publish]:
+        """A message for each: there are vehicles that lose the second action of one."""
         actions = [Action(id=self._new_action(), type=type, blocking="NONE") for type in types]
-        return Publish(topic="instantActions", body=instant(actions, self._settings.version))
+        version = self._settings.version
+        return [Publish(topic="instantActions", body=instant([action], version)) for action in actions]
 
     def _new_action(self) -> str:
         self._count += 1
@@ -209,7 +265,7 @@ class Vehicle:
             self._end(order.command, found.result if found is not None else None)
             self._order = None
             return []
-        first = order.extend(state.node, state.sequence, self._settings.base)
+        first = order.extend(state.node, state.sequence, self._base)
         return [] if first is None else [self._sent(order, first)]
 
     def _judge_strange(self, now: float, order: Order, state: VehicleState) -> list[Message]:
@@ -234,7 +290,7 @@ class Vehicle:
             refused = state.update < order.update and order.id in dict(trouble.about).values()
             if trouble.level in ENDS_ORDER or refused:
                 return trouble.word
-        for action in order.actions:
+        for action in order.all_actions:
             found = state.actions.get(action.id)
             if found is not None and found.status == "FAILED":
                 return self._trouble_with(action.id, state) or f"{action.type}_failed"
@@ -257,7 +313,7 @@ class Vehicle:
             not state.ahead
             and not state.driving
             and state.update >= order.update
-            and all(state.is_over(action.id) for action in order.actions)
+            and all(state.is_over(action.id) for action in order.all_actions)
         )
 
     def _fail(self, now: float, order: Order, word: str, state: VehicleState) -> list[Message]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from arboleda.kinds.mobile import Mobile
 
+from .orders import edge_id
 from .settings import Settings
 
 
@@ -17,6 +18,16 @@ class GridMap:
         self._mobile = mobile
         self._names = settings.node_names(mobile)
         self._numbers = {name: number for number, name in enumerate(self._names)}
+
+    @property
+    def edge_ids(self) -> list[str]:
+        """Of all edges of the grid, in both directions."""
+        if self._mobile is None:
+            return []
+        ends = (
+            (start, end) for start in self._numbers.values() for end in self._mobile.grid.neighbours(start)
+        )
+        return [edge_id(self._names[start], self._names[end]) for start, end in ends]
 
     def number(self, name: str) -> int | None:
         """The plant's number of a node of the vehicle."""

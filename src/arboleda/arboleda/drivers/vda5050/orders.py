@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.kinds.declared import Told
 from arboleda.model.commands import Command
+from arboleda.model.facts import Facts
 
 Place = Callable[[str], tuple[float, float] | None]
 """Where a node is on the vehicle's map, m; None where that is not known."""
@@ -43,9 +43,14 @@ class Order:
     nodes: tuple[str, ...]
     released: int
     actions: tuple[Action, ...] = ()  # at the last node
+    passing: Mapping[int, tuple[Action, ...]] = field(default_factory=dict)  # on edges, by the node before
     update: int = 0
     taken: bool = False  # the vehicle has said that it has it
     cancelled: bool = False
+
+    @property
+    def all_actions(self) -> tuple[Action, ...]:
+        return (*self.actions, *(action for actions in self.passing.values() for action in actions))
 
     @property
     def last_sequence(self) -> int:
@@ -62,9 +67,11 @@ class Order:
         first, self.released, self.update = self.released - 1, released, self.update + 1
         return first
 
-    def message(self, place: Place, map: str, first: int = 0) -> dict[str, Any]:
+    def message(
+        self, place: Place, map: str, first: int = 0, most_nodes: int | None = None
+    ) -> dict[str, Any]:
         """The order as it is sent, from a node of the way on: an update begins where the base ended."""
-        steps = range(first, len(self.nodes))
+        steps = range(first, len(self.nodes))[:most_nodes]
         return {
             "orderId": self.id,
             "orderUpdateId": self.update,
@@ -88,22 +95,28 @@ class Order:
     def _edge(self, step: int) -> dict[str, Any]:
         start, end = self.nodes[step : step + 2]
         return {
-            "edgeId": f"{start}_{end}",
+            "edgeId": edge_id(start, end),
             "sequenceId": 2 * step + 1,
             "released": step + 1 < self.released,
             "startNodeId": start,
             "endNodeId": end,
-            "actions": [],
+            "actions": [action.message() for action in self.passing.get(step, ())],
         }
 
 
-def action_of(id: str, told: Told, *, blocking: str) -> Action:
+def edge_id(start: str, end: str) -> str:
+    """The name of an edge, by its nodes."""
+    return f"{start}_{end}"
+
+
+def action_of(id: str, verb: str, values: Facts, *, blocking: str) -> Action:
     """A verb `start_charging` as the action `startCharging`, its values as parameters named likewise."""
-    values = tuple((_as_the_standard_writes(name), value) for name, value in told.values)
-    return Action(id=id, type=_as_the_standard_writes(told.verb), values=values, blocking=blocking)
+    given = tuple((as_the_standard_writes(name), value) for name, value in values)
+    return Action(id=id, type=as_the_standard_writes(verb), values=given, blocking=blocking)
 
 
-def _as_the_standard_writes(name: str) -> str:
+def as_the_standard_writes(name: str) -> str:
+    """`start_charging` as `startCharging`."""
     first, *others = name.split("_")
     return first + "".join(map(str.capitalize, others))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from arboleda.kinds.declared import Device
@@ -17,11 +17,22 @@ MAJOR = {"2.0": "v2", "2.1": "v2", "3.0": "v3"}
 
 
 @dataclass(frozen=True, kw_only=True)
+class EdgeAction:
+    """What a vehicle does on its way between two nodes, in both directions."""
+
+    between: tuple[str, str]
+    action: str
+    values: dict[str, bool | int | float | str] = field(default_factory=dict)
+    blocking: Literal["NONE", "SOFT", "HARD"] = "NONE"
+
+
+@dataclass(frozen=True, kw_only=True)
 class Settings:
     """Which vehicle it is, at which broker; what its map and its nodes are called, and how far it may go.
 
     `nodes` are its names of the nodes of the grid, in their order. `base` is how many nodes ahead of the
-    vehicle are released, 0: all of them. `instant` are the verbs that it does at once, also on its way.
+    vehicle are released, 0: all of them. `instant` are the verbs that it does at once, also on its way;
+    `edges` is what it does between nodes.
     `silent_after_s` is after how long without a state it is lost.
     """
 
@@ -34,6 +45,7 @@ class Settings:
     nodes: tuple[str, ...] = ()
     base: int = 2
     instant: tuple[str, ...] = ()
+    edges: tuple[EdgeAction, ...] = ()
     silent_after_s: float = 35.0
 
     def __post_init__(self) -> None:
@@ -70,9 +82,20 @@ class Settings:
                     ("nodes",),
                     f"there are {len(self.nodes)} names for the {device.grid.size} nodes of {device.name}",
                 )
+            yield from self._edge_problems(device)
         elif isinstance(device, Device):
             wrong = [name for name, type in device.kind.facts.items() if type.type not in TYPES.get(name, ())]
             if wrong:
                 yield (), f"a vehicle says nothing of {', '.join(wrong)}; it has {KNOWN}"
         else:
             yield (), f"{device.name} is no mobile robot and of no declared kind"
+
+    def _edge_problems(self, mobile: Mobile) -> Iterable[tuple[tuple[str | int, ...], str]]:
+        numbers = {name: number for number, name in enumerate(self.node_names(mobile))}
+        for row, edge in enumerate(self.edges):
+            start, end = edge.between
+            strange = [name for name in edge.between if name not in numbers]
+            if strange:
+                yield ("edges", row, "between"), f"no node {strange[0]!r}; there are {', '.join(numbers)}"
+            elif numbers[end] not in mobile.grid.neighbours(numbers[start]):
+                yield ("edges", row, "between"), f"{start} and {end} are no neighbours on the grid"

@@ -21,8 +21,8 @@ class Version(str, Enum):
 
 HELP = with_faults(
     "Play a mobile robot that speaks VDA 5050 over MQTT: orders and their updates, actions pick, drop, "
-    "startCharging, stopCharging, detectObject and any other, instant actions. It brings a broker unless "
-    "--broker names one. Any master control can use it.",
+    "startCharging, stopCharging, detectObject and any other at nodes and on edges, instant actions, a "
+    "factsheet. It brings a broker unless --broker names one. Any master control can use it.",
     FAULTS,
 )
 

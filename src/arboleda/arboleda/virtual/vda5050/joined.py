@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from typing import Any
 
-from arboleda.adapters.vda5050.messages import Headers, Unfit, from_bytes, to_bytes
+from arboleda.adapters.vda5050.messages import Headers, from_bytes, to_bytes
 from arboleda.drivers import NotSent
-from arboleda.drivers.vda5050.machine import Message, Publish, Vehicle
+from arboleda.drivers.vda5050.machine import Message, Publish, Tell, Vehicle
 from arboleda.drivers.vda5050.settings import Settings
 from arboleda.model.commands import Command
 from arboleda.model.messages import Report
@@ -37,6 +36,7 @@ class Joined:
         self.agv, self.now = agv, now
         self.vehicle = Vehicle(devices, settings, mark="m")
         self.told: list[tuple[str, dict[str, Any]]] = []  # topics and messages
+        self.log: list[str] = []
         self._settings, self._hear = settings, hear
         self._names = (settings.version, settings.manufacturer, settings.serial)
         self._to_agv, self._headers = Headers(*self._names), Headers(*self._names)
@@ -78,7 +78,7 @@ class Joined:
 
     def _take(self, message: Said) -> None:
         if isinstance(message, Say):
-            with suppress(Unfit):
+            if message.fits:
                 self._read(message)
             return
         self._connected = isinstance(message, Connect)
@@ -94,12 +94,15 @@ class Joined:
         body = {**self._headers(say.topic), **say.body}
         said = from_bytes(version, say.topic, to_bytes(version, say.topic, body))
         if say.as_serial is None:
-            self._do(self.vehicle.state(self.now, said))
+            heard = self.vehicle.factsheet if say.topic == "factsheet" else self.vehicle.state
+            self._do(heard(self.now, said))
 
     def _do(self, messages: Iterable[Message]) -> None:
         for message in messages:
             if isinstance(message, Publish):
                 self._publish(message)
+            elif isinstance(message, Tell):
+                self.log.append(message.text)
             else:
                 self._hear(message)
 

@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from .factsheet import factsheet_of
 from .faults import STANDING
 from .order import UPDATE, Course, Said
 from .words import state_of
@@ -194,6 +195,10 @@ class VirtualAgv:
             self.paused = doing.type == "startPause"
         elif doing.type == "cancelOrder":
             self._cancel(doing)
+        elif doing.type == "factsheetRequest":
+            self._later.append(
+                (self._now or 0.0, Say(topic="factsheet", body=factsheet_of(self._version), retain=True))
+            )
 
     def _cancel(self, doing: Doing) -> None:
         """It stands at once, between two nodes if need be: as line guided vehicles may not, but others do."""
