@@ -12,8 +12,8 @@ from pathlib import Path
 
 ARBOLEDA = Path(sys.executable).with_name("arboleda")  # of the same installation
 HERE = Path(__file__).parent
-CONTROLLERS = [["dobot", "--enabled"], ["modbus"]]
-WITH_ROS2 = [["vda5050"], ["trajectory"], ["gripper"]]
+CONTROLLERS = [["dobot", "--enabled"], ["modbus"], ["vda5050"]]
+WITH_ROS2 = [["trajectory"], ["gripper"]]
 ANY_PORT = ["--fault-port", "0"]
 
 

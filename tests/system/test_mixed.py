@@ -30,10 +30,11 @@ def copied(tmp_path: Path) -> None:
     plant = {
         "{host: 127.0.0.1}": f"{{host: 127.0.0.1, port: {dobot}, feedback_port: {feedback}}}",
         "port: 5020": f"port: {plc}",
+        "127.0.0.1:1884": f"127.0.0.1:{broker}",
     }
     other = {
         "plant.yaml": plant,
-        "plant_ros2.yaml": {**plant, "127.0.0.1:1884": f"127.0.0.1:{broker}"},
+        "plant_ros2.yaml": plant,
         "start.py": {
             '"--enabled"': f'"--enabled", "--port", "{dobot}", "--feedback-port", "{feedback}"',
             '["modbus"]': f'["modbus", "--port", "{plc}"]',

@@ -81,6 +81,7 @@ BASE, MILL, PALLET = "station assemble base_1 lid_3", "tending mill slot_2 1002"
 SOLD = ("tender to belt", "tender lets go", "tender to home", "belt clear")
 KIT, WAVE, COLLECT = "kitting kit 2 tray_4", "kitting wave tray_1", "packing collect"
 REJECTED = ("tender to reject", "tender lets go", "tender to home")
+STORED = ("cart to store", "bed drop", "cart to home")
 bench, tending = partial(Case, folder="lab_bench"), partial(Case, folder="machine_tending")
 kitting, tree = partial(Case, folder="kitting"), partial(Case, folder="own_tree")
 TAKEN = ("loader to done", "jaw open", "loader to home")
@@ -102,8 +103,8 @@ CASES = (
     tending(task=MILL, answers={"camera": "unsure", "operator": "bad"}, ends_with=REJECTED),
     Case(folder="agv", task="hall fetch left right", ends_with=("forks drop", "cart to home")),
     Case(folder="agv", task="hall fetch left right", answers={"forks": "empty"}, why="nothing stood there"),
-    Case(folder="mixed", task="line deliver slot_1 200", ends_with=("belt gate", "belt scan")),
-    Case(folder="mixed", task="line deliver slot_2 400", answers={"belt": "bad"}, ends_with=("belt scan",)),
+    Case(folder="mixed", task="line deliver slot_1 200", ends_with=STORED),
+    Case(folder="mixed", task="line deliver slot_2 400", answers={"belt": "bad"}, ends_with=STORED),
     Case(
         folder="mixed",
         task="line deliver slot_2 100",
