@@ -5,11 +5,11 @@ from __future__ import annotations
 from arboleda.kinds.declared import Effect, Told
 from arboleda.wire.topics import Channel
 
-from .bench import LATCHED, MOVING, Jostle, NotTried, Send, Steps, Wait
+from .bench import LATCHED, MOVING, NotTried, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
 from .device_ways import LEAST_S, at_rest, carry_out, lasting, lead_to, named
-from .number_checks import BACK_S, SILENCE_S
-from .ways import ANSWER_S, accepted, answer, demand, refused, stop, unmoved
+from .number_checks import SILENCE_S
+from .ways import ANSWER_S, accepted, answer, demand, refused, refused_as_retained, stop, unmoved
 
 HALT_S = 1.5
 
@@ -149,18 +149,7 @@ def retained(bench: DeviceBench) -> Steps:
     yield from accepted(bench, stop(bench, 2))
     # the number of the stop: heard while it is connected, the order is a copy and does nothing
     order, before = bench.order(told, seq=bench.seq), bench.place
-    yield Send(channel=order.channel, payload=order.payload, retain=True)
-    yield Wait(seconds=0.5)
-    arrivals = bench.arrivals
-    yield Jostle()
-    back = yield Wait(seconds=BACK_S, until=lambda: bench.arrivals > arrivals)
-    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "retenido")
-    refusal = bench.last.refusal
-    yield Send(channel=order.channel, payload=b"", retain=True)
-    yield Wait(seconds=0.3)
-    if not back:
-        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
-    demand(refusal == "retenido", f"it came back, heard a retained order and says rechazo {refusal}")
+    yield from refused_as_retained(bench, order, "order")
     yield from unmoved(bench, before, "a retained order")
 
 

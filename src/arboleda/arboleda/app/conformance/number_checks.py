@@ -6,12 +6,11 @@ from arboleda.wire.topics import Channel
 
 from .arm_bench import ArmBench
 from .arm_ways import drive, set_off
-from .bench import MOVING, Jostle, NotTried, Send, Steps, Wait
-from .ways import accepted, answer, demand, refused, rest, stop, unmoved
+from .bench import MOVING, NotTried, Send, Steps, Wait
+from .ways import accepted, answer, demand, refused, refused_as_retained, rest, stop, unmoved
 
 SILENCE_S = 1.0
 RAMP_S = 1.5  # to come to rest after that, and to be heard
-BACK_S = 10.0
 
 
 def numbers(bench: ArmBench) -> Steps:
@@ -88,19 +87,7 @@ def retained(bench: ArmBench) -> Steps:
     yield from accepted(bench, stop(bench, 2))
     before, goal = bench.steps, bench.goal(bench.away(0.05), seq=bench.seq)
     # an old number: heard while it is connected, the goal is harmless
-    kept = Send(channel=goal.channel, payload=goal.payload, retain=True)
-    yield kept
-    yield Wait(seconds=0.5)
-    arrivals = bench.arrivals
-    yield Jostle()
-    back = yield Wait(seconds=BACK_S, until=lambda: bench.arrivals > arrivals)
-    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "retenido")
-    refusal = bench.last.refusal
-    yield Send(channel=goal.channel, payload=b"", retain=True)
-    yield Wait(seconds=0.3)
-    if not back:
-        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
-    demand(refusal == "retenido", f"it came back, heard a retained goal and says rechazo {refusal}")
+    yield from refused_as_retained(bench, goal, "goal")
     yield from unmoved(bench, before, "a retained goal")
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from arboleda.wire.topics import Channel
 
-from .bench import MOVING, Bench, Send, Steps, Wait, Wrong
+from .bench import MOVING, Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
 
 ANSWER_S = 2.0
+BACK_S = 10.0  # so long it may take to connect again
 NOTHING_S = 0.4  # so long a board that does nothing is watched
 
 
@@ -95,3 +97,19 @@ def _answer(bench: Bench[Any]) -> str:
     return (
         ", ".join(f"{key} {value}" for key, value in said.items() if value is not None) or "nothing about it"
     )
+
+
+def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
+    """It comes back while the broker keeps a message for it, and refuses that."""
+    yield replace(message, retain=True)
+    yield Wait(seconds=0.5)
+    arrivals = bench.arrivals
+    yield Jostle()
+    back = yield Wait(seconds=BACK_S, until=lambda: bench.arrivals > arrivals)
+    yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "retenido")
+    refusal = bench.last.refusal
+    yield Send(channel=message.channel, payload=b"", retain=True)
+    yield Wait(seconds=0.3)
+    if not back:
+        raise NotTried("its MQTT client id is not its name, so it could not be made to reconnect")
+    demand(refusal == "retenido", f"it came back, heard a retained {what} and says rechazo {refusal}")

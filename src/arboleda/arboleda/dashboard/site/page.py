@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from contextlib import suppress
 
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse
 from nicegui import Client, app, ui
-from nicegui.events import GenericEventArguments
 
 from arboleda.adapters.web.api import task_asked
-from arboleda.adapters.web.auth import SUBMIT, Role, allowed, require
+from arboleda.adapters.web.auth import SUBMIT, allowed, require
 from arboleda.adapters.web.schema import TaskText
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
 
 from .. import header, shell
 from ..frames import Frames, ended
+from ..open_page import LONGEST, OpenPage
 from ..plant_side import Layout
 from ..shell import language_of, role_shown
 from ..tags import act_button, rows, tag
@@ -29,9 +28,7 @@ from .side import Asked, SiteSide
 
 FRAME_S = 0.5
 BEAT = 2  # frames after which pages are told that the site is there
-LONGEST = 300  # characters of what a browser may name
 COLUMNS = ("state", "plant", "why", "tasks", "ended", "oee")
-SEEN = "seen"
 LOG = logging.getLogger(__name__)
 
 
@@ -108,47 +105,26 @@ def _plants(_layout: Layout, said: Words) -> None:
         tag("p", said("site.send_does"), classes="hint")
 
 
-class Desk:
-    """One open page: a viewer of the frames, and the way from its events to the plants."""
+class Desk(OpenPage):
+    """The way from the events of a page to the plants."""
 
     def __init__(self, client: Client, site: SiteSide, frames: Frames, said: Words) -> None:
-        self.language = said.language
-        self._client, self._site, self._frames, self._words = client, site, frames, said
+        super().__init__(client, said, frames.seen)
+        self._site = site
 
-    @property
-    def connected(self) -> bool:
-        return self._client.has_socket_connection
-
-    @property
-    def _role(self) -> Role | None:
-        return (self._client.environ or {}).get("asgi.scope", {}).get("arboleda.role")
-
-    def show(self, number: int, patch: str) -> None:
-        """Send one frame."""
-        self._client.run_javascript(f"arboleda.live({number}, {patch})")
-
-    async def hear(self, event: GenericEventArguments) -> None:
-        """One event of the page: [act, of, text]; anything else is ignored."""
-        asked = event.args if isinstance(event.args, list) else [event.args]
-        act, of, text = [*asked, None, None, None][:3]
-        if act == SEEN and isinstance(of, int):
-            self._frames.seen(self, of)
-        elif act in (SUBMIT, Verb.STOP.value) and isinstance(of, str) and len(of) <= LONGEST:
-            await self._do(act, of, text if isinstance(text, str) else "")
-
-    async def _do(self, act: str, plant: str, text: str) -> None:
-        if not allowed(self._role, act):
-            self._say(self._words("page.not_allowed", act=self._words.of("verb", act)), good=False)
+    async def asked(self, act: str, of: str, more: object) -> None:
+        """A task for the plant `of`, whose text is `more`, or its stop."""
+        if act not in (SUBMIT, Verb.STOP.value):
+            return
+        if not allowed(self.role, act):
+            self.say(self._words("page.not_allowed", act=self._words.of("verb", act)), good=False)
             return
         answer: Asked
         if act == SUBMIT:
-            answer = await self._site.submit(plant, text[:LONGEST])
+            answer = await self._site.submit(of, more[:LONGEST] if isinstance(more, str) else "")
         else:
-            answer = await self._site.stop(plant)
-        self._say(self._words.say(answer.sentence), good=answer.good)
-
-    def _say(self, sentence: str, *, good: bool) -> None:
-        self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")
+            answer = await self._site.stop(of)
+        self.say(self._words.say(answer.sentence), good=answer.good)
 
 
 def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None:

@@ -1,0 +1,56 @@
+"""A page that is open in one browser: what it is shown, what it asks, and what it is answered."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from nicegui import Client
+from nicegui.events import GenericEventArguments
+
+from arboleda.adapters.web.auth import Role
+
+from .wording import Words
+
+LONGEST = 300  # characters of what a browser may name
+SEEN = "seen"
+
+
+class OpenPage:
+    """A viewer of frames; `seen` is told which of them it has shown. Whoever asks is checked in `asked`."""
+
+    def __init__(self, client: Client, words: Words, seen: Callable[[OpenPage, int], None]) -> None:
+        self.language = words.language
+        self._client = client
+        self._words = words
+        self._seen = seen
+
+    @property
+    def connected(self) -> bool:
+        return self._client.has_socket_connection
+
+    @property
+    def role(self) -> Role | None:
+        """The role of the connection behind the page, as the guard put it into its scope."""
+        return (self._client.environ or {}).get("asgi.scope", {}).get("arboleda.role")
+
+    def show(self, number: int, patch: str) -> None:
+        """Send one frame."""
+        self._client.run_javascript(f"arboleda.live({number}, {patch})")
+
+    async def hear(self, event: GenericEventArguments) -> None:
+        """One event of the page: [act, of, more]; anything else is ignored."""
+        told = event.args if isinstance(event.args, list) else [event.args]
+        act, of, more = [*told, None, None, None][:3]
+        if act == SEEN and isinstance(of, int):
+            self._seen(self, of)
+        elif isinstance(act, str) and isinstance(of, str) and len(of) <= LONGEST:
+            await self.asked(act, of, more)
+
+    async def asked(self, act: str, of: str, more: object) -> None:
+        """Somebody asks for something."""
+        raise NotImplementedError
+
+    def say(self, sentence: str, *, good: bool) -> None:
+        """Show an answer."""
+        self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")
