@@ -47,6 +47,11 @@ NEW_PLANT_IN_A_STALL = (
 )
 
 FOUND = {
+    "a beat that no plant can have sent was taken for that of a leader, by the judge": Found(
+        seed=73,
+        seconds=60,
+        faults=(Fault(kind="foreign_garbage", at=17.891, target="rm_sis_b", word="latido", seed=31),),
+    ),
     "a halt that never left seemed to settle the move before it, which a stalled board obeyed late": Found(
         seed=2,
         seconds=60,

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from arboleda.kinds.arm import Joint
 from arboleda.model.plant_model import Robot
 from arboleda.sim.board import Board
+from arboleda.wire.epochs import can_follow
 from arboleda.wire.payloads import Goal
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery
@@ -87,7 +88,10 @@ class KnownBoard:
 
     def _read(self, delivery: Delivery) -> None:
         epoch = fields(delivery.payload).get("epoca") if delivery.topic.endswith("/latido") else None
-        if type(epoch) is int and not delivery.retain:
+        if type(epoch) is not int or delivery.retain:
+            return
+        known = [each for each in (self.beat, self.last and self.last[0]) if each is not None]
+        if can_follow(epoch, max(known, default=None)):
             self.beat = max(epoch, self.beat or 0)
 
     def said(self, q: tuple[float, ...] | None, node: int | None, since: float) -> bool:
