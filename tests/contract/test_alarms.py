@@ -42,9 +42,9 @@ class Hooked:
                 posted = self.rfile.read(int(self.headers["Content-Length"]))
                 hooked.gate.wait(PATIENCE_S)
                 hooked.headers = dict(self.headers) | {"path": self.path}
+                hooked.posts.put(json.loads(posted))  # whoever has the answer may look at once
                 self.send_response(hooked.answers.pop(0) if hooked.answers else 204)
                 self.end_headers()
-                hooked.posts.put(json.loads(posted))
 
             def log_message(self, *_: object) -> None: ...
 
