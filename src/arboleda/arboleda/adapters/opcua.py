@@ -270,7 +270,7 @@ async def _connected(settings: Settings, found: Login) -> Client:
         await client.set_security(policy, found.certificate, found.key, None, found.server, mode=mode)
     try:
         await asyncio.wait_for(client.connect(), CONNECT_S)
-    except BaseException:
+    except BaseException:  # a cancellation too: a socket that is half open would stay
         await _goodbye(client)
         raise
     return client
