@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 
 from hypothesis import example, given
@@ -50,9 +51,18 @@ def act(axis: Axis, stepper: Stepper, now: int, name: str, value: int | None) ->
         stepper.stop()
 
 
+def still_at_us(stepper: Stepper, now: int) -> int:
+    """When it takes its last step, found by taking them all; `now` while still."""
+    ahead = copy.copy(stepper)
+    while (due := ahead.next_step_us(now)) is not None:
+        ahead.step(due)
+        now = due
+    return now
+
+
 def agree(axis: Axis, stepper: Stepper, now: int) -> None:
-    shown = axis.position, axis.target, axis.still_at_us
-    assert shown == (stepper.position, stepper.target, stepper.still_at_us(now))
+    shown = axis.position, axis.target, axis.speed, axis.still_at_us
+    assert shown == (stepper.position, stepper.target, abs(stepper.speed), still_at_us(stepper, now))
 
 
 @given(speed=speeds, acceleration=accelerations, start=starts, script=scripts)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arboleda.sim.stepper import Stepper
+from arboleda.sim.stepper import FOREVER_US, Stepper
 
 BOOT_US = 10_000_000
 speeds = st.floats(min_value=50, max_value=5000)
@@ -138,9 +138,8 @@ def test_advancing_in_two_halves_is_advancing_at_once(speed, acceleration, targe
     once, twice = axis(speed, acceleration), axis(speed, acceleration)
     for stepper in (once, twice):
         stepper.move_to(target)
-    end = once.still_at_us(BOOT_US)
-    once.advance(BOOT_US, end)
+    once.advance(BOOT_US, FOREVER_US)
     twice.advance(BOOT_US, BOOT_US + cut)
-    twice.advance(BOOT_US + cut, max(end, BOOT_US + cut))
+    twice.advance(BOOT_US + cut, FOREVER_US)
     assert once.position == twice.position == target
     assert once.interval == twice.interval == 0

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from struct import Struct
+from typing import NamedTuple
 
 CLOCK_MASK = 0xFFFFFFFF
 FOREVER_US = 2**63
 _FLOAT = Struct("f")
 _store, _load = _FLOAT.pack, _FLOAT.unpack  # the fastest rounding to binary32 in the standard library
+
+
+class Pace(NamedTuple):
+    """What the next steps of a stepper depend on, besides the way that it has to go."""
+
+    ramp: int  # number of the next step in the ramp: > 0 speeding up, < 0 slowing down
+    interval: float  # us to the next step, exactly; < 0 = counterclockwise, 0 = still
+
+    @property
+    def mirrored(self) -> Pace:
+        """The same to the other side."""
+        return Pace(self.ramp, -self.interval)
 
 
 class Stepper:
@@ -65,7 +77,7 @@ class Stepper:
         self.max_speed = value
         self._shortest_interval = _binary32(1e6 / value)
         if self._ramp > 0:
-            self._ramp = self._stopping_distance()
+            self._ramp = self.stopping_distance
             self._compute()
 
     def move_to(self, target: int) -> None:
@@ -77,7 +89,7 @@ class Stepper:
     def stop(self) -> None:
         """Head for the nearest position that the deceleration allows."""
         if self.speed != 0.0:
-            way = self._stopping_distance() + 1
+            way = self.stopping_distance + 1
             self.move_to(self.position + (way if self.speed > 0.0 else -way))
 
     def set_current_position(self, position: int) -> None:
@@ -91,6 +103,21 @@ class Stepper:
         self.set_current_position(self.target)
         self._last_step_us = at_us
 
+    @property
+    def pace(self) -> Pace:
+        """How it moves."""
+        if not self.interval:
+            return Pace(0, 0.0)
+        return Pace(self._ramp, self._exact_interval if self._clockwise else -self._exact_interval)
+
+    def resume(self, position: int, pace: Pace, at_us: int) -> None:
+        """Be where a step was taken at `at_us`, and go on towards the target at this pace."""
+        self.position, self._last_step_us = position, at_us
+        self._ramp, self._exact_interval = pace.ramp, abs(pace.interval)
+        self._clockwise = pace.interval > 0.0
+        self.interval = int(self._exact_interval)
+        self.speed = _binary32(1e6 / pace.interval) if pace.interval else 0.0
+
     def shift(self, steps: int) -> None:
         """Call the place where it is, and the one it heads for, by other numbers; the move goes on."""
         self.position += steps
@@ -100,7 +127,7 @@ class Stepper:
         """Poll once: take one step if one is due; whether it did."""
         if not self.interval or (now_us - self._last_step_us) & CLOCK_MASK < self.interval:
             return False
-        self._step(now_us)
+        self.step(now_us)
         return True
 
     def next_step_us(self, now_us: int) -> int | None:
@@ -116,30 +143,23 @@ class Stepper:
             due = self.cruise(due, until_us)
             if due > until_us:
                 return
-            self._step(due)
+            self.step(due)
             due = due + self.interval if self.interval else None
 
-    def still_at_us(self, now_us: int) -> int:
-        """The time of the last step of this move; `now_us` while still."""
-        if not self.interval:
-            return now_us
-        ahead = copy.copy(self)
-        ahead.advance(now_us, FOREVER_US)
-        return ahead._last_step_us
-
-    def _step(self, now_us: int) -> None:
+    def step(self, now_us: int) -> None:
+        """Take the step that is due now."""
         self.position += 1 if self._clockwise else -1
         self._last_step_us = now_us
         self._compute()
 
     def cruise(self, due: int, until_us: int = FOREVER_US) -> int:
         """Take at once the steps from `due` on that change nothing but the position; when the next is due."""
-        if self._exact_interval != self._shortest_interval:
+        if not self.cruises:
             return due
         way = self.target - self.position
         if self._ramp <= 0 or self._clockwise != (way > 0):
             return due
-        steps = min(abs(way) - self._stopping_distance() - 1, (until_us - due) // self.interval + 1)
+        steps = min(abs(way) - self.stopping_distance - 1, (until_us - due) // self.interval + 1)
         if steps <= 0:
             return due
         self.position += steps if self._clockwise else -steps
@@ -147,7 +167,14 @@ class Stepper:
         self._last_step_us = due + (steps - 1) * self.interval
         return due + steps * self.interval
 
-    def _stopping_distance(self) -> int:
+    @property
+    def cruises(self) -> bool:
+        """Whether it is as fast as it may be."""
+        return self._exact_interval == self._shortest_interval
+
+    @property
+    def stopping_distance(self) -> int:
+        """How many steps it needs to slow down."""
         return int(_load(_store(self.speed * self.speed))[0] / (2.0 * self.acceleration))
 
     def _compute(self) -> None:
