@@ -25,6 +25,8 @@ from arboleda.model.plant_model import Evidence
 
 from ..chromium import browsers
 from ..conftest import need_tool
+from ..postgres import Server
+from .two_hosts import Hosts
 
 collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it
 
@@ -150,6 +152,16 @@ def typed(tmp_path: Path) -> Callable[..., tuple[int, str]]:
         return status, said.getvalue().rstrip()
 
     return go
+
+
+@pytest.fixture
+def hosts(tmp_path: Path, postgres: Server, database: str, free_port: int) -> Iterator[Hosts]:
+    """Where two processes of the shipped plant may be started, with boards and a broker."""
+    with postgres.connection() as db:
+        db.execute("DROP SCHEMA IF EXISTS plant_arboleda CASCADE")
+    made = Hosts(tmp_path, database, free_port)
+    yield made
+    made.end()
 
 
 @pytest.fixture(scope="module")

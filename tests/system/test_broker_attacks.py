@@ -14,7 +14,8 @@ from typing import Any
 
 import pytest
 
-from arboleda.app.client import PlantClient, Refused
+from arboleda.app.client import PlantClient
+from arboleda.app.line import Refused
 from arboleda.model.messages import Verb
 
 from .conftest import PATIENCE_S

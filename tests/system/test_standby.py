@@ -3,126 +3,41 @@
 from __future__ import annotations
 
 import re
+import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
 
-from arboleda.adapters.broker import EmbeddedBroker
-from arboleda.app.state import find_running
-from arboleda_kills.deeds import Did
-from arboleda_kills.processes import Boards, Plant
-
 from ..postgres import Server
+from .two_hosts import PATIENCE_S, TAKEN_OVER_S, Hosts
 
 pytestmark = pytest.mark.system
 
-TASK = {"text": "sis_a 0B 7 #lot-1"}
-PATIENCE_S = 75.0
-TAKEN_OVER_S = 20.0  # 3 s on a machine that has time; how long it takes is measured, not tested
+LED_HERE = f"plant arboleda is led on {socket.gethostname()}: "
 
 
-class Hosts:
-    """The processes, their boards and their broker; `ask` asks one of them."""
-
-    def __init__(self, folder: Path, database: str, port: int) -> None:
-        self._folder = folder
-        self._broker = EmbeddedBroker(port=port)
-        self._broker.start()
-        self._options = ("--store", database, "--broker", f"127.0.0.1:{port}")
-        self.boards = Boards(1.0, folder / "boards.log")
-        self.boards.broker("127.0.0.1", port)
-        self.plants: dict[str, Plant] = {}
-
-    def up(self, name: str, *options: str) -> Plant:
-        log = self._folder / f"{name}.log"
-        made = Plant(self._folder / name, log, lambda *_: None, (*self._options, *options))
-        self.plants[name] = made
-        return made
-
-    def ask(self, name: str) -> dict[str, Any]:
-        """What its API says of the plant; {} where nobody answers."""
-        running = find_running(self._folder / name)
-        if running is None or running.port is None:
-            return {}
-        try:
-            return httpx.get(f"{running.url}/api/plant", trust_env=False, timeout=2.0).json()
-        except httpx.HTTPError:
-            return {}
-
-    def cell(self, name: str) -> dict[str, Any]:
-        return next((row for row in self.ask(name).get("cells", ()) if row["name"] == "sis_a"), {})
-
-    def until(self, true: Callable[[], Any]) -> float:
-        """How long it took, in s."""
-        began = time.monotonic()
-        while not true():
-            assert time.monotonic() - began < PATIENCE_S
-            time.sleep(0.02)
-        return time.monotonic() - began
-
-    def at_work(self) -> None:
-        """A leader that drives, and a standby that waits for it."""
-        self.up("a")
-        self.until(lambda: self.cell("a").get("not_ready", "no") is None)
-        self.up("b", "--standby")
-        self.until(lambda: "process" in self.ask("b").get("sentence", ""))
-        assert self.plants["a"].await_api(time.time() + PATIENCE_S)
-        assert self.plants["a"].ask("POST", "/api/tasks", TASK)[0] == 202
-        self.until(lambda: self.cell("a").get("step") == "drive path 0B")
-
-    def parts(self) -> list[tuple[Did, str]]:
-        return [(deed.did, deed.what) for deed in self.boards.deeds if deed.did is not Did.WAS_TOLD]
-
-    def finish_with(self, name: str) -> None:
-        """The task that was at work comes to its end there, once somebody lets it go on."""
-        self.until(
-            lambda: self.cell(name).get("state") == "held" and "resume" not in self.cell(name)["refused"]
-        )
-        assert self.plants[name].await_api(time.time() + PATIENCE_S)
-        assert self.plants[name].ask("POST", "/api/cells/sis_a/resume")[0] == 200
-        self.done_with(name)
-
-    def done_with(self, name: str) -> None:
-        self.until(lambda: self.cell(name).get("state") == "idle")
-        assert self.plants[name].await_api(time.time() + PATIENCE_S)
-        (row,) = self.plants[name].ask("GET", "/api/history")[1]
-        assert (row["id"], row["state"]) == ("lot-1", "done")
-        assert self.parts() == [(Did.PICKED, "pick-up"), (Did.LET_GO, "station 7")]
-
-    def end(self) -> None:
-        for each in self.plants.values():
-            each.kill()
-        self.boards.end()
-        self._broker.stop()
-
-
-@pytest.fixture
-def hosts(tmp_path: Path, postgres: Server, database: str, free_port: int) -> Iterator[Hosts]:
-    with postgres.connection() as db:
-        db.execute("DROP SCHEMA IF EXISTS plant_arboleda CASCADE")
-    made = Hosts(tmp_path, database, free_port)
-    yield made
-    made.end()
-
-
-def test_a_standby_takes_over_from_a_leader_that_is_killed(
+def test_a_standby_takes_over_from_a_leader_that_is_killed_and_commands_follow(
     hosts: Hosts, arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
-    hosts.at_work()
-    status = arboleda("status", "--state", str(tmp_path / "b"))
-    assert status.wait() == 0
-    pid = hosts.plants["a"].pid
-    assert f"this process stands by; it waits for the end of process {pid} on" in status.output
-    refused = arboleda("submit", "sis_a 0B 1", "--state", str(tmp_path / "b"))
-    assert refused.wait() == 1 and "stands by and does nothing itself" in refused.output
-    page = httpx.get(find_running(tmp_path / "b").url, trust_env=False).text
-    assert find_running(tmp_path / "a").url in page and "en reserva" in page
+    hosts.led_by_a()
+    at_a, at_b = (("--state", str(tmp_path / name)) for name in "ab")
+    stopped = arboleda("stop", "sis_b", *at_b)
+    assert stopped.wait() == 0 and f"{LED_HERE}asked there" in stopped.output
+    waiting = [arboleda("submit", "--wait", "sis_b 0B 1 #lot-2", *at) for at in (at_a, at_b)]
+    for each in waiting:
+        each.wait_for("queued: sis_b 0B 1 (id lot-2)")
+    hosts.drives()
+
     hosts.plants["a"].kill()
     assert hosts.until(lambda: hosts.cell("b")) < TAKEN_OVER_S
+    cancelled = arboleda("cancel", "lot-2", *at_a)  # nothing runs there, and its database knows who leads
+    assert cancelled.wait() == 0 and f"{LED_HERE}asked there" in cancelled.output
+    for each in waiting:
+        assert each.wait() == 1 and "cancelled: sis_b 0B 1 (id lot-2)" in each.output
+        assert "followed there" in each.output
     hosts.finish_with("b")
 
 

@@ -211,15 +211,17 @@ def running(
     sockets: int = limits.SOCKETS,
     streams: int = limits.STREAMS,
     tls: ServerTls | None = None,
+    name: str = "",
     **options: Any,
 ) -> Iterator[Web]:
-    """As on one's own machine; with tokens as on a network. Both listen to 127.0.0.1. `mount` adds pages."""
+    """As on one's own machine; with tokens as on a network. Both listen to 127.0.0.1. `mount` adds pages,
+    `name` is the plant's."""
     door = Door((lambda: tokens) if tokens else None)
     app = make_app(plant, streams=streams)
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
     names = names_for(bound, public_url, scheme="https" if tls else "http")
-    guarded = Guard(app, names, door, sockets=sockets)
+    guarded = Guard(app, names, door, sockets=sockets, plant=name)
     server = Server(guarded, **{"port": 0, **options}, tls=tls)
     web = Web(server, door, tls)
     try:

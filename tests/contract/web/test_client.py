@@ -9,7 +9,8 @@ import pytest
 
 from arboleda.adapters.web import stream
 from arboleda.app import tokens
-from arboleda.app.client import PlantClient, Refused
+from arboleda.app.client import PlantClient
+from arboleda.app.line import Refused
 from arboleda.app.state import StateDir
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import Verb

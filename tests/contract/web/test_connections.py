@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from arboleda.adapters.web import connections, server
+from arboleda.adapters.web import connections
 from arboleda.adapters.web.server import Server
 from arboleda.model.errors import StartError
 
@@ -68,9 +68,8 @@ def test_a_taken_port_is_refused_in_one_sentence_where_it_was_named(local, serve
         serve(port=local.port)
 
 
-def test_without_a_name_another_port_is_found(local, serve, monkeypatch):
-    monkeypatch.setattr(server, "DEFAULT_PORT", local.port)
-    other = serve(port=None)
+def test_without_a_name_another_port_is_found(local, serve):
+    other = serve(port=None, usual_port=local.port)
     assert other.port != local.port
     assert other.client().get("/api/plant").json() == VIEW
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from arboleda.app import verbs
-from arboleda.app.cli import cli
+from arboleda.app.cli import cli, main
+from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Verb
 from arboleda.views.verb_words import ABOUT
 
@@ -27,7 +29,7 @@ class Notes(list):
 @pytest.fixture
 def acts(monkeypatch: pytest.MonkeyPatch) -> Notes:
     acts = Notes()
-    monkeypatch.setattr(verbs, "client", lambda plant, state: acts)
+    monkeypatch.setattr(verbs, "client", lambda *_: acts)
     return acts
 
 
@@ -89,6 +91,31 @@ def test_stop_is_called_what_it_is(acts: Notes) -> None:
     assert arboleda("stop", "ra1") == (0, "done: stop (software), ra1\n")
 
 
+@pytest.mark.parametrize(
+    ("error", "status", "said"),
+    [
+        (ArboledaError("No plant."), 1, "The stop was not confirmed, use the hard-wired button: No plant."),
+        (TextError("No cell x."), 2, "No cell x."),
+    ],
+)
+def test_a_stop_that_nobody_confirms_names_the_button(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    error: ArboledaError,
+    status: int,
+    said: str,
+) -> None:
+    def operate(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(Notes, "operate", operate)
+    monkeypatch.setattr(verbs, "client", lambda *_: Notes())
+    monkeypatch.setattr(sys, "argv", ["arboleda", "stop"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert (ended.value.code, capsys.readouterr().err) == (status, f"arboleda: {said}\n")
+
+
 def test_a_robot_is_declared_homed_by_hand(acts: Notes) -> None:
     assert arboleda("home", "ra1", "--by-hand")[0] == 0
     assert acts == [(Verb.HOME, "ra1", True)]
@@ -111,6 +138,6 @@ def test_override_frees_the_zone_once_a_person_said_so(
 
 def test_the_plant_is_found_as_submit_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setattr(verbs, "client", lambda plant, state: asked.append((plant, state)) or Notes())
-    arboleda("hold", "--plant", "my.yaml", "--state", "here")
-    assert asked == [(Path("my.yaml"), Path("here"))]
+    monkeypatch.setattr(verbs, "client", lambda *where: asked.append(where) or Notes())
+    arboleda("hold", "--plant", "my.yaml", "--state", "here", "--store", "postgresql://db", "--tokens", "t")
+    assert asked == [(Path("my.yaml"), Path("here"), "postgresql://db", Path("t"))]

@@ -5,11 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from contextlib import ExitStack
+from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import yaml
 
 from arboleda.app import cli as command
+from arboleda.app import elsewhere
 from arboleda.app.cli import main
 from arboleda.app.client import PlantClient
 from arboleda.app.state import StateDir, default_state, running_plants
@@ -17,6 +21,7 @@ from arboleda.app.where import located
 from arboleda.model.errors import ArboledaError
 
 Typed = Callable[..., tuple[int, str, str]]
+SHIPPED = files("arboleda").joinpath("plants", "plant.yaml")
 
 
 @pytest.fixture
@@ -75,6 +80,63 @@ def test_of_two_plants_none_is_guessed_and_both_are_named(up, typed: Typed, tmp_
     )
 
 
+def left_behind(path: Path, store: str = "") -> Path:
+    """A plant ran there."""
+    with StateDir(path, plant=path.name, store=store):
+        return path
+
+
+def test_where_nothing_runs_the_only_plant_that_other_hosts_may_lead_is_found_and_named(
+    up, capsys: pytest.CaptureFixture[str]
+) -> None:
+    left_behind(default_state("attic"))
+    path = left_behind(default_state("greenhouse"), "postgresql://db")
+    assert located(None, None) == path
+    assert capsys.readouterr().err == "plant greenhouse, the only one here whose memory is in a database\n"
+    shipped = left_behind(default_state("arboleda"), "postgresql://db")
+    assert located(None, None) == shipped
+    assert capsys.readouterr().err == ""
+
+
+class Others:
+    """Nobody leads."""
+
+    name = "the database"
+
+    def leader(self) -> SimpleNamespace:
+        return SimpleNamespace(leads=False, standbys=0)
+
+    def close(self) -> None: ...
+
+
+@pytest.mark.parametrize(
+    ("options", "asked"),
+    [
+        ((), ("postgresql://last", "greenhouse")),
+        (("--store", "postgresql://named"), ("postgresql://named", "greenhouse")),
+        (("--plant", "FILE"), ("postgresql://file", "attic")),
+    ],
+)
+def test_the_database_is_the_one_that_is_named_else_of_the_file_else_of_the_last_start(
+    up,
+    typed: Typed,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...],
+    asked: tuple[str, str],
+) -> None:
+    state = left_behind(default_state("greenhouse"), "postgresql://last")
+    file = tmp_path / "plant.yaml"
+    shipped = yaml.safe_load(SHIPPED.read_text())
+    file.write_text(yaml.safe_dump(shipped | {"name": "attic", "store": "postgresql://file"}))
+    found: list[tuple[str, str]] = []
+    monkeypatch.setattr(elsewhere, "leadership_of", lambda *which: found.append(which) or Others())
+    chosen = [str(file) if word == "FILE" else word for word in options]
+    status, _, said = typed("status", "--state", str(state), *chosen)
+    assert (status, found) == (1, [asked])
+    assert f"No plant is running on {state}. Nobody leads the plant of the database now." in said
+
+
 def test_without_any_plant_it_is_said_how_to_start_or_name_one(up, typed: Typed) -> None:
     status, _, said = typed("status")
     assert status == 1
@@ -120,7 +182,7 @@ class Answers:
 def test_submit_of_an_id_whose_task_failed_ends_with_1(
     state: str, status: int, typed: Typed, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command, "client", lambda plant, state_dir: Answers(state))
+    monkeypatch.setattr(command, "client", lambda *_: Answers(state))
     ended, out, said = typed("submit", "sis_a 0B 7 #lot42")
     assert (ended, out) == (status, f"{state}: sis_a 0B 7 (id lot42)\n")
     assert ("give another id" in said) is (status == 1)

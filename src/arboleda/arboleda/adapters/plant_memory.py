@@ -96,6 +96,11 @@ class PlantMemory(ABC):
         """
         return False
 
+    def own_address(self) -> str:
+        """By which address hosts that reach the memory may reach this one, "" where that is not known; from
+        any thread. ArboledaError."""
+        return ""
+
     def announce(self, url: str) -> None:  # noqa: B027 - who asks a file is on this machine
         """Say where the plant's page is; from any thread. ArboledaError."""
 

@@ -18,8 +18,10 @@ from arboleda import __version__
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.adapters.oee_rows import OeeQuery
+from arboleda.adapters.own_addresses import own_addresses
 from arboleda.adapters.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.adapters.task_rows import COMMAND, TaskQuery, TaskRow
+from arboleda.adapters.web.names import LOCAL
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.facts import Value
@@ -112,7 +114,7 @@ class App:
         self._drivers: DriversPart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
-        self._public_url = options.web.public_url
+        self._web_options = options.web
         self._firmware = options.firmware
         self._log_name = options.log_name
         self._notes = options.notes
@@ -257,6 +259,7 @@ class App:
         metrics = self._metrics = Metrics(self.snapshot, self.links)
         return WebPart(
             self,
+            self.model.name,
             self._state.path,
             self._announce,
             options.web,
@@ -379,11 +382,15 @@ class App:
 
     def _announce(self, port: int, *, host: str, guarded: bool, certificate: str) -> None:
         self._state.announce(port, host=host, guarded=guarded, certificate=certificate)
-        scheme = "https" if certificate else "http"
         try:
-            self._store.announce(self._public_url or f"{scheme}://{host}:{port}")
+            self._store.announce(self._web_options.origin(port, self._own_address))
         except ArboledaError as error:
             LOG.warning("standbys are not told where the page is: %s", error)
+
+    def _own_address(self) -> str:
+        """By which hosts that reach the memory may reach this one."""
+        others = (each for each in own_addresses() if each != LOCAL)
+        return self._store.own_address() or next(others, "")
 
     def _seen_at(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None

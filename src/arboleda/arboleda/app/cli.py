@@ -53,9 +53,10 @@ from . import (
     virtual_command,
 )
 from .alarm_options import alarm_options
-from .client import Gone, PlantClient, Refused
+from .client import Gone, PlantClient
 from .conformance import command as conformance
 from .firmware_config import command as firmware_config
+from .line import Refused, Silent
 from .overview import Overview
 from .rate import check_rate
 from .screen import table
@@ -63,7 +64,7 @@ from .simulate import command as simulate
 from .state import find_running, holder
 from .urdf import robot_urdf
 from .web_options import WebOptions
-from .where import PlantFile, StateFolder, StoreAddress, client, folder
+from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client, folder
 
 if TYPE_CHECKING:
     from arboleda.adapters.server_tls import ServerTls
@@ -311,13 +312,16 @@ def submit(
     ] = False,
     plant: PlantFile = None,
     state: StateFolder = None,
+    store: StoreAddress = "",
+    tokens: TokensFile = None,
 ) -> None:
-    """Send a task to the plant that runs on this machine.
+    """Send a task to the plant that runs on this machine, or that another host leads.
 
     Exit status: 0 accepted, with --wait done; 1 a task of that id has failed or was cancelled before, with
-    --wait also this one; 2 refused. Ctrl-C ends the waiting and not the task.
+    --wait also this one; 2 refused. Ctrl-C ends the waiting and not the task. Where another host takes the
+    plant over meanwhile, --wait goes on there.
     """
-    reached = client(plant, state)
+    reached = client(plant, state, store, tokens)
     answer = reached.submit(task)
     _print_task(answer)
     if answer["state"] in UNDONE:
@@ -345,21 +349,20 @@ def status(
     state: StateFolder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the whole snapshot as JSON.")] = False,
     watch: Annotated[bool, typer.Option("--watch", help="Show what changes, until Ctrl-C.")] = False,
+    store: StoreAddress = "",
+    tokens: TokensFile = None,
 ) -> None:
-    """Show what the plant that runs on this machine is doing.
+    """Show what the plant is doing that runs on this machine, or that another host leads.
 
     With --json and --watch each change is a line: its kind, and its row of the snapshot.
     """
-    reached = client(plant, state)
+    reached = client(plant, state, store, tokens)
     if watch:
         _watch(reached, as_json=as_json)
         return
     snapshot = reached.status()
     if as_json:
         print(json.dumps(snapshot, indent=2, ensure_ascii=False))
-        return
-    if snapshot.get("standby"):
-        print(plain(f"{snapshot['plant']}: this process stands by; it {snapshot['sentence']}", LONGEST))
         return
     Console(highlight=False).print(table(snapshot))
 
@@ -373,7 +376,8 @@ def _watch(reached: PlantClient, *, as_json: bool) -> None:
             return
         with Live(console=Console(highlight=False), auto_refresh=False) as live:
             for _ in reached.changes():
-                live.update(table(reached.status()), refresh=True)
+                with suppress(Silent):  # it may end between a change and the table of it
+                    live.update(table(reached.status()), refresh=True)
 
 
 token_command.add_to(cli)

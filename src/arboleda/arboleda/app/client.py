@@ -1,34 +1,35 @@
-"""Talks to the plant that runs on a state directory, for the commands that need one."""
+"""Talks to a plant for the commands that need one: to the process on its state directory, or where that does
+not lead it, to who does."""
 
 from __future__ import annotations
 
-import json
+import sys
+import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
+from typing import Any
+from urllib.parse import quote, urlencode
 
-from arboleda.adapters.web.auth import Role
-from arboleda.adapters.web.limits import BEAT_S
-from arboleda.adapters.web.plant_side import COMMAND_LINE
-from arboleda.model.errors import ArboledaError, QueueFull, TextError
+from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, TaskState, Verb
 from arboleda.model.outside import plain
 
-from . import tokens
+from . import places
+from .elsewhere import Elsewhere, Nobody
+from .led import of_standby
+from .line import Answer, FarLine, Line, Silent
 from .state import Running, find_running, running_plants
 
-if TYPE_CHECKING:  # they take a while to load, and only who asks a plant needs them
-    import ssl
-
-    import httpx
-
-TIMEOUT_S = 10.0
-LONGEST = 500  # characters of a path that is named
-
-
-class Refused(ArboledaError):
-    """The plant does not do now what an operator asks for; the sentence says why."""
+LONGEST = 500  # characters of a line
+NEXT_S = 30.0  # by then a plant that lost its leader has the next one
+NOBODY_S = 5.0  # who stood by needs less to begin; while it does, nobody leads and nobody waits
+LOOK_S = 0.2
+STANDS_BY = "this process stands by and does nothing itself: it {it}"
+LOST_TASK = (
+    "It may have taken the task: `arboleda tasks` says so. With an id of yours, as in `sis_a 0B 7 #lot42`, it"
+    " can be sent again and is one task."
+)
 
 
 class Gone(ArboledaError):
@@ -38,36 +39,27 @@ class Gone(ArboledaError):
         super().__init__("the plant has ended")
 
 
-ERRORS = {409: Refused, 422: TextError}
-
-
-def _believed(running: Running) -> ssl.SSLContext | bool:
-    """Whom a client believes: the certificate of that plant, as its state directory has it."""
-    if not running.certificate:
-        return True  # nobody is asked for one
-    from arboleda.adapters.server_tls import pinned
-
-    return pinned(running.certificate)
-
-
-def _instead() -> str:
-    """What to do where no plant runs on a state directory: those that run are named."""
-    found = running_plants()
-    if not found:
-        return "start one with `arboleda up`, or name its directory where it was started with --state"
-    named = ", ".join(f"{plain(path.name)} (--state {plain(str(path), LONGEST)})" for path in found)
-    return f"{'the one that runs is' if len(found) == 1 else 'those that run are'} {named}"
-
-
 class PlantClient:
-    """One-sentence ArboledaErrors: no plant, no answer, or what the plant said."""
+    """One-sentence ArboledaErrors: no plant, no answer, or what the plant said.
 
-    def __init__(self, state: Path) -> None:
+    Whom it asks on another host it says once, on standard error.
+    """
+
+    def __init__(self, state: Path, elsewhere: Elsewhere | None = None) -> None:
         self._state = state
+        self._elsewhere = elsewhere or Elsewhere(state, lambda: ("", ""), dict)
+        self._listening: Line | None = None  # whoever tells changes is asked, too
+        self._said = ""
 
     def submit(self, text: str) -> dict[str, Any]:
         """The queued task; TextError where the text is refused, QueueFull where the plant takes none now."""
-        return self._ask("POST", "/api/tasks", {"text": text})
+        try:
+            # An id makes it one task, however often it is sent; without one it is never sent again.
+            return self._ask("POST", "/api/tasks", {"text": text}, repeatable="#" in text)
+        except Silent as error:
+            if not error.may_have_heard:
+                raise
+            raise Silent(f"{error} {LOST_TASK}", may_have_heard=True) from error
 
     def status(self) -> dict[str, Any]:
         """The view of the plant."""
@@ -80,41 +72,42 @@ class PlantClient:
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> dict[str, Any]:
         """Have the plant (no scope) or one cell, robot, zone or task do it; Refused where it does not."""
         where = f"cells/{quote(scope, safe='')}" if scope else "plant"
-        return self._ask("POST", f"/api/{where}/{verb.value}", {"by_hand": True} if by_hand else None)
+        body = {"by_hand": True} if by_hand else None
+        return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=verb is Verb.STOP)
 
     def changes(self) -> Iterator[tuple[str, dict[str, Any]]]:
         """What `GET /api/events` says, as it happens: the kind of each event and its row, `snapshot` first.
 
-        A reader that was too slow is told a new snapshot; Gone where the plant has ended.
+        A reader that was too slow is told a new snapshot, and so is that of a plant with a database whose
+        next leader is there within NEXT_S; Gone where the plant has ended.
         """
-        import httpx
-
-        running, heard = self._running(), False
-        while not heard or find_running(self._state) == running:
+        epoch, cut_at = None, None
+        while True:
+            running, trouble = find_running(self._state), None
             try:
-                for event in self._events(running):
-                    heard = True
-                    yield event
-            except (httpx.HTTPError, ValueError, KeyError) as error:
-                raise (Gone() if heard else self._silent(running)) from error
-        raise Gone
+                line = self._leading()
+                for kind, row in line.events():
+                    if kind == "snapshot":
+                        self._say(line, "asked" if epoch in (None, row["epoch"]) else "followed")
+                        epoch = row["epoch"]
+                    self._listening, cut_at = line, None
+                    yield kind, row
+            except ArboledaError as error:
+                if epoch is None:
+                    raise
+                trouble = error
+            finally:
+                self._listening = None
+            cut_at = cut_at or time.monotonic()
+            if time.monotonic() - cut_at > self._patience_s(running, trouble):
+                raise Gone from trouble
+            time.sleep(LOOK_S)
 
-    def _events(self, running: Running) -> Iterator[tuple[str, dict[str, Any]]]:
-        """One stream, up to where it is cut; ArboledaError with what the plant said where it gives none."""
-        kind = ""
-        with (
-            self._http(running, silence_s=2 * BEAT_S) as http,
-            http.stream("GET", f"{running.url}/api/events") as answer,
-        ):
-            if not answer.is_success:
-                answer.read()
-                raise ArboledaError(answer.json()["sentence"])
-            for line in answer.iter_lines():
-                field, _, value = line.partition(": ")
-                if field == "event":
-                    kind = value
-                elif field == "data":
-                    yield kind, json.loads(value)
+    def _patience_s(self, before: Running | None, trouble: ArboledaError | None) -> float:
+        """For how long after a cut somebody may tell on."""
+        if not self._elsewhere.is_known:
+            return NEXT_S if trouble is None and find_running(self._state) == before else 0.0
+        return NOBODY_S if isinstance(trouble, Nobody) and not trouble.awaited else NEXT_S
 
     def follow(self, task: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """The task each time that its state changes, until it has ended; ArboledaError where the plant ends
@@ -135,51 +128,100 @@ class PlantClient:
     def _told_of(self, id: str) -> Iterator[dict[str, Any]]:
         for kind, row in self.changes():
             rows = row["tasks"] if kind == "snapshot" else [row] if kind == "task" else []
-            yield from (each for each in rows if each["id"] == id)
+            found = [each for each in rows if each["id"] == id]
+            yield from found or (self._kept(id) if kind == "snapshot" else ())
 
-    def _running(self) -> Running:
+    def _kept(self, id: str) -> list[dict[str, Any]]:
+        """The task as the history has it: a leader need not know what ended under the one before."""
+        rows = self._ask("GET", f"/api/history?{urlencode({'words': id})}")
+        return [row for row in rows if row["id"] == id]
+
+    def _ask(
+        self, method: str, path: str, body: dict[str, Any] | None = None, *, repeatable: bool = False
+    ) -> Any:
+        """`repeatable`: nothing is done twice where two processes of the plant hear it."""
+        line = self._listening or self._near() or self._far()
+        try:
+            answer = line.ask(method, path, body)
+        except Silent as error:
+            line = self._instead(line, error, repeatable=repeatable or method == "GET")
+            answer = line.ask(method, path, body)
+        if answer.stands_by and not isinstance(line, FarLine):
+            line = self._beyond(answer)
+            answer = line.ask(method, path, body)
+        self._say(line, "asked")
+        return line.taken(answer)
+
+    def _leading(self) -> Line:
+        """To whoever leads the plant now."""
+        line = self._near()
+        if line is None:
+            return self._far()
+        answer = line.ask("GET", "/api/plant")
+        return self._beyond(answer) if answer.stands_by else line
+
+    def _near(self) -> Line | None:
+        """To the process on the state directory, None where none can be asked."""
+        running = find_running(self._state)
+        if running is None or running.port is None:
+            return None
+        return Line(places.here(self._state, running), f"The plant on {self._state} (process {running.pid})")
+
+    def _beyond(self, answer: Answer) -> FarLine:
+        """To the process that leads the plant, as one that stands by says it."""
+        sentence = answer.sentence if answer.status >= 300 else STANDS_BY.format(it=answer.sentence)
+        led = of_standby(answer.said)
+        if not led.url:
+            raise ArboledaError(sentence)
+        try:
+            return self._elsewhere.line(led)
+        except ArboledaError as error:
+            raise ArboledaError(f"{sentence}. {error}") from error
+
+    def _far(self) -> FarLine:
+        """To the process that leads the plant, as its database says it; else what is the matter here."""
         running = find_running(self._state)
         if running is None:
-            raise ArboledaError(f"No plant is running on {self._state}; {_instead()}.")
-        if running.port is None:
-            raise ArboledaError(
-                f"The plant on {self._state} (process {running.pid}) is still starting or ending."
-            )
-        return running
-
-    def _http(self, running: Running, *, silence_s: float = TIMEOUT_S) -> httpx.Client:
-        import httpx
-
-        # No proxy of the environment stands between two processes of one machine.
-        timeout = httpx.Timeout(TIMEOUT_S, read=silence_s)
-        return httpx.Client(
-            trust_env=False, timeout=timeout, headers=self._headers(running), verify=_believed(running)
-        )
-
-    def _silent(self, running: Running) -> ArboledaError:
-        return ArboledaError(f"The plant on {self._state} (process {running.pid}) did not answer.")
-
-    def _ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
-        running = self._running()
-        import httpx
-
+            here = f"No plant is running on {self._state}"
+        else:
+            here = f"The plant on {self._state} (process {running.pid}) is still starting or ending"
         try:
-            with self._http(running) as http:
-                answer = http.request(method, f"{running.url}{path}", json=body)
-                said, sentence = answer.json(), ""
-                if not answer.is_success:
-                    sentence = said["sentence"]
-        except (httpx.HTTPError, ValueError, TypeError, KeyError) as error:
-            raise self._silent(running) from error
-        if answer.is_success:
-            return said
-        if answer.status_code == 503 and "retry-after" in answer.headers:
-            raise QueueFull(sentence)
-        raise ERRORS.get(answer.status_code, ArboledaError)(sentence)
+            led = self._elsewhere.led()
+            if led is not None:
+                return self._elsewhere.line(led)
+        except Nobody as error:
+            raise Nobody(f"{here}. {error}", awaited=error.awaited or running is not None) from error
+        except ArboledaError as error:
+            raise ArboledaError(f"{here}. {error}") from error
+        raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
 
-    def _headers(self, running: Running) -> dict[str, str]:
-        """Who asks, with the operator's token where the plant wants one: whoever may read it may operate."""
-        who = {"user-agent": COMMAND_LINE}
-        if not running.guarded:
-            return who
-        return who | {"authorization": f"Bearer {tokens.TokenFile(self._state)()[Role.OPERATOR]}"}
+    def _instead(self, line: Line, silent: Silent, *, repeatable: bool) -> Line:
+        """To another process that leads the plant, where one on this host was silent; else Silent."""
+        led, running = None, find_running(self._state)
+        if not isinstance(line, FarLine):
+            with suppress(ArboledaError):  # what matters is that the one here was silent
+                led = self._elsewhere.led()
+        if led is None or (led.here and running is not None and led.process == running.pid):
+            raise silent
+        if silent.may_have_heard and not repeatable:
+            sentence = f"{silent} Plant {led.plant} is led on {led.host} now."
+            raise Silent(sentence, may_have_heard=True) from silent
+        return self._elsewhere.line(led)
+
+    def _say(self, line: Line, done: str) -> None:
+        """Whom it asks, where that is not the process here."""
+        if not isinstance(line, FarLine) and done == "asked":
+            return
+        said = f"plant {line.place.plant} is led on {line.host}: {done} there"
+        if said != self._said:
+            print(plain(said, LONGEST), file=sys.stderr, flush=True)
+            self._said = said
+
+
+def _others() -> str:
+    """What to do where no plant runs on a state directory: those that run are named."""
+    found = running_plants()
+    if not found:
+        return "start one with `arboleda up`, or name its directory where it was started with --state"
+    named = ", ".join(f"{plain(path.name)} (--state {plain(str(path), LONGEST)})" for path in found)
+    return f"{'the one that runs is' if len(found) == 1 else 'those that run are'} {named}"

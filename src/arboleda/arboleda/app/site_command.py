@@ -17,7 +17,7 @@ from .web_options import WebOptions
 if TYPE_CHECKING:  # they take a while to load, and only who shows a page needs them
     from arboleda.adapters.server_tls import ServerTls
 
-    from .site.places import Find
+    from .places import Find
 
 Addresses = Annotated[
     list[str] | None,
@@ -42,6 +42,7 @@ Tokens = Annotated[
     typer.Option(
         "--tokens",
         metavar="FILE",
+        envvar="ARBOLEDA_TOKENS",
         help="Lines of ADDRESS TOKEN, or PLANT TOKEN, for plants of other machines that want one; mode 0600.",
     ),
 ]
@@ -119,7 +120,7 @@ def _tls(certificate: Path | None, key: Path | None) -> ServerTls | None:
 
 def _find(addresses: list[str], store: str, file: Path | None) -> Find:
     """Where the plants are, as the options say it; StartError."""
-    from .site import places
+    from . import places
 
     known = {} if file is None else places.tokens_of(file)
     found = [places.named(addresses)] if addresses else []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.wire.status import OK, WARN
 
 from .build import App, Options, build
+from .led import Led, of_leader
 from .parts.waiting_room import WaitingRoom
 from .state import StateDir, default_state
 from .waiting import interruptible
@@ -46,15 +48,19 @@ def take_over(model: PlantModel, parts: set[str], options: Options, tell: Callab
     if not store:
         raise StartError(NEEDS_STORE)
     state = options.state_dir or default_state(model.name)
+    # Who logged in while it waited stays so when it leads.
+    options = replace(options, web=replace(options.web, door=options.web.door_of(state)))
     while True:
-        _wait(model, store, state, options, tell)
+        port = _wait(model, store, state, options, tell)
+        options = replace(options, web=replace(options.web, usual_port=port))  # pages that are open find it
         try:
             return build(model, parts, options)
         except LedElsewhere:
             tell("another process was first; this one goes on waiting")
 
 
-def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Callable[[str], None]) -> None:
+def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Callable[[str], None]) -> int:
+    """Wait until nobody leads the plant; the port of the page that said so meanwhile."""
     from .stores import leadership_of
 
     for each in NEEDED_THEN:  # so that it need not be loaded when the plant waits for it
@@ -66,8 +72,9 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
         others.prepare()
         room.start(here.announce)
         try:
-            tell(room.address)
-            _until_free(others, _Told(room, voice, tell))
+            tell(f"Page of the standby: {room.url}")
+            _until_free(others, model.name, _Told(room, voice, tell))
+            return room.port
         finally:
             room.stop()
             others.close()
@@ -82,19 +89,19 @@ class _Told:
         self._room, self._voice, self._tell = room, voice, tell
         self._said, self._said_at = "", 0.0
 
-    def waits(self, sentence: str, level: int, leader: str = "") -> None:
-        """`leader` is the page of the process that leads, "" where nobody knows it."""
-        self._room.show(sentence, leader)
+    def waits(self, sentence: str, level: int, led: Led | None = None) -> None:
+        """`led` is who leads, None where nobody knows it."""
+        self._room.show(sentence, led)
         now = time.monotonic()
         if self._voice is not None and (sentence != self._said or now - self._said_at > SAY_S):
-            self._voice.say(level, sentence, {"leader": leader})
+            self._voice.say(level, sentence, {"leader": led.url if led else ""})
             self._said_at = now
         if sentence != self._said:
             self._tell(f"standby: {sentence}")
             self._said = sentence
 
 
-def _until_free(others: Leadership, told: _Told) -> None:
+def _until_free(others: Leadership, plant: str, told: _Told) -> None:
     """Look again and again; a database that is away says nothing of who leads."""
     said_at = 0.0
     while True:
@@ -107,7 +114,7 @@ def _until_free(others: Leadership, told: _Told) -> None:
             if time.monotonic() - said_at > SAY_S:
                 others.wait_here()
                 said_at = time.monotonic()
-            told.waits(_led_by(leader), OK, leader.url)
+            told.waits(_led_by(leader), OK, of_leader(plant, leader))
         except ArboledaError as error:
             told.waits(f"waits for the database: {error}", WARN)
         time.sleep(LOOK_S)

@@ -41,6 +41,14 @@ def running_plants() -> list[Path]:
         return []
 
 
+def plants_of_databases() -> list[Path]:
+    """The default state directories whose last plant had its memory in a database, by name."""
+    try:
+        return [path for path in sorted(_default_root().iterdir()) if (last := last_run(path)) and last.store]
+    except OSError:
+        return []
+
+
 def state_root() -> Path:
     """`$XDG_STATE_HOME`, else `~/.local/state`."""
     base = os.environ.get("XDG_STATE_HOME", "")
@@ -183,6 +191,11 @@ def find_running(path: Path) -> Running | None:
     finally:
         os.close(lock)
     return None
+
+
+def last_run(path: Path) -> Running | None:
+    """Who runs a plant on `path`, or was the last to do so."""
+    return read_facts(path / LOCK)
 
 
 def read_facts(file: Path) -> Running | None:

@@ -17,8 +17,9 @@ from arboleda.model.task import Order
 from arboleda.views import tree_view
 
 from . import config, tree_file
+from .client import PlantClient
 from .draw import Format, draw
-from .where import PlantFile, StateFolder, client
+from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 Drawn = Annotated[
     Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz, xml is for editors.")
@@ -39,6 +40,8 @@ def tree(
     format: Drawn = Format.ASCII,
     live: Live = False,
     state: StateFolder = None,
+    store: StoreAddress = "",
+    tokens: TokensFile = None,
 ) -> None:
     """Draw the behavior tree of a recipe, or the one that runs.
 
@@ -51,7 +54,8 @@ def tree(
             raise typer.BadParameter(f"{recipe} is XML already", param_hint="--format")
         rows = _of_file(Path(recipe))
     else:
-        rows = _running(recipe, cell, plant, state) if live else _planned(recipe, cell, config.load(plant))
+        reached = client(plant, state, store, tokens) if live else None
+        rows = _running(recipe, cell, reached) if reached else _planned(recipe, cell, config.load(plant))
     sys.stdout.buffer.write(draw(rows, format, statuses=live))
     sys.stdout.flush()
 
@@ -89,9 +93,9 @@ def _offers(cell: Cell, recipe: str) -> bool:
     return any(each.name == recipe for each in cell.recipes)
 
 
-def _running(recipe: str, cell: str | None, plant: Path | None, state: Path | None) -> list[dict[str, Any]]:
+def _running(recipe: str, cell: str | None, reached: PlantClient) -> list[dict[str, Any]]:
     """The tree of this recipe that runs in the cell, else in the first cell that runs one."""
-    cells = client(plant, state).status()["cells"]
+    cells = reached.status()["cells"]
     if cell is not None:
         _cell(cell, [each["name"] for each in cells])
     trees = {each["name"]: each["tree"] for each in cells if each["tree"] and cell in (None, each["name"])}

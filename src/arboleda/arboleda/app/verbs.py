@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from arboleda.model.errors import ArboledaError, TextError
 from arboleda.model.messages import Verb
 from arboleda.model.outside import plain
 from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
-from .where import PlantFile, StateFolder, client
+from .client import PlantClient
+from .line import Refused
+from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 STATUS = "Exit status: 0 done, 1 no plant, 2 refused."
 ByHand = Annotated[
@@ -57,8 +59,14 @@ def _named(scope: str | None) -> str | None:
 
 
 def _plain(verb: Verb, argument: Any) -> Callable[..., None]:
-    def act(scope: str | None = argument, plant: PlantFile = None, state: StateFolder = None) -> None:
-        _ask(verb, scope, plant, state)
+    def act(
+        scope: str | None = argument,
+        plant: PlantFile = None,
+        state: StateFolder = None,
+        store: StoreAddress = "",
+        tokens: TokensFile = None,
+    ) -> None:
+        _ask(verb, scope, client(plant, state, store, tokens))
 
     return act
 
@@ -69,20 +77,27 @@ def _home(verb: Verb, argument: Any) -> Callable[..., None]:
         by_hand: ByHand = False,
         plant: PlantFile = None,
         state: StateFolder = None,
+        store: StoreAddress = "",
+        tokens: TokensFile = None,
     ) -> None:
-        _ask(verb, scope, plant, state, by_hand=by_hand)
+        _ask(verb, scope, client(plant, state, store, tokens), by_hand=by_hand)
 
     return act
 
 
 def _override(verb: Verb, argument: Any) -> Callable[..., None]:
     def act(
-        scope: str | None = argument, yes: Yes = False, plant: PlantFile = None, state: StateFolder = None
+        scope: str | None = argument,
+        yes: Yes = False,
+        plant: PlantFile = None,
+        state: StateFolder = None,
+        store: StoreAddress = "",
+        tokens: TokensFile = None,
     ) -> None:
         question = f"A robot may still stand in {scope}. Have you seen that it is free?"
         if not yes:
             typer.confirm(question, abort=True)
-        _ask(verb, scope, plant, state)
+        _ask(verb, scope, client(plant, state, store, tokens))
 
     return act
 
@@ -94,15 +109,20 @@ def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
         question: Question = None,
         plant: PlantFile = None,
         state: StateFolder = None,
+        store: StoreAddress = "",
+        tokens: TokensFile = None,
     ) -> None:
         named = [] if question is None else [f"#{question.removeprefix('#')}"]
-        _ask(verb, " ".join([person, *named, *answer]), plant, state)
+        _ask(verb, " ".join([person, *named, *answer]), client(plant, state, store, tokens))
 
     return act
 
 
-def _ask(
-    verb: Verb, scope: str | None, plant: Path | None, state: Path | None, *, by_hand: bool = False
-) -> None:
-    client(plant, state).operate(verb, scope or "", by_hand=by_hand)
+def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool = False) -> None:
+    try:
+        reached.operate(verb, scope or "", by_hand=by_hand)
+    except ArboledaError as error:
+        if verb is not Verb.STOP or isinstance(error, Refused | TextError):
+            raise
+        raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
     print(f"done: {LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}")

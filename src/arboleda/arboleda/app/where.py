@@ -13,7 +13,9 @@ from arboleda.model.outside import plain
 
 from . import config
 from .client import PlantClient
-from .state import default_state, find_running, running_plants
+from .elsewhere import Elsewhere
+from .places import tokens_of
+from .state import default_state, find_running, last_run, plants_of_databases, running_plants
 from .stores import history_of, leadership_of
 
 if TYPE_CHECKING:
@@ -50,21 +52,45 @@ StoreAddress = Annotated[
 ]
 
 
-def client(plant: Path | None, state: Path | None) -> PlantClient:
-    """The client of the plant that runs on `state`, or where that plant file keeps its state."""
-    return PlantClient(located(plant, state))
+TokensFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--tokens",
+        metavar="FILE",
+        envvar="ARBOLEDA_TOKENS",
+        help="Lines of ADDRESS TOKEN, or PLANT TOKEN, for a plant that another host leads; mode 0600."
+        " [default: the tokens in the state directory here]",
+        show_default=False,
+    ),
+]
+
+
+def client(
+    plant: Path | None, state: Path | None, store: str = "", tokens: Path | None = None
+) -> PlantClient:
+    """The client of the plant that runs on `state`, or where that plant file keeps its state; on whatever
+    host it is led."""
+    where = located(plant, state)
+    elsewhere = Elsewhere(
+        where,
+        kept_in=lambda: _kept_in(plant, where, store),
+        known=lambda: {} if tokens is None else tokens_of(tokens),
+    )
+    return PlantClient(where, elsewhere)
 
 
 def located(plant: Path | None, state: Path | None) -> Path:
     """The `folder`; where neither is named and the shipped plant does not run, that of the only plant that
-    runs, which is said then."""
+    runs, else of the only one that other hosts may lead, which is said then."""
     named = folder(plant, state)
     if plant is not None or state is not None or find_running(named) is not None:
         return named
-    found = running_plants()
+    found, why = running_plants(), "that runs"
+    if not found and named not in (kept := plants_of_databases()):
+        found, why = kept, "here whose memory is in a database"
     if len(found) != 1:
         return named
-    print(plain(f"plant {found[0].name}, the only one that runs", LONGEST), file=sys.stderr)
+    print(plain(f"plant {found[0].name}, the only one {why}", LONGEST), file=sys.stderr)
     return found[0]
 
 
@@ -81,12 +107,17 @@ def database(plant: Path | None, state: Path | None, store: str) -> Leadership:
 
 
 def _kept_in(plant: Path | None, where: Path, store: str) -> tuple[str, str]:
-    """The database of a plant, "" for none, and its name."""
-    running = find_running(where)
-    if running is not None and running.store and not store:
-        return running.store, running.plant
+    """The database of a plant, "" for none, and its name: that which was named, of the plant that runs there,
+    of the plant file, of the last start there."""
+    last, runs = last_run(where), find_running(where) is not None
+    if last is not None and last.store and not store and (runs or not store_of(plant)):
+        return last.store, last.plant
     kept_in = store or store_of(plant)
-    return kept_in, config.load(plant, recipes=False).name if kept_in else ""
+    if not kept_in:
+        return "", ""
+    if plant is None and last is not None and last.plant:
+        return kept_in, last.plant
+    return kept_in, config.load(plant, recipes=False).name
 
 
 def store_of(plant: Path | None) -> str:

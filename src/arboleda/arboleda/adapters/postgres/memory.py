@@ -19,7 +19,7 @@ from arboleda.model.outside import plain
 
 from ..plant_memory import LedElsewhere, PlantMemory, Statement, Superseded
 from .schema import SUPERSEDED, prepare, schema_of
-from .server import Impatient, checked, connected, explained, plain_values, translated
+from .server import Impatient, checked, connected, explained, own_address, plain_values, translated
 
 PAUSE_S = 0.1
 LEAD = (
@@ -101,6 +101,10 @@ class PostgresMemory(PlantMemory):
             with explained(self.name, ArboledaError, "cannot be reached"):
                 self._renewing = self.connect()
         return self._renew(self._renewing)
+
+    def own_address(self) -> str:
+        with explained(self.name, ArboledaError, "cannot be reached"), self.connect() as db:
+            return own_address(db)
 
     def announce(self, url: str) -> None:
         self._beside("UPDATE leader SET url = %s WHERE epoch = %s", url, self._epoch)

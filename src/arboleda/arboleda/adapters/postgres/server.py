@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ipaddress
+import os
 import re
+import socket
 import time
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
@@ -107,6 +110,15 @@ def connected(address: str, schema: str, *, idle_s: float = 1.0) -> Impatient:
         db.close()
         raise
     return db
+
+
+def own_address(db: Impatient) -> str:
+    """The address of this host on its way to the server; "" where both are on one, or no URL can have it."""
+    with socket.socket(fileno=os.dup(db.fileno())) as end:
+        name = end.getsockname()
+    if not isinstance(name, tuple) or "%" in name[0] or ipaddress.ip_address(name[0]).is_loopback:
+        return ""
+    return str(name[0])
 
 
 def translated(statement: str) -> str:

@@ -53,8 +53,10 @@ Query = TypeVar("Query", bound=BaseModel)
 
 ANSWER_S = 5.0
 ABOUT = """Look at a running plant, give it tasks, and operate it. What is refused says why in one sentence.
-Where the plant is open to a network every request carries a token (Authorization: Bearer ...). The stop is a
-stop in software and no safety function."""
+Where the plant is open to a network every request carries a token (Authorization: Bearer ...). A process
+that stands by for the plant answers 307 with the address of the one that leads it, to which a client shows
+its token itself, or 503 with Retry-After. Who names a plant in a header Arboleda-Plant is refused with 421
+where another one answers. The stop is a stop in software and no safety function."""
 STATUS = {TextError: 422, PayloadError: 422, Forbidden: 403}
 Answers = dict[int | str, dict[str, Any]]
 OTHERS: Answers = {

@@ -10,6 +10,7 @@ from starlette.types import Scope
 from .names import is_loopback
 
 API, LOGIN, LOGOUT, METRICS = "/api/", "/login", "/logout", "/metrics"
+PLANT = "arboleda-plant"  # a header: who asks names the plant that is meant
 STOP = re.compile(r"/api/(plant|cells/[^/]+|plants(/[^/]+)?)/stop")
 READS = {"GET", "HEAD"}
 ONLY_ONE = {"host", "origin", "authorization", "cookie", "content-length", "transfer-encoding"}

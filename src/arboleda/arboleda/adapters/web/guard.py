@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from arboleda.model.outside import quoted
 
 from . import limits
-from .asked import LOGIN, Asked
+from .asked import LOGIN, PLANT, Asked
 from .auth import LOCAL, Door, Login
 from .body import whole_body
 from .headers import with_headers
@@ -29,11 +29,15 @@ class Guard:
     """Lets in whom `door` and `names` know, within the limits; all else gets a sentence.
 
     What is let in carries `scope["arboleda.login"]`, `["arboleda.role"]` and `["arboleda.door"]`. A stop of
-    somebody who is logged in has no rate. At most so many `sockets` are open at a time.
+    somebody who is logged in has no rate. At most so many `sockets` are open at a time. `plant` is the name
+    of the plant that answers, "" where there are several.
     """
 
-    def __init__(self, app: ASGIApp, names: Names, door: Door, *, sockets: int = limits.SOCKETS) -> None:
+    def __init__(
+        self, app: ASGIApp, names: Names, door: Door, *, sockets: int = limits.SOCKETS, plant: str = ""
+    ) -> None:
         self._app = app
+        self._plant = plant
         self._names = names
         self._door = door
         self._pages = OneByOne(app)
@@ -63,6 +67,7 @@ class Guard:
             self._check_rate(asked, peer if login in (None, LOCAL) else login.key)
         if login is None and not asked.logs_in:
             raise _unknown(asked)
+        self._check_plant(asked)
         scope = self._introduced(asked.scope, login)
         if asked.socket:
             return await self._sockets.run(scope, receive, send, login)
@@ -88,6 +93,11 @@ class Guard:
             raise Turned(403, f"This plant is not called {quoted(host, 80)}; --public-url gives it a name.")
         if self._door.open and asked.forwarded:
             raise Turned(403, "A proxy asks, and this plant is for its own machine; see --public-url.")
+
+    def _check_plant(self, asked: Asked) -> None:
+        meant = asked.header(PLANT)
+        if meant and self._plant and meant != self._plant:
+            raise Turned(421, f"This is the plant {self._plant}, and {quoted(meant, 80)} is meant.")
 
     def _check_origin(self, asked: Asked, login: Login | None) -> None:
         if asked.has("origin"):

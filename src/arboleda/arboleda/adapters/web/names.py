@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from arboleda.model.errors import StartError
 
 LOCAL = "127.0.0.1"
+DEFAULT_PORT = 8080
 LOOPBACK = {LOCAL, "localhost", "[::1]"}
 EVERY_NETWORK = {
     "0.0.0.0": LOCAL,
@@ -80,6 +81,12 @@ def url_host(host: str) -> str:
 def is_loopback(host: str) -> bool:
     """Whether only this machine reaches `host`; StartError where it is no address."""
     return _address(host).is_loopback
+
+
+def is_near_only(origin: str) -> bool:
+    """Whether only the machine of a server reaches it at this origin."""
+    name = host_name(origin.partition("//")[2])
+    return name == "localhost" or (is_address(name) and is_loopback(name))
 
 
 def _address(host: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:

@@ -20,11 +20,11 @@ from ..seldom import Seldom
 from . import limits
 from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket
+from .names import DEFAULT_PORT
 
 if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
     from ..server_tls import ServerTls
 
-DEFAULT_PORT = 8080
 START_S = 20.0
 SENTENCE = b"This plant speaks TLS here: its address begins with https://\n"
 SPEAKS_TLS = (
@@ -34,7 +34,7 @@ SPEAKS_TLS = (
 
 
 class Server:
-    """Serves `app` on `host`, on DEFAULT_PORT or where that is taken on another, unless a `port` is named.
+    """Serves `app` on `host`, on `usual_port` or where that is taken on another, unless a `port` is named.
 
     At most `connections` are open at a time, websockets and streams among them. With `tls` everybody
     speaks TLS.
@@ -46,11 +46,13 @@ class Server:
         *,
         host: str = "127.0.0.1",
         port: int | None = None,
+        usual_port: int = DEFAULT_PORT,
         connections: int = limits.CONNECTIONS,
         tls: ServerTls | None = None,
     ) -> None:
         self._host = host
         self._port = port
+        self._usual_port = usual_port
         self._server = _Uvicorn(
             uvicorn.Config(
                 app,
@@ -75,7 +77,7 @@ class Server:
 
     def start(self) -> int:
         """Listen and serve; the port, or StartError with one sentence."""
-        listener = listen(self._host, self._port)
+        listener = listen(self._host, self._port, self._usual_port)
         # In a thread that is not the main one uvicorn leaves the signals alone.
         self._thread = threading.Thread(
             target=self._server.run_until_stopped, args=(listener,), name="http", daemon=True
@@ -128,10 +130,10 @@ class _Uvicorn(uvicorn.Server):
         self.ready.set()
 
 
-def listen(host: str, port: int | None) -> socket.socket:
-    """A listener on `port`; for None on DEFAULT_PORT, or on a free one where that is taken."""
+def listen(host: str, port: int | None, usual_port: int = DEFAULT_PORT) -> socket.socket:
+    """A listener on `port`; for None on `usual_port`, or on a free one where that is taken."""
     try:
-        return _bound(host, DEFAULT_PORT if port is None else port)
+        return _bound(host, usual_port if port is None else port)
     except OSError as error:
         if port is None:
             return listen(host, 0)

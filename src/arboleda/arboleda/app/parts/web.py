@@ -16,11 +16,10 @@ from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
 from arboleda.adapters.web.api import make_app
-from arboleda.adapters.web.auth import Door
 from arboleda.adapters.web.guard import Guard
-from arboleda.adapters.web.names import is_loopback, names_for
+from arboleda.adapters.web.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
-from arboleda.adapters.web.server import DEFAULT_PORT, Server
+from arboleda.adapters.web.server import Server
 from arboleda.model.errors import QueueFull
 from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
@@ -100,6 +99,7 @@ class WebPart:
     def __init__(
         self,
         plant: Asked,
+        name: str,
         state: Path,
         announce: Announce,
         options: WebOptions,
@@ -117,12 +117,16 @@ class WebPart:
         app = make_app(self.side, streams=limits.lasting(limits.STREAMS, connections), counts=counts)
         if mount is not None:
             mount(app, self.side)
-        door = Door(tokens.TokenFile(state) if options.guarded else None)
         sockets = limits.lasting(limits.SOCKETS, connections)
         names = names_for(options.address, options.public_url, scheme=options.scheme)
-        guarded = Guard(app, names, door, sockets=sockets)
+        guarded = Guard(app, names, options.door_of(state), sockets=sockets, plant=name)
         self._server = Server(
-            guarded, host=options.address, port=options.port, connections=connections, tls=options.tls
+            guarded,
+            host=options.address,
+            port=options.port,
+            usual_port=options.usual_port,
+            connections=connections,
+            tls=options.tls,
         )
 
     @property

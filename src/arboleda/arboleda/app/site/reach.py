@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import ssl
-from functools import cache
 from typing import Any
 
 import httpx
 
-from arboleda.adapters.server_tls import pinned
 from arboleda.adapters.web.plant_side import COMMAND_LINE
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 from arboleda.model.sentence import Phrase
 
-from .places import Place
+from ..places import Place
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s
 LONGEST = 300  # characters of what a plant says that are shown
@@ -35,22 +32,20 @@ class Said(ArboledaError):
     """A plant refused what was asked, in its own words."""
 
 
-@cache
-def _authorities() -> ssl.SSLContext:
-    return ssl.create_default_context()
-
-
 class Reach:
     """One address; Silent and Said where it gives no answer, or refuses."""
 
     def __init__(self, place: Place) -> None:
         self.place = place
-        believed = pinned(place.certificate) if place.certificate else _authorities()
         headers = {"user-agent": COMMAND_LINE}
         if place.token:
             headers["authorization"] = f"Bearer {place.token}"
         self._http = httpx.AsyncClient(
-            trust_env=False, timeout=ANSWER_S, headers=headers, verify=believed, follow_redirects=False
+            trust_env=False,
+            timeout=ANSWER_S,
+            headers=headers,
+            verify=place.believed(),
+            follow_redirects=False,
         )
 
     async def get(self, path: str) -> Any:

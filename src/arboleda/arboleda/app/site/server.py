@@ -19,9 +19,9 @@ from arboleda.dashboard.site import page
 from arboleda.model.errors import ArboledaError
 
 from .. import tokens
+from ..places import Find
 from ..waiting import interruptible, until
 from ..web_options import WebOptions
-from .places import Find
 from .watch import Site
 
 

@@ -13,8 +13,8 @@ from arboleda.dashboard.site.side import Asked, PlantSeen
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
+from ..places import Find, Place
 from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
-from .places import Find, Place
 from .reach import NO_PLANT, NOT_REACHED, Reach, Said, Silent
 
 LOOK_S = 2.0  # between two looks at a plant

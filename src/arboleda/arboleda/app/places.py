@@ -1,10 +1,11 @@
-"""Where the plants of a site may be reached, and what is shown to them."""
+"""Where plants may be reached, and what is shown to them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,11 +13,13 @@ from arboleda.adapters.web.auth import Role
 from arboleda.adapters.web.names import public_origin
 from arboleda.model.errors import ArboledaError, ConfigError
 
-from .. import tokens
-from ..state import Running, find_running, running_plants
-from ..user_file import read_text
+from . import tokens
+from .state import Running, find_running, running_plants
+from .user_file import read_text
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # they take a while to load, and only who asks a plant needs them
+    import ssl
+
     from arboleda.adapters.postgres.leaders import Leaders
 
 LARGEST = 65_536  # bytes of a file of tokens
@@ -36,6 +39,21 @@ class Place:
     token: str = ""
     certificate: str = ""
 
+    def believed(self) -> ssl.SSLContext:
+        """Whom a client there believes."""
+        if not self.certificate:
+            return _authorities()
+        from arboleda.adapters.server_tls import pinned
+
+        return pinned(self.certificate)
+
+
+@cache
+def _authorities() -> ssl.SSLContext:
+    import ssl
+
+    return ssl.create_default_context()
+
 
 Find = Callable[[], list[Place]]
 
@@ -49,10 +67,12 @@ def named(addresses: Iterable[str]) -> Find:
 def of_this_machine() -> list[Place]:
     """The plants that run here on their default state directories."""
     found = ((path, find_running(path)) for path in running_plants())
-    return [_here(path, running) for path, running in found if running is not None and running.port]
+    return [here(path, running) for path, running in found if running is not None and running.port]
 
 
-def _here(state: Path, running: Running) -> Place:
+def here(state: Path, running: Running) -> Place:
+    """The process of that state directory, with the operator's token where it wants one: whoever may read it
+    may operate. StartError where the token cannot be read."""
     token = ""
     if running.guarded:
         token = tokens.TokenFile(state)()[Role.OPERATOR]
@@ -71,8 +91,8 @@ def with_tokens(find: Find, known: Mapping[str, str]) -> Find:
     this machine that is there shows to its own commands."""
 
     def found() -> list[Place]:
-        here = {place.url: place for place in _readable()}
-        return [_shown(place, known, here.get(place.url)) for place in find()]
+        near = {place.url: place for place in _readable()}
+        return [_shown(place, known, near.get(place.url)) for place in find()]
 
     return found
 
@@ -85,12 +105,12 @@ def _readable() -> list[Place]:
         return []
 
 
-def _shown(place: Place, known: Mapping[str, str], here: Place | None) -> Place:
+def _shown(place: Place, known: Mapping[str, str], near: Place | None) -> Place:
     token = known.get(place.url) or known.get(place.plant) or place.token
-    if here is None:
+    if near is None:
         return replace(place, token=token)
-    certificate = place.certificate or here.certificate
-    return replace(place, token=token or here.token, certificate=certificate)
+    certificate = place.certificate or near.certificate
+    return replace(place, token=token or near.token, certificate=certificate)
 
 
 def tokens_of(file: Path) -> dict[str, str]:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app.site import places
-from arboleda.app.site.places import Place, named, tokens_of, with_tokens
+from arboleda.app import places
+from arboleda.app.places import Place, named, tokens_of, with_tokens
 from arboleda.model.errors import ConfigError, StartError
 
 HERE = Place(url="http://127.0.0.1:8080", plant="here", token="h" * 20, certificate="PEM")

@@ -1,0 +1,66 @@
+"""Who leads a plant, as others say it, and whether the address leads there from here."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+
+from arboleda.app.led import Led, of_standby, said_of
+from arboleda.app.web_options import WebOptions
+
+LED = Led(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)
+
+
+def led(host: str, url: str) -> Led:
+    return Led(plant="demo", host=host, process=7, url=url, epoch=3)
+
+
+@pytest.mark.parametrize(
+    "url", ["http://127.0.0.1:8080", "http://127.3.0.1", "http://localhost:8080", "https://[::1]:9"]
+)
+def test_the_address_of_one_machine_leads_there_from_that_machine_alone(url: str) -> None:
+    assert (led("host-a", url).is_far, led("host-a", url).way) == (True, "")
+    assert (led(socket.gethostname(), url).is_far, led(socket.gethostname(), url).way) == (False, url)
+
+
+@pytest.mark.parametrize("url", ["http://10.0.0.5:8080", "https://plant.lab", "http://[fd00::1]:8080"])
+def test_other_addresses_lead_there_from_everywhere(url: str) -> None:
+    assert led("host-a", url).way == url
+
+
+def test_what_a_standby_says_is_read_as_it_was_known() -> None:
+    assert of_standby({"plant": "demo", **said_of(LED)}) == LED
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        {},
+        said_of(None),
+        {"leader": "javascript:alert(1)", "host": "a\x1b[2J", "process": "7", "epoch": None},
+        {"leader": "http://user:word@a/x"},
+        {"leader": ["http://a"]},
+    ],
+)
+def test_what_is_no_address_counts_as_none(said: dict[str, object]) -> None:
+    read = of_standby(said)
+    assert (read.url, read.way, read.process, read.epoch) == ("", "", 0, 0)
+    assert read.host.isprintable()
+
+
+@pytest.mark.parametrize(
+    ("options", "own", "origin"),
+    [
+        ({}, "10.0.0.5", "http://127.0.0.1:8090"),
+        ({"host": "10.0.0.7"}, "10.0.0.5", "http://10.0.0.7:8090"),
+        ({"host": "0.0.0.0"}, "10.0.0.5", "http://10.0.0.5:8090"),
+        ({"host": "0.0.0.0"}, "", "http://127.0.0.1:8090"),
+        ({"host": "::"}, "fd00::5", "http://[fd00::5]:8090"),
+        ({"host": "0.0.0.0", "public_url": "https://plant.lab"}, "10.0.0.5", "https://plant.lab"),
+    ],
+)
+def test_a_server_on_every_network_is_reached_at_the_address_of_its_host(
+    options: dict[str, str], own: str, origin: str
+) -> None:
+    assert WebOptions(**options).origin(8090, lambda: own) == origin
