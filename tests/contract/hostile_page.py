@@ -77,7 +77,7 @@ class Side:
 
     def links(self) -> dict[str, Any]:
         broker = {"address": EVIL, "connected": True}
-        return {"broker": broker, "ros": None, "refused": {"": {"count": 1, "last": EVIL}}}
+        return {"broker": broker, "ros": None, "refused": {"": {"count": 1, "last": EVIL}}, "standbys": []}
 
     def past_acts(self) -> list[dict[str, Any]]:
         return [{"at": 0.0, "cell": EVIL, "scope": EVIL, "sentence": EVIL}]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -12,7 +13,7 @@ from contextlib import contextmanager
 import pytest
 from tests.postgres import DATABASE, PASSWORD, USER, Server
 
-from arboleda.adapters.plant_memory import PlantMemory, Superseded
+from arboleda.adapters.plant_memory import PlantMemory, Standby, Superseded
 from arboleda.adapters.postgres.history import PostgresHistory
 from arboleda.adapters.postgres.leaders import Leaders
 from arboleda.adapters.postgres.leadership import Leadership
@@ -245,6 +246,14 @@ def test_tables_of_an_older_format_are_brought_up_and_keep_what_they_have(
     history.close()
 
 
+def test_a_host_that_is_the_databases_has_no_address_towards_it(database: str, plant: str) -> None:
+    others = Leadership(database, plant)
+    others.prepare()
+    with leading(database, plant) as memory:
+        assert (memory.own_address(), others.own_address()) == ("", "")
+    others.close()
+
+
 def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str, plant: str) -> None:
     others = Leadership(database, plant)
     others.prepare()
@@ -254,11 +263,13 @@ def test_others_see_who_leads_who_waits_and_what_was_left_at_work(database: str,
         seen = others.leader()
         assert (seen.leads, seen.process, seen.url) == (True, os.getpid(), "http://host-a:8080")
         others.wait_here()
-        others.wait_here()
+        others.wait_here("http://host-b:8080")
         assert others.leader().standbys == 1
+        assert first.renew() is False
+        assert first.standbys == (Standby(host=socket.gethostname(), url="http://host-b:8080"),)
         others.wait_no_more()
         assert others.leader().standbys == 0
-        assert first.renew() is False
+        assert first.renew() is False and first.standbys == ()
         others.ask_for_handover()
         assert first.renew() is True
         first.hand_over(["sis_a", "sis_b"])

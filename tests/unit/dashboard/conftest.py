@@ -10,7 +10,12 @@ from arboleda.dashboard.story import Story
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 
-LINKS: dict[str, Any] = {"broker": {"address": "here:1883", "connected": True}, "ros": None, "refused": {}}
+LINKS: dict[str, Any] = {
+    "broker": {"address": "here:1883", "connected": True},
+    "ros": None,
+    "refused": {},
+    "standbys": [],
+}
 
 
 class Told(Rig):

@@ -132,6 +132,17 @@ def test_strays_are_counted_in_words_for_one_and_for_many(
     assert face["text/strays"] == [said, "warning"]
 
 
+def test_who_stands_by_is_named_and_the_way_to_each_is_kept_for_when_the_plant_falls_silent(
+    told: Callable[..., Any],
+) -> None:
+    waiting = [{"host": "host-b", "url": "http://10.0.0.6:8080"}, {"host": "host-c", "url": ""}]
+    face = told().face(standbys=waiting)
+    assert face["text/standbys"] == ["Standing by: host-b, host-c", "online"]
+    assert face["list/standbys"] == [["host-b", "http://10.0.0.6:8080"]]
+    alone = told().face(standbys=[])
+    assert (alone["text/standbys"], alone["list/standbys"]) == (["", ""], [])
+
+
 def test_only_what_changed_is_told() -> None:
     assert changed({"a": 1, "b": [1]}, {"a": 1, "b": [2], "c": None}) == {"b": [2], "c": None}
 

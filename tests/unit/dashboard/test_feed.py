@@ -27,7 +27,7 @@ class Side:
         return view.layout(self.rig.plant.model)
 
     def links(self) -> dict[str, Any]:
-        return {"broker": None, "ros": None, "refused": {}}
+        return {"broker": None, "ros": None, "refused": {}, "standbys": []}
 
     def past_acts(self) -> list[dict[str, Any]]:
         return []

@@ -20,7 +20,7 @@ from arboleda.views import view
 
 from ..recorder.recorded import Site
 
-LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}}
+LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
 
 
 class Recorded:

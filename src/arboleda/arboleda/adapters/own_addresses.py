@@ -6,8 +6,15 @@ import fcntl
 import socket
 import struct
 
+from .web.names import LOCAL
+
 SIOCGIFADDR = 0x8915  # of linux/sockios.h: the address of an interface
 ADDRESS_AT = slice(20, 24)  # in its struct ifreq
+
+
+def other_address() -> str:
+    """One by which others may reach this machine, "" where it has none."""
+    return next((each for each in own_addresses() if each != LOCAL), "")
 
 
 def own_addresses() -> list[str]:
@@ -21,4 +28,4 @@ def own_addresses() -> list[str]:
             except OSError:  # it has none
                 continue
             found.append(socket.inet_ntoa(answer[ADDRESS_AT]))
-    return ["127.0.0.1", *(each for each in found if each != "127.0.0.1")]
+    return [LOCAL, *(each for each in found if each != LOCAL)]

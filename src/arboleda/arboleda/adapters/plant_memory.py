@@ -51,6 +51,14 @@ class JournalEntry:
     said: str | None
 
 
+@dataclass(frozen=True, kw_only=True)
+class Standby:
+    """A process that waits to lead the plant: its host, and its page, "" where it has said none."""
+
+    host: str
+    url: str
+
+
 class PlantMemory(ABC):
     """The memory of a plant, between `open` and `close` or as `with` does it; one thread at a time.
 
@@ -61,6 +69,7 @@ class PlantMemory(ABC):
 
     name: str  # as sentences call it
     remedy: str  # what to do where something in it means nothing
+    standbys: Sequence[Standby] = ()  # who waits to lead the plant, as of the last renewal
     going: Sequence[str] = ()  # the cells that the leader before held for nothing but the change
     renew_s: float | None = None  # how often `renew` has to be called while the plant is led, None: never
 

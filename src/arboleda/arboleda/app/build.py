@@ -18,10 +18,9 @@ from arboleda import __version__
 from arboleda.adapters import clock, descriptors
 from arboleda.adapters.broker_login import MQTT_PORT, Credentials, address
 from arboleda.adapters.oee_rows import OeeQuery
-from arboleda.adapters.own_addresses import own_addresses
+from arboleda.adapters.own_addresses import other_address
 from arboleda.adapters.plant_memory import JournalEntry, PlantMemory, Superseded
 from arboleda.adapters.task_rows import COMMAND, TaskQuery, TaskRow
-from arboleda.adapters.web.names import LOCAL
 from arboleda.core.operator import ACTS_TOLD
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.facts import Value
@@ -32,6 +31,7 @@ from arboleda.recorder.beginning import Beginning, Recording
 from arboleda.views.oee import Oee
 
 from .alarm_options import AlarmOptions
+from .led import way_to
 from .log_queue import Output
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
@@ -236,11 +236,12 @@ class App:
         return self._plant.spelled(cell=cell, recipe=recipe, values=values, id=id)
 
     def links(self) -> dict[str, Any]:
-        """Broker, ROS 2 and refused messages, as the page's `PlantSide` has them; from any thread."""
+        """Broker, ROS 2, refused messages, standbys, as the page's `PlantSide` has them; from any thread."""
         connected, refused = self._bridge.links() if self._bridge else (False, {})
         broker = {"address": str(self._broker.address), "connected": connected} if self._bridge else None
         ros = {"notes": list(self._link.notes)} if self._link else None
-        return {"broker": broker, "ros": ros, "refused": refused}
+        waiting = [{"host": each.host, "url": way_to(each.host, each.url)} for each in self._store.standbys]
+        return {"broker": broker, "ros": ros, "refused": refused, "standbys": waiting}
 
     def _web_part(self, options: Options) -> WebPart:
         from .parts import page  # its libraries take half a second, and nodes do without them
@@ -389,8 +390,7 @@ class App:
 
     def _own_address(self) -> str:
         """By which hosts that reach the memory may reach this one."""
-        others = (each for each in own_addresses() if each != LOCAL)
-        return self._store.own_address() or next(others, "")
+        return self._store.own_address() or other_address()
 
     def _seen_at(self, cell: str, task: str | None) -> str | None:
         return self._web.address_of(cell, task) if self._web is not None else None

@@ -29,17 +29,17 @@ class Led:
     @property
     def here(self) -> bool:
         """Whether its host is called as this one."""
-        return self.host == plain(socket.gethostname())
+        return _is_here(self.host)
 
     @property
     def is_far(self) -> bool:
         """Whether the address leads there from its own host alone, and that is not this one."""
-        return bool(self.url) and is_near_only(self.url) and not self.here
+        return bool(self.url) and not way_to(self.host, self.url)
 
     @property
     def way(self) -> str:
         """The address, where it leads there from this host; else ""."""
-        return "" if self.is_far else self.url
+        return way_to(self.host, self.url)
 
 
 def of_leader(plant: str, leader: Leader) -> Led:
@@ -69,6 +69,16 @@ def of_standby(said: Mapping[str, Any]) -> Led:
         url=_origin(str(said.get("leader", ""))),
         epoch=_number(said.get("epoch")),
     )
+
+
+def way_to(host: str, url: str) -> str:
+    """The address of a process of that host, where it is one and leads there from this host; else ""."""
+    url = _origin(url)
+    return "" if url and is_near_only(url) and not _is_here(host) else url
+
+
+def _is_here(host: str) -> bool:
+    return host == plain(socket.gethostname())
 
 
 def _number(said: object) -> int:

@@ -6,10 +6,12 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arboleda.adapters.own_addresses import other_address
 from arboleda.adapters.plant_memory import LedElsewhere
 from arboleda.core.leading import LOOK_S
 from arboleda.model.errors import ArboledaError, StartError
@@ -73,7 +75,8 @@ def _wait(model: PlantModel, store: str, state: Path, options: Options, tell: Ca
         room.start(here.announce)
         try:
             tell(f"Page of the standby: {room.url}")
-            _until_free(others, model.name, _Told(room, voice, tell))
+            own = partial(options.web.origin, room.port, lambda: others.own_address() or other_address())
+            _until_free(others, model.name, own, _Told(room, voice, tell))
             return room.port
         finally:
             room.stop()
@@ -101,8 +104,9 @@ class _Told:
             self._said = sentence
 
 
-def _until_free(others: Leadership, plant: str, told: _Told) -> None:
-    """Look again and again; a database that is away says nothing of who leads."""
+def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _Told) -> None:
+    """Look again and again; a database that is away says nothing of who leads. `own()` is where the page of
+    who waits is."""
     said_at = 0.0
     while True:
         try:
@@ -112,7 +116,7 @@ def _until_free(others: Leadership, plant: str, told: _Told) -> None:
                 told.waits("leads the plant from now on", OK)
                 return
             if time.monotonic() - said_at > SAY_S:
-                others.wait_here()
+                others.wait_here(own())
                 said_at = time.monotonic()
             told.waits(_led_by(leader), OK, of_leader(plant, leader))
         except ArboledaError as error:

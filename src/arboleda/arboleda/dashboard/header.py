@@ -16,7 +16,9 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
             live("p", "sum", classes="sum", role="status")
         _tabs(words, parts)
         _tools(words, role)
-        tag("p", words("page.connecting"), id="connection", role="status", data_lost=words("page.lost"))
+        with tag("p", id="connection", role="status", data_lost=words("page.lost")):
+            tag("span", words("page.connecting"), data_said="")
+            tag("span", id="standbys")
         tag("div", id="answer", role="status", aria_live="polite")
 
 

@@ -48,7 +48,8 @@ class PlantSide(Protocol):
         disk; an ArboledaError says why there is none."""
 
     def links(self) -> Links:
-        """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}}."""
+        """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
+        `standbys` [{host, url}], whose url is "" where it leads there from no other host."""
 
     def past_acts(self) -> list[dict[str, Any]]:
         """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""

@@ -12,7 +12,7 @@ from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
 from .schema import prepare, schema_of
-from .server import Impatient, checked, connected, explained
+from .server import Impatient, checked, connected, explained, own_address
 
 LEADER = (
     "SELECT epoch, host, process, url,"
@@ -20,8 +20,8 @@ LEADER = (
     " (SELECT count(*) FROM standby WHERE seen > clock_timestamp() - %s * interval '1 second') FROM leader"
 )
 WAITS = (
-    "INSERT INTO standby VALUES (%s, %s, clock_timestamp())"
-    " ON CONFLICT (host, process) DO UPDATE SET seen = excluded.seen"
+    "INSERT INTO standby (host, process, url, seen) VALUES (%s, %s, %s, clock_timestamp())"
+    " ON CONFLICT (host, process) DO UPDATE SET url = excluded.url, seen = excluded.seen"
 )
 
 
@@ -60,9 +60,14 @@ class Leadership:
             epoch=epoch, host=plain(host), process=process, url=plain(url), leads=leads, standbys=standbys
         )
 
-    def wait_here(self) -> None:
-        """Say that this process waits to lead."""
-        self._asked(WAITS, *self._me)
+    def wait_here(self, url: str = "") -> None:
+        """Say that this process waits to lead, and where its page is."""
+        self._asked(WAITS, *self._me, url)
+
+    def own_address(self) -> str:
+        """By which address hosts that reach the database may reach this one, "" where that is not known."""
+        with explained(self.name, ArboledaError, "cannot be reached"):
+            return own_address(self._connection())
 
     def wait_no_more(self) -> None:
         self._asked("DELETE FROM standby WHERE host = %s AND process = %s", *self._me)

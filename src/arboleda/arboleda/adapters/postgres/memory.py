@@ -17,7 +17,7 @@ from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Candidate
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
-from ..plant_memory import LedElsewhere, PlantMemory, Statement, Superseded
+from ..plant_memory import LedElsewhere, PlantMemory, Standby, Statement, Superseded
 from .schema import SUPERSEDED, prepare, schema_of
 from .server import Impatient, checked, connected, explained, own_address, plain_values, translated
 
@@ -31,7 +31,9 @@ LEAD = (
 )
 RENEW = (
     "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL"
-    " RETURNING wanted > clock_timestamp() - %s * interval '1 second'"
+    " RETURNING wanted > clock_timestamp() - %s * interval '1 second',"
+    " (SELECT coalesce(json_agg(json_build_array(host, url) ORDER BY host, process), '[]') FROM standby"
+    " WHERE seen > clock_timestamp() - %s * interval '1 second')"
 )
 T = TypeVar("T")
 
@@ -125,10 +127,11 @@ class PostgresMemory(PlantMemory):
         """Say that it leads. Whether another leader is wanted."""
         asked_at = clock.seconds()
         with explained(self.name, ArboledaError, "cannot be reached"):
-            row = db.execute(RENEW, (self._epoch, WANTED_S)).fetchone()
+            row = db.execute(RENEW, (self._epoch, WANTED_S, LEASE_S)).fetchone()
         if row is None:
             raise self._superseded(db)
         self._lease.renewed(asked_at)
+        self.standbys = tuple(Standby(host=plain(host), url=plain(url)) for host, url in row[1])
         return bool(row[0])
 
     def _write(self, *statements: Statement, durable: bool) -> None:

@@ -20,7 +20,9 @@ def face(moment: Moment) -> Face:
     found: Face = {
         "text/broker": _broker(moment),
         "text/ros": _ros(moment),
+        "text/standbys": _standbys(moment),
         "text/strays": _strays(moment),
+        "list/standbys": [[each["host"], each["url"]] for each in moment.links["standbys"] if each["url"]],
         "rows/links": [robot["name"] for robot in moment.snapshot["robots"]],
     }
     robots = {robot["name"]: robot for robot in moment.snapshot["robots"]}
@@ -43,6 +45,11 @@ def _ros(moment: Moment) -> list[str]:
     if ros is None:
         return [moment.words("links.no_ros"), "unknown"]
     return [moment.words("links.ros"), "online"]
+
+
+def _standbys(moment: Moment) -> list[str]:
+    hosts = [each["host"] for each in moment.links["standbys"]]
+    return [moment.words("links.standbys", hosts=", ".join(hosts)), "online"] if hosts else ["", ""]
 
 
 def _strays(moment: Moment) -> list[str]:

@@ -21,7 +21,7 @@ from .trees_then import TreesThen
 
 SHOWN_EVENTS = 1000
 MARKS = 500  # on the slider, at most; more could not be told apart
-NO_LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}}
+NO_LINKS: dict[str, Any] = {"broker": None, "ros": None, "refused": {}, "standbys": []}
 
 Row = dict[str, Any]
 
