@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from arboleda.dispatch.belief import APART_S
 from arboleda.model.commands import StopMode
 from arboleda.model.messages import Fact, Report, Verb
 from arboleda.model.plant_model import Crossing, Evidence, PlantModel
@@ -324,3 +325,16 @@ def test_who_was_put_right_after_a_told_boot_may_have_booted_unseen_since():
         stage.truth.boots.look(heard, asked=False)
         told.append(stage.truth.boots.told("ra1"))
     assert told == [False, False, True]
+
+
+@pytest.mark.parametrize(("parted", "late"), [(False, False), (True, True)])
+def test_what_a_line_brought_a_moment_ago_may_still_come_where_topics_come_apart(
+    *, parted: bool, late: bool
+) -> None:
+    stage = Stage(shipped())
+    if parted:
+        stage.world.partings["ra1"] = lambda report: (report,)
+    stage.world.broker.clients[ARM].up.busy_until = stage.world.now - APART_S / 2
+    assert stage.truth.books.is_late("ra1") is late
+    stage.world.broker.clients[ARM].up.busy_until = stage.world.now - APART_S
+    assert not stage.truth.books.is_late("ra1")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.dispatch.belief import APART_S
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.commands import Command
 
@@ -76,7 +77,9 @@ class Books:
             world.to_plant,
             *(line for each in clients for line in (each.up, each.down)),
         ]
-        late = any(line.busy_until > world.now or line.troubles for line in lines)
+        # what came out of order a moment ago may still be on its way where state and position come apart
+        since = world.now - (APART_S if robot in world.partings else 0.0)
+        late = any(line.busy_until > since or line.troubles for line in lines)
         return late or world.writes or world.is_stalled(BRIDGE) or world.is_stalled(name)
 
     def calm_since(self, at: float) -> bool:
