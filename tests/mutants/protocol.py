@@ -6,6 +6,7 @@ from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import Ledger
 from arboleda.sim.board import Board as VirtualBoard
+from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
 from arboleda.trees import steps
 from arboleda.trees.leaves import Act
@@ -101,6 +102,18 @@ WIRE = (
         "A board says that another bridge has beaten, and obeys the one before.",
         edit(Receipts.objection, "goal.epoch < self.least", "goal.epoch < self.least < 0"),
         weather={"foreign_old": 30.0, "bridge_restart": 15.0},
+    ),
+    mutant(
+        "nothing_late_has_effect",
+        "A board takes whatever telemetry a command names for fresh.",
+        edit(Freshness.covers, "return first is not None and first <= number", "return number"),
+        weather={"partition": 20.0, "delay": 20.0},
+    ),
+    mutant(
+        "commands_say_what_was_heard",
+        "A command names the first telemetry that the plant heard of its robot.",
+        edit(Belief._hear, "if report.number is not None:", "if self.number is None:"),
+        weather="none",
     ),
     mutant(
         "wire_targets_legal",

@@ -16,6 +16,7 @@ from arboleda.model.commands import Home
 from arboleda.model.messages import Journal, TaskState, Verb
 from arboleda.model.plant_model import Evidence, PlantModel, Retry
 from arboleda.sim.arm import ArmBody
+from arboleda.sim.freshness import Freshness
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Simulation
 from arboleda.simulator.shrink import explicit
@@ -351,6 +352,12 @@ def rig() -> Rig:
     return rig
 
 
+@pytest.fixture
+def boards_that_know_no_visto(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Older ones pass over it, and take commands that waited."""
+    monkeypatch.setattr(Freshness, "covers", lambda self, now_us, number: True)
+
+
 def cut(rig: Rig, board: str) -> None:
     """The board goes on, and nobody hears it or is heard by it."""
     rig.lost = lambda publication: publication.topic.startswith(f"{board}/")
@@ -508,6 +515,7 @@ def test_an_arm_is_not_homed_through_a_zone_that_another_one_holds() -> None:
     assert rig.plant.zones.holder("centre") is None
 
 
+@pytest.mark.usefixtures("boards_that_know_no_visto")
 def test_no_task_starts_on_an_arm_that_may_hold_a_part(rig: Rig) -> None:
     """Effector on comes 3 s late while reports are lost: given up, it shows on the way home."""
     witness = Witness(rig)
@@ -539,6 +547,7 @@ def test_a_bridge_that_restarted_obeys_no_superseded_orchestrator(rig: Rig) -> N
     assert not body.effector
 
 
+@pytest.mark.usefixtures("boards_that_know_no_visto")
 def test_the_late_end_of_an_earlier_homing_is_not_that_of_the_next_one(rig: Rig) -> None:
     """All that the plant hears is 4 s old: a silence, and then the first homing, which took no time."""
     body, belief = rig.boards["ra_1"].body, rig.plant.dispatcher.beliefs["ra1"]

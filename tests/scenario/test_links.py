@@ -8,6 +8,10 @@ import pytest
 
 from arboleda.model.messages import Reason, TaskChanged, TaskState
 from arboleda.model.plant_model import Evidence
+from arboleda.simulator.faults import Fault
+from arboleda.simulator.probes import Probes
+from arboleda.simulator.run import Simulation
+from arboleda.simulator.shrink import explicit
 from arboleda.testing import Rig, shipped
 
 LEVELS = pytest.mark.parametrize("evidence", list(Evidence))
@@ -59,6 +63,17 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidenc
     change = outcome(rig)
     by_deadline = evidence is Evidence.STATE
     assert change.reason is (Reason.DEADLINE if by_deadline else Reason.LINK_LOST)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_a_cut_connection_has_kept_moves_nothing_when_it_is_mended(seed: int) -> None:
+    cut = Fault(kind="partition", at=6.0, seconds=8.0, target="ra_1", word="down, held")
+    simulation = Simulation(shipped("sis_a"), seed, explicit((cut,)))
+    probes = Probes(simulation.world)
+    result = simulation.run(seconds=60.0)
+    assert result.broken is None, str(result.broken)
+    assert probes.fired["board: tarde"] > 0, "commands came after it"
+    assert result.outcomes["done"] > 0, "and the cell goes on"
 
 
 @LEVELS

@@ -27,7 +27,8 @@ MOVING = Report(
 FURTHER = replace(MOVING, q=(0.2, -0.2, 0.03), accepted="7-2")
 REFUSED = Report(at=0.0, robot="ra1", epoch=9, rejected="7-0", refusal="limite")
 GONE = Report(at=0.0, robot="ra1", epoch=9, state=MotionState.NO_LINK, q=(0.2, -0.2, 0.03))
-REPORTS = [MOVING, FURTHER, REFUSED, GONE]
+NUMBERED = replace(MOVING, number=41)
+REPORTS = [MOVING, FURTHER, NUMBERED, REFUSED, GONE]
 
 
 @pytest.mark.parametrize("reports", list(permutations(REPORTS)))
@@ -48,11 +49,22 @@ def test_a_report_that_repeats_the_last_has_the_same_status():
 def test_a_status_is_heard_as_the_report_it_was_made_of_again_and_again():
     said, heard, now = StatusMessage(ARM), [], [0.0]
     ear = statuses.Ear(ARM, lambda: now[0], heard.append)
-    for number, report in enumerate([MOVING, MOVING, FURTHER, MOVING, MOVING, GONE]):
+    numbered = [replace(NUMBERED, number=number) for number in (9, 10, 4294967295)]
+    reports = [MOVING, MOVING, FURTHER, MOVING, MOVING, GONE, *numbered, FURTHER]
+    for number, report in enumerate(reports):
         now[0] = float(number)
         ear(serialize_message(said.of(report)))
         assert heard[-1] == replace(report, at=float(number))
-    assert len(heard) == 6
+    assert len(heard) == len(reports)
+
+
+def test_a_status_that_says_the_same_under_the_next_number_is_not_read_again(monkeypatch):
+    said, heard = StatusMessage(ARM), []
+    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    ear(serialize_message(said.of(NUMBERED)))
+    monkeypatch.setattr(statuses, "deserialize_message", None)
+    ear(serialize_message(said.of(NUMBERED.again(0.0, number=42))))
+    assert heard == [NUMBERED, replace(NUMBERED, number=42)]
 
 
 def test_a_bad_status_is_refused_each_time_it_comes():

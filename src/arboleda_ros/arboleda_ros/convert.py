@@ -20,7 +20,7 @@ from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire import order
 from arboleda.wire.hop import COMMAND, ORDER, PLAIN, kind_of, loses_its_id
 from arboleda.wire.joints import joint_names
-from arboleda.wire.status import from_label, to_label
+from arboleda.wire.status import from_heard_labels, from_label, to_heard_label, to_label
 
 COPY = "copy"  # the label of what the topic `command` carries, too; there, of what is copied
 
@@ -58,11 +58,13 @@ def command_message(command: Command, *, copy: bool = False) -> Float32MultiArra
 
 
 def labelled_message(robot: Robot, command: Command, *, copied: bool) -> Float32MultiArray | String:
-    """A command as the robot's topic for all of them carries it: with its id, and whether its plain topic
-    has a copy."""
+    """A command as the robot's topic for all of them carries it: with its id, what the plant had heard of the
+    robot, and whether its plain topic has a copy."""
     if isinstance(robot, Device):
         return String(data=order.write(command, copied=copied))
-    return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *((COPY,) if copied else ()))
+    heard = () if command.heard is None else (to_heard_label(command.heard),)
+    more = (*((COPY,) if copied else ()), *heard)
+    return _labelled(command.id, _values(command), PLAIN[kind_of(command)], *more)
 
 
 def is_copy(message: Float32MultiArray | UInt8) -> bool:
@@ -92,6 +94,7 @@ def labelled_command(robot: Robot, message: Float32MultiArray | String) -> tuple
     if not given.id:
         first = ascii(labels[0])[:40]
         raise PayloadError(f"{robot.name}: the first label is {first}; id=<command id> is needed")
+    given = replace(given, heard=from_heard_labels(labels[2:]))
     return given, COPY in labels[2:] and loses_its_id(given)
 
 

@@ -10,7 +10,9 @@ from rclpy.serialization import deserialize_message
 from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
-from arboleda.wire.status import Status, from_status
+from arboleda.wire.status import NUMBER, NUMBER_DIGITS, Status, from_status
+
+_TAIL = NUMBER_DIGITS + 1  # bytes of a serialized status that ends with its number: a zero follows it
 
 
 def diagnostic(
@@ -39,20 +41,36 @@ def report_of(at: float, robot: Robot, message: DiagnosticStatus) -> Report:
 
 
 class Ear:
-    """Hears a robot's `status` as bytes: what only repeats the last one, as at rest, is not read again."""
+    """Hears a robot's `status` as bytes: what only repeats the last one under the next number, as at rest, is
+    not read again."""
 
     def __init__(self, robot: Robot, clock: Callable[[], float], on_report: Callable[[Report], None]) -> None:
         self._robot = robot
         self._clock = clock
         self._on_report = on_report
-        self._heard: tuple[bytes, Report] | None = None
+        self._last: Report | None = None
+        self._words = b""  # of the last status, without the number that it ends with
+        self._tail = 0  # how many bytes that number takes; 0 where it has none
 
     def __call__(self, data: bytes) -> None:
         """Tell of the report in one message; PayloadError for one that the bridge does not send."""
         at = self._clock()
-        if self._heard is not None and self._heard[0] == data:
-            report = self._heard[1].again(at)
-        else:
-            report = report_of(at, self._robot, deserialize_message(data, DiagnosticStatus))
-            self._heard = (data, report)
-        self._on_report(report)
+        self._on_report(self._again(at, data) or self._read(at, data))
+
+    def _again(self, at: float, data: bytes) -> Report | None:
+        """The last report once more, where a message says the same."""
+        end = len(data) - self._tail
+        if self._last is None or data[:end] != self._words:
+            return None
+        number = data[end:-1]
+        if not self._tail:
+            return self._last.again(at)
+        return self._last.again(at, number=int(number)) if number.isdigit() else None
+
+    def _read(self, at: float, data: bytes) -> Report:
+        message = deserialize_message(data, DiagnosticStatus)
+        report = report_of(at, self._robot, message)
+        ends_with_number = bool(message.values) and message.values[-1].key == NUMBER
+        self._tail = _TAIL if ends_with_number else 0
+        self._last, self._words = report, data[: len(data) - self._tail]
+        return report

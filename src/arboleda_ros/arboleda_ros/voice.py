@@ -18,7 +18,7 @@ from arboleda.kinds.arm import Arm
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.wire.joints import joint_names, joint_states_topic, measured_joints
-from arboleda.wire.status import to_status
+from arboleda.wire.status import NUMBER, to_status, written_number
 
 Speak = Callable[..., Publisher]  # (type, topic), `alone` where nobody else may publish there
 _STATES = {state: UInt8(data=int(state)) for state in MotionState}
@@ -60,9 +60,11 @@ class StatusMessage:
 
     def of(self, report: Report) -> DiagnosticStatus:
         """The message for one report; the next call changes it."""
-        if report.words != self._said:
+        if report.words != self._said or (report.number is None) == (NUMBER in self._pairs):
             self._write(report)
             self._said = report.words
+        elif report.number is not None:
+            self._pairs[NUMBER].value = written_number(report.number)
         return self._message
 
     def _write(self, report: Report) -> None:

@@ -89,3 +89,14 @@ def test_where_a_robot_is_is_known_while_it_is_heard_and_homed(
     assert belief.known_q == belief.known_position == STILL["q"]
     dispatcher.report(Report(at=100.1, robot="ra1", **lost), 100.1)
     assert belief.known_q is None and belief.known_position is None
+
+
+def test_a_command_names_the_last_telemetry_of_its_robot_that_was_heard_and_a_stop_does_not(
+    dispatcher: Dispatcher,
+) -> None:
+    for at, number in ((100.1, 41), (100.2, 42)):  # the second only repeats the first
+        dispatcher.report(Report(at=at, **STILL, number=number), at)
+    dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.3)
+    dispatcher.latch("ra1")
+    sent = [each for each in dispatcher.outbox if isinstance(each, MoveJoints | Stop)]
+    assert [(type(each), each.heard) for each in sent] == [(MoveJoints, 42), (Stop, None)]

@@ -375,3 +375,53 @@ def test_a_board_without_paro_does_not_listen_to_it(make_bench):
     stop(bench, 2)
     bench.run(5)
     assert bench.last(BOARD).done == 1
+
+
+FIRST = 1  # the telemetry with which the board came up
+
+
+def told(bench) -> int:
+    return bench.last(BOARD).seq
+
+
+def test_a_command_is_taken_whose_giver_heard_the_board_a_moment_ago(bench):
+    bench.run(5)
+    bench.send(BOARD, Channel.JOINTS, JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=told(bench)))
+    assert (refusal(bench), bench.last(BOARD).ack) == ((None, None), 1)
+
+
+@pytest.mark.parametrize(
+    ("channel", "goal"),
+    [
+        (Channel.JOINTS, JointsGoal(q=(45.0, 9.0, 0.0), seq=1, epoch=EPOCH, heard=FIRST)),
+        (Channel.EFFECTOR, EffectorGoal(on=False, seq=1, epoch=EPOCH, heard=FIRST)),
+        (Channel.HOME, HomeGoal(seq=1, epoch=EPOCH, heard=FIRST)),
+    ],
+    ids=["a move", "letting go", "homing"],
+)
+def test_a_command_that_waited_for_longer_than_two_seconds_is_too_late(bench, channel, goal):
+    bench.run(2.1)
+    bench.send(BOARD, channel, goal)
+    said = bench.last(BOARD)
+    assert (refusal(bench), said.state, said.ack) == (("tarde", 1), MotionState.STOPPED, None)
+
+
+def test_a_command_of_before_a_boot_is_too_late_whatever_it_names(bench):
+    bench.run(5)
+    heard = told(bench)
+    bench.reboot(BOARD)
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=1, epoch=EPOCH, heard=heard))
+    assert refusal(bench) == ("tarde", 1)
+
+
+def test_a_late_command_makes_the_numbers_after_it_no_older(bench):
+    bench.run(3)
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=7, epoch=EPOCH, heard=FIRST))
+    bench.send(BOARD, Channel.EFFECTOR, EffectorGoal(on=True, seq=8, epoch=EPOCH, heard=told(bench)))
+    assert (bench.last(BOARD).ack, bench.last(BOARD).effector) == (8, True)
+
+
+def test_a_stop_is_never_too_late(bench):
+    move(bench, 1)
+    bench.send(BOARD, Channel.STOP, b'{"paro":2,"seq":2,"epoca":%d,"visto":0}' % EPOCH)
+    assert (refusal(bench), bench.last(BOARD).ack) == ((None, None), 2)

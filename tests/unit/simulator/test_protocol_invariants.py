@@ -21,6 +21,7 @@ from arboleda.model.messages import Fact, Heartbeat, OperatorRequest, TaskState,
 from arboleda.model.plant_model import Evidence, ForeignCommands, PlantModel, Retry
 from arboleda.model.sentence import Phrase
 from arboleda.sim.board import Board
+from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
 from arboleda.simulator.invariants.books import BOOKS
 from arboleda.simulator.invariants.commands import COMMANDS
@@ -578,6 +579,21 @@ def test_nothing_of_an_old_epoch_has_effect(monkeypatch, bites):
     payload = b'{"efector":1,"seq":%d,"epoca":%d}' % (last.seq + 1, last.epoch)
     watch.world.publish(Publication(topic="ra_1/efector", payload=payload))
     watch.wait(0.5)
+    bites(watch)
+
+
+def test_nothing_late_has_effect(monkeypatch, bites):
+    monkeypatch.setattr(Freshness, "covers", lambda self, now_us, number: True)
+    watch = Watch()
+    watch.world.broker.clients["ra_1"].down.troubles.append(lambda message: [2.5])
+    watch.task(wait_s=15)
+    bites(watch)
+
+
+def test_commands_say_what_was_heard(monkeypatch, bites):
+    monkeypatch.setattr(dispatcher.Dispatcher, "_leave", lambda self, command: self.outbox.append(command))
+    watch = Watch()
+    watch.task(wait_s=15)
     bites(watch)
 
 

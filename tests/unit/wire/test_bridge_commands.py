@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -25,7 +26,7 @@ def test_a_move_leaves_quantised_to_motor_steps_after_one_beat(linked, sent) -> 
     q = (math.radians(45), math.radians(10), 0.05)
     assert sent(linked.order(move(1, q))) == [
         ("ra_1/latido", Beat(epoch=EPOCH)),
-        ("ra_1/juntas", JointsGoal(q=(45.0036, 9.9, 126.9), seq=1, epoch=EPOCH)),
+        ("ra_1/juntas", JointsGoal(q=(45.0036, 9.9, 126.9), seq=1, epoch=EPOCH, heard=1)),
     ]
 
 
@@ -64,10 +65,10 @@ def test_one_board_counts_over_all_its_topics_and_each_board_for_itself(linked, 
         FollowPath(id="7-4", robot="rm_sis_a", nodes=(0, 3, 6)),
     )
     assert [pair for pair in sent(out) if not isinstance(pair[1], Beat)] == [
-        ("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH)),
-        ("ra_1/referencia", HomeGoal(seq=2, epoch=EPOCH)),
+        ("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH, heard=1)),
+        ("ra_1/referencia", HomeGoal(seq=2, epoch=EPOCH, heard=1)),
         ("ra_1/paro", StopGoal(mode=StopMode.HALT, seq=3, epoch=EPOCH)),
-        ("rm_sis_a/camino", PathGoal(nodes=(0, 3, 6), seq=1, epoch=EPOCH)),
+        ("rm_sis_a/camino", PathGoal(nodes=(0, 3, 6), seq=1, epoch=EPOCH, heard=1)),
     ]
 
 
@@ -191,3 +192,22 @@ def test_a_refusal_by_the_bridge_stays_the_last_word(linked, reports) -> None:
     linked.order(move(1, (9.0, 0.0, 0.0)))
     (report,) = reports(linked.tell())
     assert (report.rejected, report.refusal) == ("7-1", "limite")
+
+
+def test_a_command_names_the_telemetry_that_the_plant_had_heard(linked, sent) -> None:
+    linked.tell()
+    (_, (_, goal)) = sent(linked.order(replace(move(1), heard=1)))
+    assert goal.heard == 1
+
+
+def test_for_who_names_none_a_command_names_what_the_bridge_had_heard(linked, sent) -> None:
+    linked.tell()
+    (_, (_, goal)) = sent(linked.order(move(1)))
+    assert goal.heard == 2
+
+
+def test_reports_say_which_telemetry_they_are_of_and_so_does_one_that_repeats_the_last(
+    linked, reports
+) -> None:
+    numbers = [reports(linked.tell())[0].number for _ in range(3)]
+    assert numbers == [2, 3, 4]

@@ -20,7 +20,9 @@ def test_a_restarted_bridge_starts_above_what_the_board_has_heard(bench, sent, r
     bench.connect()
     (report,) = reports(bench.tell(ack_epoch=EPOCH + 5, ack=1, done=1))
     assert (report.epoch, report.accepted, report.done) == (EPOCH + 6, None, None)
-    assert sent(bench.order(grip(1))) == [("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH + 6))]
+    assert sent(bench.order(grip(1))) == [
+        ("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH + 6, heard=1))
+    ]
 
 
 def test_a_second_start_within_the_same_second_gets_its_own_epoca(bench, reports) -> None:
@@ -38,7 +40,9 @@ def test_viejo_rejects_the_command_and_raises_the_epoca(linked, sent, reports) -
     linked.order(grip(1))
     (report,) = reports(linked.tell(ack_epoch=EPOCH + 9, ack=4, refusal="viejo", refused_seq=1))
     assert (report.rejected, report.refusal, report.epoch) == ("7-1", "viejo", EPOCH + 10)
-    assert sent(linked.order(grip(2))) == [("ra_1/efector", EffectorGoal(on=True, seq=2, epoch=EPOCH + 10))]
+    assert sent(linked.order(grip(2))) == [
+        ("ra_1/efector", EffectorGoal(on=True, seq=2, epoch=EPOCH + 10, heard=2))
+    ]
 
 
 def test_a_second_viejo_is_only_reported(linked, reports) -> None:
@@ -118,7 +122,9 @@ def test_a_bridge_that_has_led_in_silence_does_not_rise_above_the_next(bench, se
     bench.tell(least_epoch=EPOCH)
     bench.tell(least_epoch=EPOCH + 9)
     assert sent(bench.heartbeat()) == []
-    assert sent(bench.order(grip(1))) == [("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH))]
+    assert sent(bench.order(grip(1))) == [
+        ("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH, heard=2))
+    ]
 
 
 def test_a_bridge_that_was_superseded_hears_it_and_does_not_rise_above_the_next(
@@ -129,4 +135,6 @@ def test_a_bridge_that_was_superseded_hears_it_and_does_not_rise_above_the_next(
     linked.order(grip(2))
     (report,) = reports(linked.tell(least_epoch=EPOCH + 9, refusal="viejo", refused_seq=2))
     assert (report.rejected, report.refusal, report.epoch) == ("7-2", "viejo", EPOCH)
-    assert sent(linked.order(grip(3))) == [("ra_1/efector", EffectorGoal(on=True, seq=3, epoch=EPOCH))]
+    assert sent(linked.order(grip(3))) == [
+        ("ra_1/efector", EffectorGoal(on=True, seq=3, epoch=EPOCH, heard=3))
+    ]

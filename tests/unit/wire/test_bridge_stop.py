@@ -44,7 +44,7 @@ def test_while_latched_nothing_may_move_or_grip(stopped, sent, reports, command:
 
 def test_while_latched_the_effector_may_still_open(stopped, sent) -> None:
     out = stopped.order(SetEffector(id="7-1", robot="ra1", on=False))
-    assert sent(out) == [("ra_1/efector", EffectorGoal(on=False, seq=2, epoch=EPOCH))]
+    assert sent(out) == [("ra_1/efector", EffectorGoal(on=False, seq=2, epoch=EPOCH, heard=1))]
 
 
 def test_the_latch_of_one_robot_is_not_the_latch_of_another(stopped, sent) -> None:

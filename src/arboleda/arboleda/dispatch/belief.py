@@ -67,6 +67,7 @@ class Belief:
         self.epoch: int | None = None
         self.plant: int | None = None
         self.boot_id: int | None = None
+        self.number: int | None = None  # of its board's last telemetry
         self.state: MotionState | None = None
         self.q: tuple[float, ...] | None = None
         self.node: int | None = None
@@ -145,6 +146,8 @@ class Belief:
         """Take over when it spoke."""
         if report.q is not None or report.node is not None:
             self.position_at = report.at
+        if report.number is not None:
+            self.number = report.number
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
             self.stale = False

@@ -431,7 +431,8 @@ class Dispatcher:
     def _leave(self, command: Command) -> None:
         if self.model.robots[command.robot].link in UNSENT:
             return
-        self.outbox.append(command)
+        heard = None if isinstance(command, Stop) else self.beliefs[command.robot].number
+        self.outbox.append(command if heard is None else replace(command, heard=heard))
         self.under_way.left(command)
         self.unnamed.left(command)
 

@@ -21,6 +21,7 @@ from .ledger import Entry, Feed, State
 
 REFUSALS: dict[str, Reason] = {
     "no_link": Reason.LINK_LOST,
+    "tarde": Reason.LINK_LOST,
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
     "condicion": Reason.PRECONDITION,
@@ -36,6 +37,10 @@ LINK_LOST = Phrase("command.link_lost", "{robot}: the link was lost while {doing
 LINK_LOST_BECAUSE = Phrase("command.link_lost_because", "{robot}: the link was lost while {doing}: {why}")
 BRIDGE_RESTARTED = Phrase("command.bridge_restarted", "{robot}: the bridge restarted while {doing}")
 REFUSED = Phrase("command.refused", "{robot}: refused the command for {doing} ({word})")
+TOO_LATE = Phrase(
+    "command.refused_late",
+    "{robot}: the command for {doing} reached its board too late, which refused it ({word})",
+)
 BOARD_REBOOTED = Phrase("command.board_rebooted", "{robot}: the board rebooted while {doing}")
 JOINTS_JUMPED = Phrase(
     "command.joints_jumped", "{robot}: the joints jumped, the board must have rebooted, while {doing}"
@@ -173,8 +178,8 @@ def _refused(entry: Entry, report: Report) -> Verdict | None:
     if report.rejected != entry.command.id:
         return None
     word = report.refusal or "no reason given"
-    reason = REFUSALS.get(word, Reason.REJECTED)
-    return Verdict(feed=Feed.REJECTED, failure=_failure(entry, reason, REFUSED, word=word))
+    what, reason = TOO_LATE if word == "tarde" else REFUSED, REFUSALS.get(word, Reason.REJECTED)
+    return Verdict(feed=Feed.REJECTED, failure=_failure(entry, reason, what, word=word))
 
 
 def _gave_up(entry: Entry, report: Report) -> Verdict | None:

@@ -7,6 +7,7 @@ from enum import Enum
 
 from .facts import Facts
 
+LABELS = ("id", "heard")  # what a command carries on its way beside what it was made with
 Position = tuple[float, ...] | int
 """Where a robot is, as its kind reports it: the joints of an arm, the node of a mobile robot."""
 
@@ -32,11 +33,14 @@ class Command:
 
     id: str
     robot: str
+    heard: int | None = None
+    """The number of the last telemetry of the robot's board that the plant had heard when it gave this; None
+    where that has none."""
 
     @property
     def given(self) -> dict[str, object]:
-        """What it was made with besides its id, by name, as screens show it."""
-        return {each.name: getattr(self, each.name) for each in fields(self) if each.name != "id"}
+        """What it was made with, by name, as screens show it."""
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in LABELS}
 
     @property
     def sets(self) -> Facts:

@@ -234,6 +234,7 @@ class Report:
     bridge. `facts` are what it reports beside the fields here. `lost` says why there is no
     link, where whoever reports that knows it. `foreign_refused` and
     `foreign_obeyed` count commands of others since the bridge's start, `foreign` tells of the last one.
+    `number` is that of the telemetry behind it, which its board counts from its boot on.
     """
 
     at: float
@@ -261,6 +262,7 @@ class Report:
     foreign_refused: int | None = None
     foreign_obeyed: int | None = None
     foreign: Sentence | None = None
+    number: int | None = None
 
     def fact(self, name: str) -> Value | None:
         """What it says of a fact; None where it says nothing."""
@@ -280,14 +282,16 @@ class Report:
         said["at"] = at
         if news:
             said.update(news)
-            said.pop("words", None)
+            if news.keys() - WORDLESS:
+                said.pop("words", None)
         report = object.__new__(Report)
         object.__setattr__(report, "__dict__", said)
         return report
 
 
 BUILT_IN = frozenset({"homed", "effector", "piece"})  # facts that have a field of their own
-_words = attrgetter(*(each.name for each in fields(Report) if each.name != "at"))
+WORDLESS = frozenset({"at", "number"})  # when and as which message it was said
+_words = attrgetter(*(each.name for each in fields(Report) if each.name not in WORDLESS))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,6 +27,7 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery, Publication
 
 from .body import Body, Told
+from .freshness import Freshness
 from .receipts import Receipts
 from .uplink import Uplink
 
@@ -65,6 +66,7 @@ class Board:
         self._job: Goal | None = None  # the motion that will count as done when the body comes to rest
         self._receipts = Receipts(known=self._knows)
         self._uplink.told = 0
+        self._freshness = Freshness()
         self._beaten = False
         self._alive_us = self._now_us
 
@@ -199,7 +201,14 @@ class Board:
 
     def _refusal(self, goal: Goal) -> str | None:
         """The word for a well-numbered command that the board must not carry out now."""
-        if isinstance(goal, StopGoal) or (isinstance(goal, EffectorGoal) and not goal.on):
+        if isinstance(goal, StopGoal):
+            return None
+        in_time = goal.heard is None or self._freshness.covers(self._now_us, goal.heard)
+        return self._objection(goal) or (None if in_time else "tarde")
+
+    def _objection(self, goal: Goal) -> str | None:
+        """What the board's own state has against a command."""
+        if isinstance(goal, EffectorGoal) and not goal.on:
             return None
         if isinstance(goal, OrderGoal):
             return self.body.objection(goal, latched=self.latched, faulted=self.faulted)
@@ -307,6 +316,8 @@ class Board:
             self._uplink.tell_angles(told.q)
         else:
             self._uplink.tell(self._telemetry(told))
+        if self._uplink.connected:
+            self._freshness.tell(self._now_us, self._uplink.told)
 
     def _telemetry(self, told: Told) -> Telemetry:
         receipts = self._receipts

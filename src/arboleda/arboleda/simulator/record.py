@@ -145,6 +145,7 @@ class Record:
             self.starts.hear((*moment.last_words, *moment.unkept, *moment.sent))
         for board, goal in moment.executed:
             self.starts.carries_out(board, goal)
+        self.boards.tell(self.world.now, moment.published)
         if moment.delivered or moment.executed:
             self._look_at_boards()
         if moment.bridged:
@@ -215,9 +216,10 @@ class Record:
             known.heard_at, known.state, known.homed = belief.heard_at, belief.state, belief.homed
             known.boot, known.epoch, known.plant = belief.boot_id, belief.epoch, belief.plant
             known.q, known.node = belief.q, belief.node
+            known.numbers.append(belief.number)
             known.effector, known.piece, known.facts = belief.effector, belief.piece, dict(belief.facts)
             if (board := self.boards.of_robot.get(name)) is not None:
-                board.take_over(self.world.now, belief.q, belief.node)
+                board.take_over(self.world.now, belief)
 
     def _look_at_boards(self) -> None:
         boards, moment = self.boards, self.world.moment

@@ -127,6 +127,7 @@ def _finish(world: World, plant: Plant) -> None:
     """Have the boards speak to this plant from now on, in place of the real ones."""
     for name, belief in plant.dispatcher.beliefs.items():
         world.partings[name] = Dress(belief)
+        belief.number = None  # the boards in their place count anew
         if belief.state is MotionState.FAULT and belief.robot.mqtt in world.boards:
             world.boards[belief.robot.mqtt].fail(round(world.now * 1e6))
             world.wake(belief.robot.mqtt)

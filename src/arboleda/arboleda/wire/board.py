@@ -166,7 +166,7 @@ class Board:
             return self._turned(delivery, self._words, self._last) if self._words.joints else None
         if not self.link.hear_again(delivery.at, number):
             return None
-        self._last = self._last.again(delivery.at)
+        self._last = self._last.again(delivery.at, **self._words.news(number))
         return self._last
 
     def _turned(self, delivery: Delivery, words: Words, last: Report) -> Report | None:
@@ -179,7 +179,8 @@ class Board:
         number = words.number(delivery.payload)
         if number is None or not self.link.hear_again(delivery.at, number):
             return None
-        self._words, self._last = words, last.again(delivery.at, q=self._in_si(angles))
+        news = {"q": self._in_si(angles), **words.news(number)}
+        self._words, self._last = words, last.again(delivery.at, **news)
         return self._last
 
     def _check(self, said: Payload, delivery: Delivery) -> None:
@@ -264,9 +265,7 @@ class Board:
     def _send(self, at: float, command: Command, sender: str = "") -> list[Message]:
         seq = self.labels.issue(command, sender)
         self._words = None
-        numbered = self.robot.evidence is Evidence.IDS
-        stamp = {"seq": seq, "epoch": self.labels.epoch} if numbered else {"seq": None, "epoch": None}
-        channel, goal = goals.goal(self.robot, command, **stamp)
+        channel, goal = goals.goal(self.robot, command, **self._stamp(command, seq))
         try:
             publication = self._publication(channel, goal)
         except PayloadError:
@@ -277,6 +276,15 @@ class Board:
         if isinstance(command, Stop) and command.mode is not StopMode.CLEAR and self._motion:
             self._motion.stopping = True
         return [publication]
+
+    def _stamp(self, command: Command, seq: int) -> dict[str, int | None]:
+        """The numbers of a command, and that of the telemetry which whoever gives it had heard."""
+        if self.robot.evidence is not Evidence.IDS:
+            return {"seq": None, "epoch": None}
+        stamp: dict[str, int | None] = {"seq": seq, "epoch": self.labels.epoch}
+        if not isinstance(command, Stop):
+            stamp["heard"] = self.link.number if command.heard is None else command.heard
+        return stamp
 
     def _stop_again(self, at: float) -> list[Message]:
         """A board that comes back may have forgotten its latch; the operator has not."""
@@ -310,6 +318,7 @@ class Board:
             failed=failed,
             failure=failure,
             receipt=_receipt(said),
+            number=said.seq,
         )
 
     def _report(self, at: float, **said: object) -> Report:

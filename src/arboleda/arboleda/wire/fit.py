@@ -57,6 +57,7 @@ def _lengths(kind: DeviceKind) -> Iterator[str]:
             values=tuple((name, longest(type)) for name, type in verb.parameters),
             seq=UINT32,
             epoch=UINT32,
+            heard=UINT32,
         )
         yield from _refused(f"{verb.name} of {kind.name} with its longest values", encode, goal)
     yield from _refused(f"all that a {kind.name} can say at once", encode, _telemetry(kind))

@@ -17,8 +17,11 @@ def refusal(robot: Robot, command: Command) -> str | None:
     return form.missing.get(type(command), "formato") if way is None else way.refusal(robot, command)
 
 
-def goal(robot: Robot, command: Command, *, seq: int | None, epoch: int | None) -> tuple[Channel, Goal]:
-    """The channel and the payload of a command that `refusal` let through."""
+def goal(robot: Robot, command: Command, **stamp: int | None) -> tuple[Channel, Goal]:
+    """The channel and the payload of a command that `refusal` let through.
+
+    `stamp` has its `seq`, `epoch` and, of all but a stop, `heard`.
+    """
     way = form_of(robot).way(type(command))
     assert way is not None
-    return way.channel, way.goal(**way.body(robot, command), seq=seq, epoch=epoch)  # type: ignore[arg-type]
+    return way.channel, way.goal(**way.body(robot, command), **stamp)  # type: ignore[arg-type]

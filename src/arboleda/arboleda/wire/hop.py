@@ -73,7 +73,7 @@ def loses_its_id(command: Command) -> bool:
 
 def without_id(command: Command) -> Command:
     """The command as a plain topic of UInt8 carries it."""
-    return replace(command, id="")
+    return replace(command, id="", heard=None)
 
 
 def shown(command: Command) -> str:

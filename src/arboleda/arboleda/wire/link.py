@@ -35,7 +35,7 @@ class BoardLink:
             0  # how often a board that was absent came back: for one without ids, as good as a boot
         )
         self._absent = False
-        self._seq: int | None = None
+        self.number: int | None = None  # of the last telemetry, counted since boot
         self._below: tuple[float, int] | None = None  # since when old numbers rise, and the last of them
 
     def connection(self, up: bool) -> None:
@@ -63,7 +63,7 @@ class BoardLink:
         rebooted = said.boot_id != self.boot_id and None not in (said.boot_id, self.boot_id)
         arrived, self.up = not self.up, True
         self.stale_at = at + self._stale_after_s
-        self._seq = said.seq
+        self.number = said.seq
         self.boot_id = self.boot_id if said.boot_id is None else said.boot_id
         if rebooted:
             return Heard.REBOOT
@@ -73,17 +73,17 @@ class BoardLink:
         """Take over telemetry that repeats the last one; whether it is surely news, else `hear` decides."""
         if not self.up:
             return False
-        if self._seq is not None:
-            if seq <= self._seq:
+        if self.number is not None:
+            if seq <= self.number:
                 return False
-            self._seq = seq
+            self.number = seq
         self.stale_at = at + self._stale_after_s
         return True
 
     def _overtaken(self, said: Telemetry) -> bool:
         if said.boot_id is None or said.boot_id != self.boot_id:
             return False
-        return said.seq is not None and self._seq is not None and said.seq <= self._seq
+        return said.seq is not None and self.number is not None and said.seq <= self.number
 
     def _counts_anew(self, at: float, seq: int | None) -> bool:
         """Whether a lost board's old numbers have risen for as long as made it lost: the high one was wrong.

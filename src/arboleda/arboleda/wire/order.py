@@ -1,12 +1,14 @@
 """The text of a device's topic `order`: a verb with its values, or a stop, with the id of the command.
 
-`{"id": "7-1", "verb": "run", "values": {"program": 1001}}`, `{"id": "7-2", "stop": 2}`. What has no id is of
-somebody else. All commands of a device go on this one topic, so that no stop overtakes what it ends.
+`{"id": "7-1", "verb": "run", "values": {"program": 1001}, "heard": 512}`, `{"id": "7-2", "stop": 2}`.
+What has no id is of somebody else. All commands of a device go on this one topic, so that no stop overtakes
+what it ends.
 """
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 from arboleda.kinds.declared import Device, Told, UseError
 from arboleda.model.commands import Command, Stop, StopMode
@@ -21,6 +23,7 @@ def write(command: Command, *, copied: bool = False) -> str:
     said: dict[str, object] = {"id": command.id} if command.id else {}
     if isinstance(command, Told):
         said |= {"verb": command.verb, "values": dict(command.values)}
+        said |= {} if command.heard is None else {"heard": command.heard}
     elif isinstance(command, Stop):
         said |= {"stop": int(command.mode)}
     else:
@@ -39,6 +42,7 @@ def read(device: Device, text: str) -> tuple[Command, bool]:
         return Stop(id=id, robot=device.name, mode=StopMode(fields.integer("stop", 2))), copied
     verb, values = fields.name("verb"), dict(fields.facts("values") or ())
     try:
-        return device.kind.command(id=id, robot=device.name, verb=verb, values=values), False
+        command = device.kind.command(id=id, robot=device.name, verb=verb, values=values)
     except UseError as error:
         raise PayloadError(str(error)) from error
+    return replace(command, heard=fields.optional("heard")), False

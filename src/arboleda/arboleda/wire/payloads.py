@@ -50,9 +50,9 @@ __all__ = [
     "read_angles",
 ]
 
-REFUSALS = frozenset({"viejo", "retenido", "formato", "limite", "sin_ref", "paro", "ocupado"})
+REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "limite", "sin_ref", "paro", "ocupado"})
 """The words a board may give as `rechazo`."""
-DEVICE_REFUSALS = frozenset({"viejo", "retenido", "formato", "paro", "ocupado", "condicion"})
+DEVICE_REFUSALS = frozenset({"viejo", "retenido", "tarde", "formato", "paro", "ocupado", "condicion"})
 """Those that a device of a declared kind may give."""
 DEVICE = 0  # `axes` of a device of a declared kind: it has facts instead
 FAILURES_KEPT = 3  # of a device; as many may end unseen before telemetry arrives again
@@ -112,6 +112,10 @@ def _stamp(fields: strict.Fields) -> dict[str, int | None]:
     return {"seq": fields.optional("seq"), "epoch": fields.optional("epoca")}
 
 
+def _stamp_in_time(fields: strict.Fields) -> dict[str, int | None]:
+    return {**_stamp(fields), "heard": fields.optional("visto")}
+
+
 @cache
 def _joint_keys(axes: int | None, suffix: str = "") -> tuple[str, ...]:
     if axes is None:
@@ -128,17 +132,17 @@ def _angles_pattern(axes: int) -> re.Pattern[bytes]:
 
 def _joints(fields: strict.Fields, axes: int | None) -> JointsGoal:
     q = tuple(fields.number(key, MAX_ANGLE_DEG) for key in _joint_keys(axes))
-    return JointsGoal(q=q, **_stamp(fields))
+    return JointsGoal(q=q, **_stamp_in_time(fields))
 
 
 def _path(fields: strict.Fields, axes: int | None) -> PathGoal:
     if axes is not None:
         raise PayloadError("an arm drives no path")
-    return PathGoal(nodes=fields.integers("nodos"), **_stamp(fields))
+    return PathGoal(nodes=fields.integers("nodos"), **_stamp_in_time(fields))
 
 
 def _effector(fields: strict.Fields, axes: int | None) -> EffectorGoal:
-    return EffectorGoal(on=fields.integer("efector", 1) == 1, **_stamp(fields))
+    return EffectorGoal(on=fields.integer("efector", 1) == 1, **_stamp_in_time(fields))
 
 
 def _stop(fields: strict.Fields, axes: int | None) -> StopGoal:
@@ -147,14 +151,14 @@ def _stop(fields: strict.Fields, axes: int | None) -> StopGoal:
 
 def _home(fields: strict.Fields, axes: int | None) -> HomeGoal:
     fields.integer("ref", top=1, bottom=1)
-    return HomeGoal(**_stamp(fields))
+    return HomeGoal(**_stamp_in_time(fields))
 
 
 def _order(fields: strict.Fields, axes: int | None) -> OrderGoal:
     if axes != DEVICE:
         raise PayloadError("only a device of a declared kind takes orders")
     values = fields.facts("valores") if "valores" in fields else ()
-    return OrderGoal(verb=fields.name("verbo"), values=values or (), **_stamp(fields))
+    return OrderGoal(verb=fields.name("verbo"), values=values or (), **_stamp_in_time(fields))
 
 
 @lru_cache(maxsize=64)
@@ -235,7 +239,8 @@ def _angle(key: str, value: float) -> float:
 def _stamped(body: dict[str, object], goal: Goal) -> dict[str, object]:
     if (goal.seq is None) != (goal.epoch is None):
         raise PayloadError("seq and epoca go together")
-    return {**body, "seq": goal.seq, "epoca": goal.epoch}
+    heard = None if isinstance(goal, StopGoal) else goal.heard
+    return {**body, "seq": goal.seq, "epoca": goal.epoch, "visto": heard}
 
 
 def _telemetry_body(said: Telemetry) -> dict[str, object]:

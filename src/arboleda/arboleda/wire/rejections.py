@@ -35,6 +35,9 @@ WHY = {
     "condicion": Phrase("why.condicion", "what this needs to be so is not so"),
     "viejo": Phrase("why.viejo", "its board has taken a later command"),
     "retenido": Phrase("why.retenido", "the broker kept it"),
+    "tarde": Phrase(
+        "why.tarde", "it came too late: who gave it had not heard the board for 2 s by the time it arrived"
+    ),
 }
 """What the words of bridge and boards mean."""
 

@@ -60,6 +60,10 @@ class Words:
         number = int(digits)
         return number if number <= UINT32 and b"%d" % number == digits else None  # else it is not JSON
 
+    def news(self, number: int) -> dict[str, int]:
+        """What a message of that `number` says anew: nothing, where such have none."""
+        return {} if self.after is None else {"number": number}
+
 
 def _joints(raw: bytes, said: Telemetry) -> int:
     """Only of an arm that moves: joints of one that says it stands still may mean that a motion ended."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 from arboleda.model.errors import PayloadError
@@ -26,6 +26,9 @@ from .strict import UINT32
 
 OK, WARN, ERROR, STALE = range(4)  # levels of diagnostic_msgs/DiagnosticStatus
 _LABEL = "id="
+_HEARD = "heard="
+NUMBER = "number"  # the key that a status ends with, but for what is said of commands of others
+NUMBER_DIGITS = len(str(UINT32))
 _NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
@@ -86,6 +89,18 @@ def from_label(label: str) -> str:
     if not label.startswith(_LABEL):
         return ""
     return command_id("label", label[len(_LABEL) :])
+
+
+def to_heard_label(number: int) -> str:
+    """A further label of a command: `heard=<number>`, of the last telemetry that the plant had heard."""
+    return f"{_HEARD}{number}"
+
+
+def from_heard_labels(labels: Iterable[str]) -> int | None:
+    """The number in that one of the further labels of a command; None where none is, PayloadError for a
+    broken one."""
+    said = next((label for label in labels if label.startswith(_HEARD)), None)
+    return None if said is None else _count("heard", said[len(_HEARD) :])
 
 
 def _name(robot: Robot) -> str:
@@ -199,6 +214,11 @@ def _write_facts(facts: Facts) -> str:
     return json.dumps(dict(facts), separators=(",", ":"))
 
 
+def written_number(number: int) -> str:
+    """The number of telemetry, always as long as the longest: statuses at rest differ in nothing else."""
+    return f"{number:0{NUMBER_DIGITS}d}"
+
+
 def _write_state(state: MotionState) -> str:
     return str(state.value)
 
@@ -233,5 +253,6 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "receipt": ("receipt", _receipt, _write_receipt),
     "foreign_refused": ("foreign_refused", _count, str),
     "foreign_obeyed": ("foreign_obeyed", _count, str),
+    NUMBER: ("number", _count, written_number),
 }
 """Key of the status -> (field of the Report, how it is read, how it is written)."""

@@ -1,6 +1,8 @@
 """What goes over MQTT: one frozen value per message, angles in degrees as on the wire.
 
-`seq` and `epoch` of a command are both present, or both None for boards that know neither.
+`seq` and `epoch` of a command are both present, or both None for boards that know neither. `heard` is the
+number of the board's last telemetry that whoever commands had heard, None where that is not said; a stop
+needs none, as it is never too late.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ class JointsGoal:
     q: tuple[float, ...]
     seq: int | None
     epoch: int | None
+    heard: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +31,7 @@ class PathGoal:
     nodes: tuple[int, ...]
     seq: int | None
     epoch: int | None
+    heard: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +41,7 @@ class EffectorGoal:
     on: bool
     seq: int | None
     epoch: int | None
+    heard: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +59,7 @@ class HomeGoal:
 
     seq: int | None
     epoch: int | None
+    heard: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +70,7 @@ class OrderGoal:
     values: Facts
     seq: int | None
     epoch: int | None
+    heard: int | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

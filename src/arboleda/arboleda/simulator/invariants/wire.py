@@ -11,6 +11,7 @@ from arboleda.kinds.mobile import FollowPath, Grid
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.messages import Heartbeat
 from arboleda.model.plant_model import Evidence
+from arboleda.wire.payloads import StopGoal
 
 from ..record import SLOW_S
 from ..recorded.boards import fields, is_number, on_wire
@@ -18,6 +19,8 @@ from ..world import BRIDGE
 from .invariant import Look, When, invariant
 
 LIMIT_BYTES = 512
+FRESH_S = 2.0
+ROUNDING_S = 1e-5
 ROUNDING_DEG = 0.6e-4  # the wire has four decimals
 
 
@@ -40,9 +43,30 @@ def no_repeat_has_effect(look: Look) -> Iterable[str]:
 @invariant(When.EXECUTED)
 def nothing_of_an_old_epoch_has_effect(look: Look) -> Iterable[str]:
     """A board that has heard a bridge beat carries out nothing of one before it."""
-    for board, goal, _, _, beat in look.record.boards.executed:
+    for board, goal, _, _, beat, _ in look.record.boards.executed:
         if beat is not None and goal.epoch is not None and goal.epoch < beat:
             yield f"{board} carried out {(goal.epoch, goal.seq)} after a beat of {beat}"
+
+
+@invariant(When.EXECUTED)
+def nothing_late_has_effect(look: Look) -> Iterable[str]:
+    """A board carries out no command, but for a stop, whose giver had not heard it for FRESH_S by then."""
+    for board, goal, *_, told_at in look.record.boards.executed:
+        if isinstance(goal, StopGoal) or goal.heard is None:
+            continue
+        if told_at is None or look.world.now - told_at > FRESH_S + ROUNDING_S:
+            when = "unknown" if told_at is None else f"{look.world.now - told_at:.3f} s old"
+            yield f"{board} carried out {goal}, which names telemetry that is {when}"
+
+
+@invariant(When.COMMANDED)
+def commands_say_what_was_heard(look: Look) -> Iterable[str]:
+    """A command names telemetry that the plant had just heard of its board: in this step, or last before."""
+    for sent in look.record.commands.new:
+        robot, command = look.record.robots[sent.command.robot], sent.command
+        now = sum(said.robot == command.robot and said.number is not None for said in look.moment.heard)
+        if not isinstance(command, Stop) and command.heard not in [*robot.numbers][-now - 1 :]:
+            yield f"{sent} names telemetry {command.heard}, and the last was {robot.numbers[-1]}"
 
 
 @invariant(When.PUBLISHED)
@@ -217,6 +241,8 @@ WIRE = (
     executed_numbers_rise,
     no_repeat_has_effect,
     nothing_of_an_old_epoch_has_effect,
+    nothing_late_has_effect,
+    commands_say_what_was_heard,
     wire_targets_legal,
     nothing_retained_on_commands,
     payload_size,

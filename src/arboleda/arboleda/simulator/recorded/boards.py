@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from arboleda.dispatch.belief import Belief
 from arboleda.kinds.arm import Joint
 from arboleda.model.plant_model import Robot
 from arboleda.sim.board import Board
 from arboleda.wire.epochs import can_follow
-from arboleda.wire.payloads import Goal
+from arboleda.wire.payloads import Goal, StopGoal
 from arboleda.wire.topics import Channel, topic
-from arboleda.wire.transport import Delivery
+from arboleda.wire.transport import Delivery, Publication
 
 from ..commands import goal as goal_of
 from ..network import Client
@@ -28,14 +29,18 @@ Numbers = tuple[int, int]  # (epoca, seq)
 
 
 class Executed(NamedTuple):
-    """A command that a board carried out: its last numbers before, whether it was delivered to it, and the
-    newest epoch that it had heard beating."""
+    """A command that a board carried out.
+
+    With its last numbers before, whether it was delivered to it, the newest epoch that it had heard beating,
+    and when it told the telemetry that the command names, None where it did not lately.
+    """
 
     board: str
     goal: Goal
     before: Numbers | None
     delivered: bool
     beat: int | None
+    told_at: float | None
 
 
 class KnownBoard:
@@ -47,6 +52,7 @@ class KnownBoard:
         self.boot = board.boot_id
         self.last: Numbers | None = None
         self.beat: int | None = None  # the newest epoch in the beats that it has read since it booted
+        self.told: deque[tuple[int, float]] = deque(maxlen=RECENT)  # numbers since it booted, and when
         self.inbox: list[Delivery] = []
         self.telemetry: deque[Delivery] = deque(maxlen=RECENT)
         self.legal: set[tuple[float, ...]] = set()  # goals and paths on the wire that the robot can follow
@@ -57,8 +63,11 @@ class KnownBoard:
         self._keys = tuple(f"q{number}_mov" for number in range(1, len(joints) + 1)) or ("nodo",)
         self._form = "{" + "".join(f'"{key}":%s,' for key in self._keys)
 
-    def take_over(self, at: float, q: tuple[float, ...] | None, node: int | None) -> None:
-        """What it told before the record began."""
+    def take_over(self, at: float, belief: Belief) -> None:
+        """What it told before the record began, as far as the plant has heard it."""
+        q, node = belief.q, belief.node
+        if belief.number is not None:
+            self.told.append((belief.number, at))
         if q is not None or node is not None:
             words = self._words(q, node) + b'"estado":0}'
             self.telemetry.append(Delivery(at=at, topic="", payload=words))
@@ -69,7 +78,18 @@ class KnownBoard:
         before, delivered = self.last, self._was_delivered(goal)
         if goal.seq is not None and goal.epoch is not None:
             self.last = (goal.epoch, goal.seq)
-        return Executed(self.robot.mqtt, goal, before, delivered, self.beat)
+        told_at = None if isinstance(goal, StopGoal) else self._told_at(goal.heard)
+        return Executed(self.robot.mqtt, goal, before, delivered, self.beat, told_at)
+
+    def tell(self, at: float, payload: bytes) -> None:
+        """It publishes telemetry."""
+        self._notice_boot()
+        _, number, _ = parts(payload)
+        if number:
+            self.told.append((int(number), at))
+
+    def _told_at(self, number: int | None) -> float | None:
+        return next((at for told, at in reversed(self.told) if told == number), None)
 
     def forget_read(self, unread: list[Any]) -> None:
         """What it has taken out of its inbox, or lost from it, is no longer new to it."""
@@ -84,6 +104,7 @@ class KnownBoard:
         booted = self.boot != self.board.boot_id
         if booted:
             self.boot, self.last, self.beat = self.board.boot_id, None, None
+            self.told.clear()
         return booted
 
     def _read(self, delivery: Delivery) -> None:
@@ -153,6 +174,12 @@ class Boards:
             elif not delivery.retain:
                 hear(delivery)
 
+    def tell(self, at: float, published: Iterable[tuple[str, Publication]]) -> None:
+        """What was published at a time, by whom; only what boards tell of themselves counts here."""
+        for name, publication in published:
+            if publication.topic in self._hears and (board := self.by_name.get(name)) is not None:
+                board.tell(at, publication.payload)
+
     def execute(self, name: str, goal: Goal) -> None:
         """A board carries out a command."""
         self.executed.append(self.by_name[name].carried_out(goal))
@@ -181,6 +208,13 @@ def _commands(board: str) -> list[str]:
 def on_wire(joint: Joint, value: float) -> float:
     """rad, or m along the rack of a pinion, in degrees."""
     return math.degrees(value / joint.pinion_radius_m if joint.pinion_radius_m else value)
+
+
+def parts(payload: bytes) -> tuple[bytes, bytes, bytes]:
+    """A message up to its number, its number, and what comes after it."""
+    before, _, rest = payload.partition(b'"seq":')
+    after = rest.lstrip(b"0123456789")
+    return before, rest[: len(rest) - len(after)], after
 
 
 def is_number(value: object) -> bool:

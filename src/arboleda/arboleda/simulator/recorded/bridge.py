@@ -23,7 +23,7 @@ from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..world import Passed
-from .boards import fields
+from .boards import fields, parts
 
 EXACT = 1e-9
 YEAR_2100, AHEAD_S = 4_102_444_800, 366 * 86_400  # Unix time; how far ahead another machine's clock may be
@@ -274,7 +274,7 @@ class _Board:
 
     def _fields(self, payload: bytes) -> dict[str, Any] | None:
         """The fields of telemetry; what differs from the last in its number alone is not read again."""
-        before, number, after = _parts(payload)
+        before, number, after = parts(payload)
         last = self._parsed
         if last is not None and number and last[0] == before and last[1] == after:
             last[2]["seq"] = int(number)
@@ -305,7 +305,7 @@ class _Board:
             self._still_since = at
 
     def expect_copy(self, at: float, command: Command) -> None:
-        plain = replace(command, id="")
+        plain = replace(command, id="", heard=None)
         early = next((each for each in self._early if each[1] == plain), None)
         if early is None:
             self._copies.append((at, plain))
@@ -454,6 +454,8 @@ class _Board:
             self._say(COMMANDS, f"{command} left as {body}")
         if isinstance(command, Stop) and body.get("paro") != command.mode.value:
             self._say(COMMANDS, f"{command} left as {body}")
+        if command.heard is not None and self._by_ids and body.get("visto") != command.heard:
+            self._say(COMMANDS, f"{command} left as {body}, which names other telemetry than the plant did")
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication, place)
@@ -524,7 +526,7 @@ class _Board:
         """Whether a report says what telemetry says that came after `place` orders of this step."""
         if report.at != delivery.at or report.plant not in (self._plant, self._plant_before):
             return False
-        before, _, after = _parts(delivery.payload)
+        before, _, after = parts(delivery.payload)
         alike = self._words and not self._given and (before, after) == self._words[:2]
         if alike and report.words == self._words[2].words:
             self._words = (before, after, report)
@@ -560,13 +562,6 @@ class _Board:
 
 def _content(report: Report) -> tuple[Any, ...]:
     return (report.state, report.q, report.node, report.homed, report.effector, report.piece, report.boot_id)
-
-
-def _parts(payload: bytes) -> tuple[bytes, bytes, bytes]:
-    """A message up to its number, its number, and what comes after it."""
-    before, _, rest = payload.partition(b'"seq":')
-    after = rest.lstrip(b"0123456789")
-    return before, rest[: len(rest) - len(after)], after
 
 
 def _read(payload: bytes, robot: Robot) -> dict[str, Any] | None:

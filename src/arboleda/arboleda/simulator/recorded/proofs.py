@@ -21,6 +21,7 @@ from .robots import KnownRobot
 FLOAT_SLACK = 1e-9
 REFUSED = {
     "no_link": Reason.LINK_LOST,
+    "tarde": Reason.LINK_LOST,
     "paro": Reason.STOPPED,
     "sin_ref": Reason.NOT_HOMED,
     "condicion": Reason.PRECONDITION,

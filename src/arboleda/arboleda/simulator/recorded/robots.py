@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
 from copy import copy
 from enum import Enum
@@ -11,6 +12,7 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import BUILT_IN, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, Robot
 
+NUMBERS = 512  # telemetry messages, more than a plant that was stalled finds in its inbox
 LOOK_S = 0.5  # what stays the same is looked at this often
 
 
@@ -51,6 +53,7 @@ class KnownRobot:
         self.state: MotionState | None = None
         self.homed: bool | None = None
         self.boot: int | None = None
+        self.numbers: deque[int | None] = deque([None], maxlen=NUMBERS)  # of its telemetry; None: none yet
         self.epoch: int | None = None
         self.plant: int | None = None
         self.q: tuple[float, ...] | None = None
@@ -74,6 +77,8 @@ class KnownRobot:
         if anew:
             self._words, self._look_at = report.words, report.at + LOOK_S
             self._take_over(report)
+        if report.number is not None:
+            self.numbers.append(report.number)
         if report.state is not MotionState.NO_LINK:
             self.heard_at = report.at
         return anew

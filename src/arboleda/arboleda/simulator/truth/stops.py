@@ -9,7 +9,7 @@ from arboleda.model.commands import Command, needs_clear
 from arboleda.model.messages import Fact, OperatorAnswer, Remember, Verb
 from arboleda.model.plant_model import PlantModel, Robot
 from arboleda.wire import goals
-from arboleda.wire.payloads import Goal, JointsGoal
+from arboleda.wire.payloads import Goal, JointsGoal, StopGoal
 
 from .robot import Act
 
@@ -92,7 +92,9 @@ def robots_of(model: PlantModel, scope: str) -> list[str]:
 
 def is_order_of(goal: Goal, robot: Robot, command: Command) -> bool:
     """Whether a goal on the wire is this command."""
-    _, expected = goals.goal(robot, command, seq=goal.seq, epoch=goal.epoch)
+    stamp = {"seq": goal.seq, "epoch": goal.epoch}
+    stamp |= {} if isinstance(goal, StopGoal) else {"heard": goal.heard}
+    _, expected = goals.goal(robot, command, **stamp)
     if isinstance(goal, JointsGoal) and isinstance(expected, JointsGoal):
         return all(abs(a - b) < ROUNDING_DEG for a, b in zip(goal.q, expected.q, strict=True))
     return goal == expected
