@@ -21,6 +21,7 @@ from contextlib import suppress
 from typing import Any
 
 SILENCE_S, PERIOD_S = 1.0, 0.1
+FRESH_S, MARK_S = 2.0, 0.25  # how long what it told is news, and how exactly it remembers when
 UINT32 = 2**32 - 1
 AHEAD_S, HORIZON = 366 * 86_400, 4_102_444_800  # no plant starts a year after the last one, or after 2100
 NAME = re.compile(r"[A-Za-z0-9_.-]{1,32}", re.ASCII)
@@ -53,6 +54,7 @@ class Board:
         self._ids: dict[str, Any] = {}  # ack, hecho, rechazo, respuesta, fallos: all of this epoch
         self._work: tuple[dict[str, Any], float] | None = None  # an order, and when it is over
         self._query: tuple[dict[str, Any], float] | None = None
+        self._marks: deque[tuple[float, int]] = deque(maxlen=8)  # when it told which number
         self._latched = self._beaten = False
         self._alive_at = self._said_at = now
 
@@ -97,6 +99,8 @@ class Board:
     def say(self) -> None:
         """Telemetry: ten times a second, and at once where something has changed."""
         self._said_at, self._number = self._now, self._number + 1
+        if not self._marks or self._now - self._marks[-1][0] >= MARK_S:
+            self._marks.append((self._now, self._number))
         state = 1 if self._work is not None else 4 if self._latched else 0
         said = {"estado": state, "seq": self._number, "arranque": self._boot}
         numbers = self._ids if self._epoch is None else {"epoca_ack": self._epoch, **self._ids}
@@ -148,7 +152,14 @@ class Board:
             return None
         return "viejo" if (epoch, seq) <= (self._epoch, self._ids.get("ack", -1)) else None
 
+    def _in_time(self, heard: int) -> bool:
+        """Whether it told this number lately. An older one is of an order that waited on its way."""
+        fresh = (number for at, number in self._marks if self._now - at <= FRESH_S)
+        return next(fresh, UINT32) <= heard <= self._number
+
     def _objection(self, order: dict[str, Any]) -> str | None:
+        if "visto" in order and not self._in_time(order["visto"]):
+            return "tarde"
         verb = VERBS.get(order["verbo"])
         if verb is None or not fits(verb.get("with", {}), order["valores"]):
             return "formato"
@@ -198,6 +209,7 @@ def read(channel: str, payload: bytes) -> dict[str, Any]:
         whole(said.get("paro"), 2)
     elif channel == "orden":
         named(said.get("verbo"))
+        whole(said.get("visto", 0), UINT32)
         values = said.setdefault("valores", {})
         if not isinstance(values, dict):
             raise Bad("valores is no object")

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from arboleda.app.config import load
+from arboleda.model.plant_model import MotionState
 from arboleda.sim.board import Board as VirtualBoard
 from arboleda.sim.machine import MachineBody
 from arboleda.wire.payloads import Telemetry, decode
@@ -85,6 +86,12 @@ class Both:
         topic = f"valve_1/{channel}"
         self.virtual.receive(self.us, Delivery(at=self.now, topic=topic, payload=payload, retain=retained))
         self.own.receive(channel, payload, retained=retained, now=self.now)
+
+    def orders(self, heard: tuple[Telemetry, Telemetry], **said: Any) -> None:
+        """To each of them, by who had heard this of it."""
+        virtual, own = (json.dumps({**said, "visto": each.seq}).encode() for each in heard)
+        self.virtual.receive(self.us, Delivery(at=self.now, topic="valve_1/orden", payload=virtual))
+        self.own.receive("orden", own, retained=False, now=self.now)
 
     def wait(self, seconds: float) -> None:
         """Time passes, as each of them wants to be woken."""
@@ -191,6 +198,29 @@ def test_without_a_heartbeat_it_gives_its_work_up_as_the_virtual_board_does() ->
     both.wait(0.02)
     virtual, own = both.tell()
     assert own == virtual_as(virtual, own) and own.failures == ((2, "silencio"),)
+
+
+@pytest.mark.parametrize(("waited_s", "refusal"), [(1.7, None), (2.3, "tarde")])
+def test_an_order_that_waited_too_long_is_refused_as_by_the_virtual_board(
+    waited_s: float, refusal: str | None
+) -> None:
+    both = Both()
+    both.wait(3.0)
+    heard = both.tell()
+    both.wait(waited_s)
+    both.orders(heard, verbo="open", seq=1, **ORDER)
+    virtual, own = both.tell()
+    assert own == virtual_as(virtual, own) and own.refusal == refusal
+    assert (own.state is MotionState.MOVING) is (refusal is None)
+
+
+def test_a_number_that_it_has_not_told_since_power_up_is_too_late() -> None:
+    both = Both()
+    both.wait(1.0)
+    virtual, own = both.tell()
+    both.orders((replace(virtual, seq=99), replace(own, seq=99)), verbo="open", seq=1, **ORDER)
+    virtual, own = both.tell()
+    assert own == virtual_as(virtual, own) and own.refusal == "tarde"
 
 
 def virtual_as(virtual: Telemetry, own: Telemetry) -> Telemetry:
