@@ -22,6 +22,7 @@ void Board::boot(uint64_t now_us, uint32_t boot_id, bool homed) {
     homing_.cancel();
     axes_.reset();
     receipts_ = Receipts();
+    freshness_ = Freshness();
     job_ = Job::kNone;
     boot_id_ = boot_id;
     homed_ = homed;
@@ -173,7 +174,13 @@ void Board::accept(const Message& goal) {
 
 Refusal Board::refusal(const Message& goal) const {
     const bool effector = goal.channel == Channel::kEffector;
-    if (goal.channel == Channel::kStop || (effector && !goal.on)) {
+    if (goal.channel == Channel::kStop) {
+        return Refusal::kNone;
+    }
+    if (is_late(goal)) {
+        return Refusal::kLate;
+    }
+    if (effector && !goal.on) {
         return Refusal::kNone;
     }
     if (latched_) {
@@ -192,6 +199,10 @@ Refusal Board::refusal(const Message& goal) const {
         return Refusal::kNotHomed;
     }
     return within_limits(goal) ? Refusal::kNone : Refusal::kLimit;
+}
+
+bool Board::is_late(const Message& goal) const {
+    return goal.heard.known && !freshness_.covers(now_us_, goal.heard.value);
 }
 
 bool Board::within_limits(const Message& goal) const {
@@ -296,6 +307,7 @@ void Board::announce() {
 void Board::tell() {
     if (connected_) {
         ++told_;
+        freshness_.tell(now_us_, told_);
         voice_.tell(telemetry());
     }
 }

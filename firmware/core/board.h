@@ -5,6 +5,7 @@
 
 #include "axes.h"
 #include "config.h"
+#include "freshness.h"
 #include "hardware.h"
 #include "homing.h"
 #include "message.h"
@@ -59,6 +60,7 @@ private:
     void move(const Message& goal);
     void home();
     Refusal refusal(const Message& goal) const;
+    bool is_late(const Message& goal) const;
     bool within_limits(const Message& goal) const;
     void stop(bool latch);
     void finish();
@@ -76,6 +78,7 @@ private:
     Homing homing_;
     Rhythm rhythm_;
     Receipts receipts_;
+    Freshness freshness_;
     Job job_ = Job::kNone;  // what counts as done when the axes come to rest
     MaybeNumber job_seq_;
     MaybeNumber job_epoch_;

@@ -24,6 +24,7 @@ void DeviceBoard::boot(uint64_t now_us, uint32_t boot_id) {
     boot_id_ = boot_id;
     deeds_count_ = 0;
     receipts_ = OrderReceipts();
+    freshness_ = Freshness();
     latched_ = alarmed_ = beaten_ = news_ = false;
     was_sane_ = true;
     told_ = 0;
@@ -313,6 +314,10 @@ bool DeviceBoard::take_numbers(const Message& head) {
 }
 
 Refusal DeviceBoard::objection(const Order& order) const {
+    const MaybeNumber heard = order.head.heard;
+    if (heard.known && !freshness_.covers(now_us_, heard.value)) {
+        return Refusal::kLate;
+    }
     if (!order.known) {
         return Refusal::kFormat;
     }
@@ -483,6 +488,7 @@ void DeviceBoard::tell() {
         return;
     }
     ++told_;
+    freshness_.tell(now_us_, told_);
     told_us_ = now_us_;
     news_ = false;
     DeviceTelemetry said;

@@ -6,6 +6,7 @@
 #include "device.h"
 #include "device_hardware.h"
 #include "device_telemetry.h"
+#include "freshness.h"
 #include "order.h"
 #include "rhythm.h"
 #include "sensing.h"
@@ -96,6 +97,7 @@ private:
     Servo servos_[kMostServos];
     Rhythm rhythm_;
     OrderReceipts receipts_;
+    Freshness freshness_;
     Deed deeds_[kMostDeeds];  // in the order in which they began
     uint8_t deeds_count_ = 0;
     double facts_[kMostFacts] = {};

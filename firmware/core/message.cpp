@@ -61,6 +61,9 @@ bool stamped_well(const Message& message) {
     return message.channel == Channel::kBeat || message.seq.known == message.epoch.known;
 }
 
+// A stop is never too late, and a beat is no command: whatever stands there is not for them.
+bool may_be_late(Channel channel) { return channel != Channel::kStop && channel != Channel::kBeat; }
+
 }  // namespace
 
 bool read_stamp(const Object& object, Message* message) {
@@ -70,6 +73,8 @@ bool read_stamp(const Object& object, Message* message) {
     message->seq = message->epoch = MaybeNumber();
     return false;
 }
+
+bool read_heard(const Object& object, Message* message) { return optional(object, "visto", &message->heard); }
 
 const char* channel_name(Channel channel) { return kChannelNames[static_cast<uint8_t>(channel)]; }
 
@@ -90,7 +95,8 @@ Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained
         message.epoch.known = message.well_formed && integer(object, "epoca", UINT32_MAX, &message.epoch.value);
         return message;
     }
-    message.well_formed = stamped_well(message) && body(object, axes, &message);
+    const bool heard = !may_be_late(channel) || read_heard(object, &message);
+    message.well_formed = stamped_well(message) && heard && body(object, axes, &message);
     return message;
 }
 

@@ -28,6 +28,7 @@ struct Message {
     bool retained = false;
     MaybeNumber seq;
     MaybeNumber epoch;
+    MaybeNumber heard;  // the board's last telemetry that who commands had heard; not of a stop or a beat
     double q_deg[kMostAxes] = {};
     bool on = false;
     Stop stop = Stop::kHalt;
@@ -37,6 +38,9 @@ class Object;
 
 // `seq` and `epoca`; false, and neither of them, where one of them is there and none.
 bool read_stamp(const Object& object, Message* message);
+
+// `visto`; false where it is there and none.
+bool read_heard(const Object& object, Message* message);
 
 // The message that these bytes are for a board with so many axes; retained as the broker flagged it.
 Message decode(Channel channel, const uint8_t* bytes, size_t size, bool retained, uint8_t axes);

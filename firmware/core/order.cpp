@@ -172,7 +172,7 @@ Order decode_order(const Device& device, const uint8_t* bytes, size_t size, bool
         return order;
     }
     const bool stamped = order.head.seq.known == order.head.epoch.known;
-    order.head.well_formed = stamped && Reader(device, object, &order).read();
+    order.head.well_formed = stamped && read_heard(object, &order.head) && Reader(device, object, &order).read();
     order.known = order.known && order.head.well_formed;
     return order;
 }

@@ -7,8 +7,8 @@ namespace {
 constexpr uint32_t kUnknownSeq = 0;  // senders count from 1
 constexpr uint64_t kAheadS = 366 * 86400;   // clocks of two machines differ by no more
 constexpr uint64_t kHorizon = 4102444800;   // the year 2100: no plant of this protocol starts later
-constexpr const char* kWords[] = {"",        "viejo", "retenido", "formato", "limite",
-                                  "sin_ref", "paro",  "ocupado",  "condicion"};
+constexpr const char* kWords[] = {"",       "viejo",   "retenido", "tarde",   "formato",
+                                  "limite", "sin_ref", "paro",     "ocupado", "condicion"};
 
 bool same(MaybeNumber one, MaybeNumber other) {
     return one.known == other.known && (!one.known || one.value == other.value);

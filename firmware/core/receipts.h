@@ -5,7 +5,9 @@
 
 namespace arboleda {
 
-enum class Refusal : uint8_t { kNone, kOld, kRetained, kFormat, kLimit, kNotHomed, kStopped, kBusy, kCondition };
+enum class Refusal : uint8_t {
+    kNone, kOld, kRetained, kLate, kFormat, kLimit, kNotHomed, kStopped, kBusy, kCondition
+};
 
 // The word of a refusal on the wire, `viejo`, ...; not for kNone.
 const char* refusal_word(Refusal refusal);

@@ -16,8 +16,10 @@ class DecodedOrder(ctypes.Structure):
         ("known", ctypes.c_int),
         ("has_seq", ctypes.c_int),
         ("has_epoch", ctypes.c_int),
+        ("has_heard", ctypes.c_int),
         ("seq", ctypes.c_uint32),
         ("epoch", ctypes.c_uint32),
+        ("heard", ctypes.c_uint32),
         ("verb", ctypes.c_int),
         ("value", ctypes.c_double),
     )

@@ -18,6 +18,8 @@ from arboleda.wire.strict import UINT32
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Delivery
 
+from .scripts import Ear
+
 CHANNELS = ("orden", "paro", "latido")
 PLANT = Path(__file__).parents[2] / "examples/own_board/plant.yaml"
 FIRST_BOOT = 100
@@ -44,31 +46,36 @@ class Author:
         self.chance = Random(seed)
         self.now_us = self.chance.choice((1_000_000, 2**32 - 2_000_000, 2**40))
         self._seq, self._epoch, self._boot = 0, 7, FIRST_BOOT
+        self._ear = Ear(self.chance)
 
     def script(self) -> list[str]:
         """Its lines."""
         lines = [f"{self.now_us} boot {FIRST_BOOT}", f"{self.now_us} connect 1"]
         for _ in range(self.chance.randint(5, 30)):
-            self.now_us += self._pause_us()
+            pause_us = self._pause_us()
+            self.now_us += pause_us
+            self._ear.listen(pause_us)
             lines.append(f"{self.now_us} {self._event()}")
         self.now_us += self.chance.choice((10_000, 3_000_000))
         return [*lines, f"{self.now_us} connect 1"]
 
     def _pause_us(self) -> int:
-        kinds = ((0, 3), (1, 2_000), (1_000, 300_000), (100_000, 1_500_000))
+        kinds = ((0, 3), (1, 2_000), (1_000, 300_000), (100_000, 1_500_000), (100_000, 2_400_000))
         return self.chance.randint(*self.chance.choice(kinds))
 
     def _event(self) -> str:
         if self.chance.random() < 0.93:
             return self._message()
         self._boot += 1
-        return self.chance.choice(
-            (f"reboot {self._boot}", "fail", "repair", "repair", "connect 0", "connect 1")
-        )
+        reboot = f"reboot {self._boot}"
+        event = self.chance.choice((reboot, "fail", "repair", "repair", "connect 0", "connect 1"))
+        if event == reboot:
+            self._ear.reboot()
+        return event
 
     def _message(self) -> str:
         channel = self.chance.choices(CHANNELS, (70, 15, 15))[0]
-        raw = json.dumps({**self._body(channel), **self._stamp(channel)}).encode()
+        raw = json.dumps({**self._body(channel), **self._stamp(channel), **self._ear.heard()}).encode()
         if self.chance.random() < 0.05:
             raw = self._damaged(raw)
         retained = int(self.chance.random() < 0.04)

@@ -28,6 +28,7 @@ void check(const Message& message, uint8_t axes) {
         demand(writer.finish() > 0);
     }
     demand(static_cast<uint8_t>(message.stop) <= 2);
+    demand(!message.heard.known || (message.channel != Channel::kStop && message.channel != Channel::kBeat));
 }
 
 }  // namespace

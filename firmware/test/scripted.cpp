@@ -181,8 +181,10 @@ struct Decoded {
     int well_formed;
     int has_seq;
     int has_epoch;
+    int has_heard;
     uint32_t seq;
     uint32_t epoch;
+    uint32_t heard;
     double q_deg[kMostAxes];
     int on;
     int stop;
@@ -190,8 +192,9 @@ struct Decoded {
 
 void arboleda_decode(int channel, const uint8_t* bytes, size_t size, int axes, Decoded* out) {
     const Message message = decode(static_cast<Channel>(channel), bytes, size, false, static_cast<uint8_t>(axes));
-    *out = {message.well_formed, message.seq.known,     message.epoch.known, message.seq.value,
-            message.epoch.value, {}, message.on, static_cast<int>(message.stop)};
+    *out = {message.well_formed, message.seq.known,   message.epoch.known, message.heard.known,
+            message.seq.value,   message.epoch.value, message.heard.value, {},
+            message.on,          static_cast<int>(message.stop)};
     memcpy(out->q_deg, message.q_deg, sizeof out->q_deg);
 }
 

@@ -142,15 +142,18 @@ struct DecodedOrder {
     int known;
     int has_seq;
     int has_epoch;
+    int has_heard;
     uint32_t seq;
     uint32_t epoch;
+    uint32_t heard;
     int verb;
     double value;
 };
 
 void arboleda_decode_order(const uint8_t* bytes, size_t size, DecodedOrder* out) {
     const Order order = decode_order(kDevice, bytes, size, false);
-    *out = {order.head.well_formed, order.known,           order.head.seq.known, order.head.epoch.known,
-            order.head.seq.value,   order.head.epoch.value, order.verb,           order.values[0]};
+    const Message& head = order.head;
+    *out = {head.well_formed, order.known,      head.seq.known,   head.epoch.known, head.heard.known,
+            head.seq.value,   head.epoch.value, head.heard.value, order.verb,       order.values[0]};
 }
 }

@@ -15,6 +15,7 @@ SIX_AXES = 130  # a multiple of the number of channels
 
 ORDERS = (
     b'{"verbo":"open","seq":2,"epoca":1}',
+    b'{"verbo":"open","seq":2,"epoca":1,"visto":2}',
     b'{"verbo":"clamp","valores":{"on":false},"seq":2,"epoca":1}',
     b'{"verbo":"press","valores":{"program":2},"seq":2,"epoca":1}',
     b'{"verbo":"look","seq":1,"epoca":2,"valores":{}}',

@@ -9,10 +9,18 @@ namespace {
 constexpr uint64_t kSecondUs = 1000000;
 
 constexpr const char* kMove = R"({"q1":45,"q2":45,"q3":90,"seq":1,"epoca":5})";
+constexpr const char* kFresh = R"({"q1":45,"q2":45,"q3":90,"seq":2,"epoca":5,"visto":%u})";
 constexpr const char* kHome = R"({"ref":1,"seq":1,"epoca":5})";
 
 bool at_reference(World& world) {
     return world.true_steps(0) == 0 && world.true_steps(1) == 0 && world.true_steps(2) == 0;
+}
+
+// The move of number 2, by who had heard so much of the board.
+void move_after(Bench& bench, uint32_t heard) {
+    char text[96];
+    snprintf(text, sizeof text, kFresh, heard);
+    bench.send(Channel::kJoints, text);
 }
 
 }  // namespace
@@ -182,6 +190,59 @@ TEST(an_effector_lets_go_on_a_stop_where_it_is_configured) {
     CHECK(bench.world.effector());
     bench.send(Channel::kStop, R"({"paro":1,"seq":3,"epoca":5})");
     CHECK(!bench.world.effector());
+}
+
+TEST(a_move_by_who_has_heard_the_board_lately_is_carried_out) {
+    Bench bench;
+    bench.run(5 * kSecondUs);
+    const uint32_t heard = bench.last.number;
+    bench.run(1700000);
+    move_after(bench, heard);
+    CHECK(bench.board.state() == State::kMoving);
+}
+
+TEST(a_move_that_waited_is_too_late_and_moves_nothing) {
+    Bench bench;
+    bench.run(5 * kSecondUs);
+    const uint32_t heard = bench.last.number;
+    bench.run(2300000);
+    move_after(bench, heard);
+    CHECK(bench.board.state() == State::kStopped && bench.last.receipts.refusal() == Refusal::kLate);
+    CHECK(bench.last.receipts.refused() == 2);
+}
+
+TEST(a_move_by_who_heard_what_this_boot_never_told_is_too_late) {
+    Bench bench;
+    bench.run(5 * kSecondUs);
+    const uint32_t heard = bench.last.number;
+    move_after(bench, heard + 1);
+    CHECK(bench.last.receipts.refusal() == Refusal::kLate);
+    bench.board.boot(bench.now_us, 101, true);
+    move_after(bench, heard);
+    CHECK(bench.last.receipts.refusal() == Refusal::kLate && bench.board.state() == State::kStopped);
+}
+
+TEST(a_late_command_lets_nothing_go_and_a_late_stop_stops) {
+    Bench bench;
+    bench.send(Channel::kEffector, R"({"efector":1,"seq":1,"epoca":5})");
+    bench.run(5 * kSecondUs);
+    bench.send(Channel::kEffector, R"({"efector":0,"seq":2,"epoca":5,"visto":1})");
+    CHECK(bench.world.effector() && bench.last.receipts.refused() == 2);
+    bench.send(Channel::kStop, R"({"paro":1,"seq":3,"epoca":5,"visto":1})");
+    CHECK(bench.board.state() == State::kLatched && bench.last.receipts.accepted().value == 3);
+}
+
+TEST(who_heard_a_board_before_it_was_away_has_to_hear_it_again) {
+    Bench bench;
+    bench.run(kSecondUs);
+    const uint32_t heard = bench.last.number;
+    bench.board.connect(bench.now_us, false);
+    bench.run(3 * kSecondUs);
+    bench.board.connect(bench.now_us, true);
+    move_after(bench, heard);
+    CHECK(bench.last.receipts.refusal() == Refusal::kLate);
+    bench.send(Channel::kJoints, R"({"q1":1,"q2":1,"q3":1,"seq":3,"epoca":5})");
+    CHECK(bench.last.receipts.accepted().value == 3);
 }
 
 }  // namespace arboleda

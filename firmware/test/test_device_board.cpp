@@ -257,6 +257,31 @@ TEST(a_value_that_the_kind_does_not_have_drives_nothing) {
     CHECK(bench.last.receipts.numbers().refused() == 2);
 }
 
+TEST(an_order_that_waited_is_too_late_and_drives_nothing) {
+    DeviceBench bench;
+    bench.run(3 * kSecondUs);
+    char text[96];
+    const uint32_t heard = bench.last.number;
+    bench.run(2300 * kMsUs);
+    snprintf(text, sizeof text, R"({"verbo":"clamp","valores":{"on":true},"seq":1,"epoca":5,"visto":%u})", heard);
+    bench.order(text);
+    CHECK(bench.last.receipts.numbers().refusal() == Refusal::kLate && !bench.world.output(kClamp));
+    snprintf(text, sizeof text, R"({"verbo":"clamp","valores":{"on":true},"seq":2,"epoca":5,"visto":%u})",
+             bench.last.number);
+    bench.order(text);
+    CHECK(bench.last.receipts.numbers().accepted().value == 2 && bench.world.output(kClamp));
+}
+
+TEST(even_what_lets_go_may_come_too_late_and_a_stop_never) {
+    DeviceBench bench;
+    press(bench);
+    bench.run(4 * kSecondUs);
+    bench.order(R"({"verbo":"clamp","valores":{"on":false},"seq":4,"epoca":5,"visto":1})");
+    CHECK(bench.last.receipts.numbers().refusal() == Refusal::kLate && bench.world.output(kClamp));
+    bench.send(Channel::kStop, R"({"paro":1,"seq":5,"epoca":5,"visto":1})");
+    CHECK(bench.last.state == State::kLatched);
+}
+
 TEST(a_copy_does_not_open_the_gate_again) {
     DeviceBench bench;
     bench.order(kOpenGate);

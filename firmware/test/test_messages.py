@@ -39,7 +39,8 @@ def ours(channel: str, raw: bytes, axes: int) -> tuple | None:
         return None
     body = {"juntas": tuple(said.q_deg[:axes]), "efector": bool(said.on), "paro": said.stop}.get(channel)
     seq = said.seq if said.has_seq and channel != "latido" else None
-    return body, seq, said.epoch if said.has_epoch else None
+    heard = said.heard if said.has_heard else None
+    return body, seq, said.epoch if said.has_epoch else None, heard
 
 
 def theirs(channel: str, raw: bytes, axes: int) -> tuple | None:
@@ -55,7 +56,7 @@ def theirs(channel: str, raw: bytes, axes: int) -> tuple | None:
         body = said.on
     elif isinstance(said, StopGoal):
         body = said.mode.value
-    return body, None if isinstance(said, Beat) else said.seq, said.epoch
+    return body, None if isinstance(said, Beat) else said.seq, said.epoch, getattr(said, "heard", None)
 
 
 @pytest.mark.parametrize(("channel", "raw", "axes"), rows("messages.json", "accepted.json"))
@@ -86,6 +87,7 @@ PIECES = (
         b"\x7f",
         b"\xef\xbb\xbf",
     ),
+    *(b'"visto":7,', b'"visto":7.0,', b'"visto":null,', b'"visto":4294967296,'),
     *(b'"q1"', b'"\\u0071\\u0031"', b'"q1":1', b'"":[{"":{}}]', b'"\\ud83d\\ude00":1,"\xf0\x9f\x98\x80":1'),
     *(
         b"-",

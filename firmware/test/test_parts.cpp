@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <string.h>
 
+#include "../core/freshness.h"
 #include "../core/json.h"
 #include "../core/keepsakes.h"
 #include "../core/ring.h"
@@ -143,6 +144,26 @@ TEST(an_effector_comes_back_on_only_where_that_was_kept) {
     CHECK(!kept_on({0, 0}));
     CHECK(!kept_on({0xFFFFFFFF, 0xFFFFFFFF}));
     CHECK(!kept_on({keep(true).said, 0}));
+}
+
+TEST(what_was_told_is_fresh_for_two_seconds_and_dated_by_the_quarter) {
+    Freshness freshness;
+    CHECK(!freshness.covers(0, 0));
+    freshness.tell(0, 1);
+    freshness.tell(249999, 2);
+    freshness.tell(250000, 3);
+    CHECK(freshness.covers(2000000, 1) && !freshness.covers(2000000, 0) && !freshness.covers(2000000, 4));
+    CHECK(freshness.covers(2000001, 3) && !freshness.covers(2000001, 2));
+    CHECK(!freshness.covers(2250001, 3));
+}
+
+TEST(what_was_told_for_long_is_remembered_as_far_as_it_is_fresh) {
+    Freshness freshness;
+    for (uint32_t number = 1; number <= 100; ++number) {
+        freshness.tell(number * 100000, number);
+    }
+    CHECK(freshness.covers(10000000, 82) && freshness.covers(10000000, 100));
+    CHECK(!freshness.covers(10000000, 79) && !freshness.covers(10000000, 101));
 }
 
 }  // namespace arboleda
