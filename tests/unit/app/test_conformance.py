@@ -21,6 +21,7 @@ from arboleda.wire.transport import Delivery
 
 from .conformance_trial import Trial, wrong
 
+NEVER_TOLD = 50_000  # reports: a trial takes 10 minutes
 PLANT = shipped("sis_a", "sis_c")
 
 
@@ -177,6 +178,38 @@ class Dropping(Board):
             self.body.switch_effector(False)
 
 
+class Patient(Board):
+    """Does not mind how long a command waited on its way."""
+
+    def _refusal(self, goal: Goal) -> str | None:
+        return super()._refusal(goal if isinstance(goal, StopGoal) else replace(goal, heard=None))
+
+
+class Hasty(Board):
+    """Finds everything too late that says what was heard."""
+
+    def _refusal(self, goal: Goal) -> str | None:
+        return "tarde" if getattr(goal, "heard", None) is not None else super()._refusal(goal)
+
+
+class Trusting(Board):
+    """Believes that somebody heard what it has not said."""
+
+    def _refusal(self, goal: Goal) -> str | None:
+        heard = getattr(goal, "heard", None) or 0
+        return super()._refusal(replace(goal, heard=None) if heard > NEVER_TOLD else goal)
+
+
+class Strict(Board):
+    """Wants stops to come in time as well."""
+
+    def receive(self, now_us: int, delivery: Delivery) -> None:
+        if b'"paro"' in delivery.payload and b'"visto"' in delivery.payload:
+            self._refuse("tarde", None, None)
+        else:
+            super().receive(now_us, delivery)
+
+
 def truncating(robot: Arm, body: ArmBody, **how: Any) -> Board:
     return Board(robot, Truncating(robot, start=robot.reference, pickups=()), **how)
 
@@ -193,6 +226,10 @@ BAD = [
     pytest.param(Believing, {"malformed"}, Evidence.STATE, id="half a goal"),
     pytest.param(Unhalting, {"stop from anybody"}, Evidence.JOINTS, id="no halt from others"),
     pytest.param(Unlimited, {"limits", "words"}, Evidence.STATE, id="no limits"),
+    pytest.param(Patient, {"late"}, Evidence.JOINTS, id="takes what has waited"),
+    pytest.param(Hasty, {"late"}, Evidence.JOINTS, id="finds everything late"),
+    pytest.param(Trusting, {"late"}, Evidence.JOINTS, id="takes what nobody can have heard"),
+    pytest.param(Strict, {"late"}, Evidence.JOINTS, id="finds a stop late"),
     pytest.param(Dropping, {"effector"}, Evidence.JOINTS, id="effector never on"),
 ]
 
@@ -202,6 +239,12 @@ def test_a_bad_board_fails_by_name(kind: Callable[..., Board], names: set[str], 
     judge = trial(kind)
     assert set(wrong(judge)) == names, wrong(judge)
     assert judge.reached is level
+
+
+def test_a_board_that_knows_no_visto_is_told_what_to_build_and_what_it_costs_not_to() -> None:
+    found = wrong(trial(Patient))["late"]
+    assert "with tarde" in found
+    assert "remember which seq it told when; without that, what has waited moves it" in found
 
 
 def test_a_board_that_says_only_its_code_reaches_state() -> None:

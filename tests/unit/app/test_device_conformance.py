@@ -126,6 +126,13 @@ class Unhalting(Board):
             super()._obey(goal)
 
 
+class Patient(Board):
+    """Does not mind how long an order waited on its way."""
+
+    def _refusal(self, goal: Goal) -> str | None:
+        return super()._refusal(replace(goal, heard=None) if isinstance(goal, OrderGoal) else goal)
+
+
 class Obliging(MachineBody):
     """Does what it is told, whatever has to be so before."""
 
@@ -163,6 +170,7 @@ BAD = [
         {"kind": Boastful}, {"halted", "stop from anybody", "silence"}, Evidence.JOINTS, id="done when halted"
     ),
     pytest.param({"kind": Unhalting}, {"stop from anybody"}, Evidence.JOINTS, id="no halt from others"),
+    pytest.param({"kind": Patient}, {"late"}, Evidence.JOINTS, id="takes what has waited"),
     pytest.param({"body": Obliging}, {"needs"}, Evidence.JOINTS, id="minds no condition"),
     pytest.param({"body": Lenient}, {"unknown", "words"}, Evidence.STATE, id="overlooks values"),
 ]

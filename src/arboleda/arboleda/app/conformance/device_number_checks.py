@@ -9,7 +9,17 @@ from .bench import LATCHED, MOVING, NotTried, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
 from .device_ways import LEAST_S, at_rest, carry_out, lasting, lead_to, named
 from .number_checks import SILENCE_S
-from .ways import ANSWER_S, accepted, answer, demand, refused, refused_as_retained, stop, unmoved
+from .ways import (
+    ANSWER_S,
+    accepted,
+    answer,
+    demand,
+    only_in_time,
+    refused,
+    refused_as_retained,
+    stop,
+    unmoved,
+)
 
 HALT_S = 1.5
 
@@ -88,6 +98,12 @@ def stamped(bench: DeviceBench) -> Steps:
     said = yield Wait(seconds=1.0, until=lambda: bench.last.refusal == "formato")
     demand(said, f"{bare.decode()} without numbers is not refused with formato")
     yield from unmoved(bench, before, "an order without numbers")
+
+
+def late(bench: DeviceBench) -> Steps:
+    """An order that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
+    told = yield from lead_to(bench, _any, "verb")
+    yield from only_in_time(bench, lambda heard: bench.order(told, visto=heard))
 
 
 def words(bench: DeviceBench) -> Steps:

@@ -7,7 +7,7 @@ from arboleda.wire.topics import Channel
 from .arm_bench import ArmBench
 from .arm_ways import drive, set_off
 from .bench import MOVING, NotTried, Send, Steps, Wait
-from .ways import accepted, answer, demand, refused, refused_as_retained, rest, stop, unmoved
+from .ways import accepted, answer, demand, only_in_time, refused, refused_as_retained, rest, stop, unmoved
 
 SILENCE_S = 1.0
 RAMP_S = 1.5  # to come to rest after that, and to be heard
@@ -89,6 +89,11 @@ def retained(bench: ArmBench) -> Steps:
     # an old number: heard while it is connected, the goal is harmless
     yield from refused_as_retained(bench, goal, "goal")
     yield from unmoved(bench, before, "a retained goal")
+
+
+def late(bench: ArmBench) -> Steps:
+    """A goal that names in visto what it told over 2 s ago is refused with tarde; paro never is."""
+    yield from only_in_time(bench, lambda heard: bench.goal(bench.away(0.05), visto=heard))
 
 
 def words(bench: ArmBench) -> Steps:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +13,12 @@ from .bench import MOVING, Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
 ANSWER_S = 2.0
 BACK_S = 10.0  # so long it may take to connect again
 NOTHING_S = 0.4  # so long a board that does nothing is watched
+LATE_S = 2.5  # after so long what it told is no news, by far
+NOT_YET_TOLD = 100_000  # so many reports on
+WAITED = (
+    ". That visto names what it told more than 2 s ago: the command waited in a broker, or in a connection "
+    "that was cut. It has to remember which seq it told when; without that, what has waited moves it"
+)
 
 
 def demand(truth: bool, sentence: str) -> None:
@@ -54,7 +61,7 @@ def accepted(bench: Bench[Any], send: Send) -> Steps:
     )
 
 
-def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None) -> Steps:
+def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None, *, why: str = "") -> Steps:
     """Send a command that the board has to refuse with this word, and without moving."""
     before = bench.place
     yield from answer(bench, send, seq)
@@ -62,7 +69,7 @@ def refused(bench: Bench[Any], send: Send, word: str, seq: int | None = None) ->
     said = bench.last
     demand(
         (said.refusal, said.refused) == (word, number),
-        f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}",
+        f"it should refuse {send.payload.decode()} with {word}; it says {_answer(bench)}{why}",
     )
     yield from unmoved(bench, before, send.payload.decode())
 
@@ -97,6 +104,18 @@ def _answer(bench: Bench[Any]) -> str:
     return (
         ", ".join(f"{key} {value}" for key, value in said.items() if value is not None) or "nothing about it"
     )
+
+
+def only_in_time(bench: Bench[Any], command: Callable[[int], Send]) -> Steps:
+    """A command that names a report of long ago, or none, is refused, one that names the last is taken; a
+    stop always is."""
+    heard = bench.last.number
+    demand(heard is not None, "its reports have no seq, so no command can name one")
+    yield Wait(seconds=LATE_S)
+    yield from refused(bench, command(heard), "tarde", why=WAITED)
+    yield from refused(bench, command(bench.last.number + NOT_YET_TOLD), "tarde")
+    yield from accepted(bench, stop(bench, 2, visto=heard))
+    yield from accepted(bench, command(bench.last.number))
 
 
 def refused_as_retained(bench: Bench[Any], message: Send, what: str) -> Steps:
