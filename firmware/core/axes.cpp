@@ -2,12 +2,6 @@
 
 namespace arboleda {
 
-namespace {
-
-uint64_t earlier(uint64_t one, uint64_t other) { return one < other ? one : other; }
-
-}  // namespace
-
 Axes::Axes(const Config& config, Hardware& hardware) : config_(config), hardware_(hardware) { reset(); }
 
 void Axes::reset() {

@@ -4,12 +4,11 @@
 #include <stdint.h>
 
 #include "config.h"
+#include "due.h"
 #include "hardware.h"
 #include "stepper.h"
 
 namespace arboleda {
-
-constexpr uint64_t kNever = UINT64_MAX;
 
 class Axes {
 public:

@@ -4,8 +4,6 @@ namespace arboleda {
 
 namespace {
 
-uint64_t earlier(uint64_t one, uint64_t other) { return one < other ? one : other; }
-
 bool is_stop(const Message& goal) { return goal.channel == Channel::kStop && goal.stop != Stop::kClear; }
 
 }  // namespace
@@ -22,13 +20,13 @@ void Board::boot(uint64_t now_us, uint32_t boot_id, bool homed) {
     homing_.cancel();
     axes_.reset();
     receipts_ = Receipts();
-    freshness_ = Freshness();
+    uplink_.boot();
+    watch_.boot(now_us);
     job_ = Job::kNone;
     boot_id_ = boot_id;
     homed_ = homed;
-    latched_ = faulted_ = beaten_ = false;
-    told_ = lost_steps_ = 0;
-    alive_us_ = now_us;
+    latched_ = faulted_ = false;
+    lost_steps_ = 0;
     announce();
 }
 
@@ -40,7 +38,7 @@ void Board::stand_at(const int32_t* steps) {
 
 void Board::connect(uint64_t now_us, bool up) {
     poll(now_us);
-    connected_ = up;
+    uplink_.connect(up);
     announce();
 }
 
@@ -62,17 +60,16 @@ void Board::poll(uint64_t now_us) {
     if (axes_.moving()) {
         move_on();
     }
-    if (connected_ && rhythm_.over(now_us_)) {
+    if (uplink_.over(now_us_)) {
         tell();
     }
 }
 
 void Board::receive(uint64_t now_us, const Message& message) {
     poll(now_us);
-    if (!message.well_formed) {
-        refuse(Refusal::kFormat, message);
-    } else if (message.retained) {
-        refuse(Refusal::kRetained, message);
+    const Refusal damage = refusal_of_damage(message);
+    if (damage != Refusal::kNone) {
+        refuse(damage, message);
     } else if (message.channel == Channel::kBeat) {
         hear(message);
     } else {
@@ -83,7 +80,7 @@ void Board::receive(uint64_t now_us, const Message& message) {
 uint64_t Board::next_us() const {
     uint64_t next = axes_.next_us(now_us_);
     next = earlier(next, silent_from_us());
-    return connected_ ? earlier(next, rhythm_.due_us()) : next;
+    return earlier(next, uplink_.due_us());
 }
 
 State Board::state() const {
@@ -135,15 +132,12 @@ void Board::check_way() {
     }
 }
 
-// A beat of the newest epoch counts; it keeps alive what was begun under that epoch.
 void Board::hear(const Message& beat) {
     const bool numbered = config_.level == Level::kIds;
-    const MaybeNumber epoch = receipts_.epoch();
     if (numbered && !receipts_.hear(beat.epoch.value)) {
         refuse(Refusal::kFormat, beat);
-    } else if (!numbered || beat.epoch.value == receipts_.least().value) {
-        beaten_ = true;
-        alive_us_ = !epoch.known || epoch.value == beat.epoch.value ? now_us_ : alive_us_;
+    } else {
+        watch_.hear(now_us_, beat.epoch.value, receipts_);
     }
 }
 
@@ -166,7 +160,7 @@ void Board::obey(const Message& goal) {
 }
 
 void Board::accept(const Message& goal) {
-    alive_us_ = now_us_;
+    watch_.obeyed(now_us_);
     receipts_.accept(goal);
     act(goal);
     tell();
@@ -177,7 +171,7 @@ Refusal Board::refusal(const Message& goal) const {
     if (goal.channel == Channel::kStop) {
         return Refusal::kNone;
     }
-    if (is_late(goal)) {
+    if (!uplink_.in_time(now_us_, goal)) {
         return Refusal::kLate;
     }
     if (effector && !goal.on) {
@@ -199,10 +193,6 @@ Refusal Board::refusal(const Message& goal) const {
         return Refusal::kNotHomed;
     }
     return within_limits(goal) ? Refusal::kNone : Refusal::kLimit;
-}
-
-bool Board::is_late(const Message& goal) const {
-    return goal.heard.known && !freshness_.covers(now_us_, goal.heard.value);
 }
 
 bool Board::within_limits(const Message& goal) const {
@@ -297,22 +287,20 @@ void Board::refuse(Refusal refusal, const Message& message) {
 }
 
 void Board::announce() {
-    rhythm_.begin(now_us_);
-    if (connected_) {
+    uplink_.begin(now_us_);
+    if (uplink_.connected()) {
         voice_.present();
     }
     tell();
 }
 
 void Board::tell() {
-    if (connected_) {
-        ++told_;
-        freshness_.tell(now_us_, told_);
-        voice_.tell(telemetry());
+    if (uplink_.connected()) {
+        voice_.tell(telemetry(uplink_.tell(now_us_)));
     }
 }
 
-Telemetry Board::telemetry() {
+Telemetry Board::telemetry(uint32_t number) {
     Telemetry said;
     said.level = config_.level;
     said.state = state();
@@ -320,7 +308,7 @@ Telemetry Board::telemetry() {
     for (uint8_t axis = 0; axis < said.axes; ++axis) {
         said.q_deg[axis] = axes_.degrees(axis);
     }
-    said.number = told_;
+    said.number = number;
     said.receipts = receipts_;
     said.boot_id = boot_id_;
     said.homed = homed_;
@@ -332,8 +320,7 @@ Telemetry Board::telemetry() {
 
 // When the silence gets too long; kNever unless it is watched.
 uint64_t Board::silent_from_us() const {
-    const bool watched = beaten_ && axes_.moving() && job_ != Job::kNone;
-    return watched ? alive_us_ + kSilenceUs : kNever;
+    return axes_.moving() && job_ != Job::kNone ? watch_.silent_from_us() : kNever;
 }
 
 }  // namespace arboleda

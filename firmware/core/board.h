@@ -5,16 +5,14 @@
 
 #include "axes.h"
 #include "config.h"
-#include "freshness.h"
 #include "hardware.h"
 #include "homing.h"
 #include "message.h"
-#include "rhythm.h"
 #include "telemetry.h"
+#include "uplink.h"
+#include "watch.h"
 
 namespace arboleda {
-
-constexpr uint64_t kSilenceUs = 1000000;  // without beat or command while moving: ramp to a stop
 
 // Where a board's words go; called in the thread that calls the board.
 class Voice {
@@ -60,7 +58,6 @@ private:
     void move(const Message& goal);
     void home();
     Refusal refusal(const Message& goal) const;
-    bool is_late(const Message& goal) const;
     bool within_limits(const Message& goal) const;
     void stop(bool latch);
     void finish();
@@ -68,7 +65,7 @@ private:
     void refuse(Refusal refusal, const Message& message);
     void announce();
     void tell();
-    Telemetry telemetry();
+    Telemetry telemetry(uint32_t number);
     uint64_t silent_from_us() const;
 
     const Config& config_;
@@ -76,23 +73,19 @@ private:
     Voice& voice_;
     Axes axes_;
     Homing homing_;
-    Rhythm rhythm_;
+    Uplink uplink_;
+    Watch watch_;  // over its moves: ramp to a stop
     Receipts receipts_;
-    Freshness freshness_;
     Job job_ = Job::kNone;  // what counts as done when the axes come to rest
     MaybeNumber job_seq_;
     MaybeNumber job_epoch_;
     uint64_t now_us_ = 0;
-    uint64_t alive_us_ = 0;
     uint32_t boot_id_ = 0;
-    uint32_t told_ = 0;
     uint32_t refusals_ = 0;
     uint32_t lost_steps_ = 0;
-    bool connected_ = false;
     bool homed_ = false;
     bool latched_ = false;
     bool faulted_ = false;
-    bool beaten_ = false;
 };
 
 }  // namespace arboleda

@@ -4,15 +4,11 @@ namespace arboleda {
 
 namespace {
 
-constexpr uint64_t kNobody = UINT64_MAX;  // nothing is due
-constexpr uint64_t kSilenceUs = 1000000;  // without beat or command while it works: give that up
 constexpr const char* kSilent = "silencio";
 constexpr const char* kAlarm = "alarma";
 constexpr const char* kOverdue = "plazo";         // inputs did not say in time that it is done
 constexpr const char* kSuperseded = "relevado";   // another switch of the same fact came
 constexpr const char* kUnanswered = "sin_dato";  // inputs contradict each other
-
-uint64_t earlier(uint64_t one, uint64_t other) { return one < other ? one : other; }
 
 }  // namespace
 
@@ -20,14 +16,14 @@ DeviceBoard::DeviceBoard(const Device& device, DeviceHardware& hardware, DeviceV
     : device_(device), hardware_(hardware), voice_(voice), sensing_(device, hardware) {}
 
 void DeviceBoard::boot(uint64_t now_us, uint32_t boot_id) {
-    now_us_ = alive_us_ = now_us;
+    now_us_ = now_us;
     boot_id_ = boot_id;
     deeds_count_ = 0;
     receipts_ = OrderReceipts();
-    freshness_ = Freshness();
-    latched_ = alarmed_ = beaten_ = news_ = false;
+    uplink_.boot();
+    watch_.boot(now_us);
+    latched_ = alarmed_ = news_ = false;
     was_sane_ = true;
-    told_ = 0;
     for (uint8_t at = 0; at < device_.outputs.count; ++at) {
         set_output(at, device_.outputs[at].safe_on);
     }
@@ -45,7 +41,7 @@ void DeviceBoard::boot(uint64_t now_us, uint32_t boot_id) {
 
 void DeviceBoard::connect(uint64_t now_us, bool up) {
     poll(now_us);
-    connected_ = up;
+    uplink_.connect(up);
     announce();
 }
 
@@ -70,17 +66,16 @@ void DeviceBoard::poll(uint64_t now_us) {
     } else if (news_ && now_us_ - told_us_ >= kLeastGapUs) {
         tell();
     }
-    if (connected_ && rhythm_.over(now_us_)) {
+    if (uplink_.over(now_us_)) {
         tell();
     }
 }
 
 void DeviceBoard::receive(uint64_t now_us, const Message& message) {
     poll(now_us);
-    if (!message.well_formed) {
-        refuse(Refusal::kFormat, message);
-    } else if (message.retained) {
-        refuse(Refusal::kRetained, message);
+    const Refusal damage = refusal_of_damage(message);
+    if (damage != Refusal::kNone) {
+        refuse(damage, message);
     } else if (message.channel == Channel::kBeat) {
         hear(message);
     } else {
@@ -90,12 +85,9 @@ void DeviceBoard::receive(uint64_t now_us, const Message& message) {
 
 void DeviceBoard::receive(uint64_t now_us, const Order& order) {
     poll(now_us);
-    if (!order.head.well_formed) {
-        refuse(Refusal::kFormat, order.head);
-        return;
-    }
-    if (order.head.retained) {
-        refuse(Refusal::kRetained, order.head);
+    const Refusal damage = refusal_of_damage(order.head);
+    if (damage != Refusal::kNone) {
+        refuse(damage, order.head);
         return;
     }
     if (!take_numbers(order.head)) {
@@ -106,7 +98,7 @@ void DeviceBoard::receive(uint64_t now_us, const Order& order) {
         refuse(word, order.head);
         return;
     }
-    alive_us_ = now_us_;
+    watch_.obeyed(now_us_);
     receipts_.accept(order.head);
     begin(order);
     tell();
@@ -120,11 +112,8 @@ uint64_t DeviceBoard::next_us() const {
     for (uint8_t at = 0; at < device_.servos.count; ++at) {
         next = earlier(next, servos_[at].next_us());
     }
-    if (!connected_) {
-        return next;
-    }
-    next = news_ ? earlier(next, told_us_ + kLeastGapUs) : next;
-    return earlier(next, rhythm_.due_us());
+    next = news_ && uplink_.connected() ? earlier(next, told_us_ + kLeastGapUs) : next;
+    return earlier(next, uplink_.due_us());
 }
 
 State DeviceBoard::state() const {
@@ -275,14 +264,11 @@ void DeviceBoard::answer(const Deed& deed) {
     }
 }
 
-// A beat of the newest epoch counts; it keeps alive what was begun under that epoch.
 void DeviceBoard::hear(const Message& beat) {
-    const MaybeNumber epoch = receipts_.numbers().epoch();
     if (!receipts_.hear(beat.epoch.value)) {
         refuse(Refusal::kFormat, beat);
-    } else if (beat.epoch.value == receipts_.numbers().least().value) {
-        beaten_ = true;
-        alive_us_ = !epoch.known || epoch.value == beat.epoch.value ? now_us_ : alive_us_;
+    } else {
+        watch_.hear(now_us_, beat.epoch.value, receipts_.numbers());
     }
 }
 
@@ -293,7 +279,7 @@ void DeviceBoard::obey_stop(const Message& message) {
     if (!take_numbers(message)) {
         return;
     }
-    alive_us_ = now_us_;
+    watch_.obeyed(now_us_);
     receipts_.accept(message);
     latched_ = latched_ && message.stop != Stop::kClear;
     tell();
@@ -314,8 +300,7 @@ bool DeviceBoard::take_numbers(const Message& head) {
 }
 
 Refusal DeviceBoard::objection(const Order& order) const {
-    const MaybeNumber heard = order.head.heard;
-    if (heard.known && !freshness_.covers(now_us_, heard.value)) {
+    if (!uplink_.in_time(now_us_, order.head)) {
         return Refusal::kLate;
     }
     if (!order.known) {
@@ -370,7 +355,7 @@ void DeviceBoard::begin(const Order& order) {
     supersede(order);
     const VerbSpec& spec = verb(order);
     const uint64_t least_us = spec.least_us > 0 ? spec.least_us : 1;
-    const uint64_t most_us = is_measured(spec) ? now_us_ + spec.most_us : kNobody;
+    const uint64_t most_us = is_measured(spec) ? now_us_ + spec.most_us : kNever;
     deeds_[deeds_count_++] = {order, now_us_ + least_us, most_us};
     drive(spec.start, order.values);
     hardware_.begun(order);
@@ -463,10 +448,9 @@ uint64_t DeviceBoard::due_us(const Deed& deed) const {
     return deed.least_us > now_us_ ? deed.least_us : earlier(deed.most_us, sensing_.next_us());
 }
 
-// When the silence gets too long; kNobody unless it is watched.
+// When the silence gets too long; kNever unless it is watched.
 uint64_t DeviceBoard::silent_from_us() const {
-    const bool watched = beaten_ && working() && !finishes();
-    return watched ? alive_us_ + kSilenceUs : kNobody;
+    return working() && !finishes() ? watch_.silent_from_us() : kNever;
 }
 
 void DeviceBoard::refuse(Refusal refusal, const Message& head) {
@@ -476,24 +460,22 @@ void DeviceBoard::refuse(Refusal refusal, const Message& head) {
 }
 
 void DeviceBoard::announce() {
-    rhythm_.begin(now_us_);
-    if (connected_) {
+    uplink_.begin(now_us_);
+    if (uplink_.connected()) {
         voice_.present();
     }
     tell();
 }
 
 void DeviceBoard::tell() {
-    if (!connected_) {
+    if (!uplink_.connected()) {
         return;
     }
-    ++told_;
-    freshness_.tell(now_us_, told_);
     told_us_ = now_us_;
     news_ = false;
     DeviceTelemetry said;
     said.state = state();
-    said.number = told_;
+    said.number = uplink_.tell(now_us_);
     said.receipts = receipts_;
     said.boot_id = boot_id_;
     for (uint8_t at = 0; at < device_.facts.count; ++at) {

@@ -6,11 +6,11 @@
 #include "device.h"
 #include "device_hardware.h"
 #include "device_telemetry.h"
-#include "freshness.h"
 #include "order.h"
-#include "rhythm.h"
 #include "sensing.h"
 #include "servo.h"
+#include "uplink.h"
+#include "watch.h"
 
 namespace arboleda {
 
@@ -95,23 +95,19 @@ private:
     DeviceVoice& voice_;
     Sensing sensing_;
     Servo servos_[kMostServos];
-    Rhythm rhythm_;
+    Uplink uplink_;
+    Watch watch_;  // over its work: give that up
     OrderReceipts receipts_;
-    Freshness freshness_;
     Deed deeds_[kMostDeeds];  // in the order in which they began
     uint8_t deeds_count_ = 0;
     double facts_[kMostFacts] = {};
     uint64_t now_us_ = 0;
-    uint64_t alive_us_ = 0;
     uint64_t told_us_ = 0;
     uint32_t boot_id_ = 0;
-    uint32_t told_ = 0;
     uint32_t refusals_ = 0;
-    bool connected_ = false;
     bool latched_ = false;
     bool alarmed_ = false;
     bool was_sane_ = true;
-    bool beaten_ = false;
     bool news_ = false;  // an input has changed a fact, which was not told yet
 };
 

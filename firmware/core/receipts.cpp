@@ -18,6 +18,13 @@ bool same(MaybeNumber one, MaybeNumber other) {
 
 const char* refusal_word(Refusal refusal) { return kWords[static_cast<uint8_t>(refusal)]; }
 
+Refusal refusal_of_damage(const Message& message) {
+    if (!message.well_formed) {
+        return Refusal::kFormat;
+    }
+    return message.retained ? Refusal::kRetained : Refusal::kNone;
+}
+
 // The numbers stay until a command comes: a plant that has just begun reads in them what became of the last.
 bool Receipts::hear(uint32_t epoch) {
     if (least_.known && epoch <= least_.value) {

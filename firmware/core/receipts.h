@@ -12,6 +12,9 @@ enum class Refusal : uint8_t {
 // The word of a refusal on the wire, `viejo`, ...; not for kNone.
 const char* refusal_word(Refusal refusal);
 
+// Of what is refused whole, whatever it says; kNone where it is looked at further.
+Refusal refusal_of_damage(const Message& message);
+
 // All numbers count only for `epoch`.
 class Receipts {
 public:

@@ -5,6 +5,7 @@
 
 #include "device.h"
 #include "device_hardware.h"
+#include "due.h"
 
 namespace arboleda {
 
@@ -17,7 +18,7 @@ public:
 
     void begin(uint64_t now_us);  // take everything as it is
     bool poll(uint64_t now_us);   // false: it was not time to look
-    uint64_t next_us() const { return looks() ? sampled_us_ + kSampleUs : UINT64_MAX; }
+    uint64_t next_us() const { return looks() ? sampled_us_ + kSampleUs : kNever; }
 
     bool on(uint8_t input) const { return inputs_[input].on; }
     double value(uint8_t analog) const;  // rounded to its step

@@ -5,6 +5,7 @@
 
 #include "device.h"
 #include "device_hardware.h"
+#include "due.h"
 
 namespace arboleda {
 
@@ -19,7 +20,7 @@ public:
     void poll(uint64_t now_us, uint8_t index, const ServoWiring& wiring, DeviceHardware& hardware);
 
     bool moving() const { return moving_; }
-    uint64_t next_us() const { return changed_ ? 0 : moving_ ? frame_us_ + kServoFrameUs : UINT64_MAX; }
+    uint64_t next_us() const { return changed_ ? 0 : moving_ ? frame_us_ + kServoFrameUs : kNever; }
     double degrees() const { return at_deg_; }
 
 private:
