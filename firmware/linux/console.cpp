@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "program.h"
+
 namespace arboleda {
 
 namespace {
@@ -21,7 +23,6 @@ constexpr char kHelp[] =
     "quit             end\n";
 
 constexpr uint64_t kUsPerMs = 1000;
-constexpr uint64_t kUsPerS = 1000000;
 constexpr int kLongest = 3600000;
 
 void say_state(const Board& board, World* world) {

@@ -1,9 +1,6 @@
 // The firmware's board as a program: the core, an arm that is not there, a real broker.
-#include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -13,23 +10,12 @@
 #include "console.h"
 #include "link.h"
 #include "options.h"
+#include "program.h"
 #include "world.h"
 
 namespace {
 
 using namespace arboleda;
-
-constexpr uint64_t kUsPerS = 1000000;
-
-volatile sig_atomic_t ended = 0;
-
-void end(int) { ended = 1; }
-
-uint64_t now_us() {
-    timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return static_cast<uint64_t>(now.tv_sec) * kUsPerS + static_cast<uint64_t>(now.tv_nsec) / 1000;
-}
 
 Config configured(const Options& options) {
     Config config = scara_config();
@@ -51,7 +37,6 @@ private:
     void catch_up(uint64_t until_us);
     void wait();
     void hear();
-    void read_console();
     void grant(const Wish& wish);
     uint32_t next_boot_id() { return boot_id(boots_++, static_cast<uint32_t>(rand())); }
 
@@ -62,10 +47,8 @@ private:
     Board board_;
     uint32_t boots_ = static_cast<uint32_t>(time(nullptr));
     uint64_t muted_until_us_ = 0;
-    bool console_ = true;
+    Lines lines_;
     bool over_ = false;
-    char line_[128] = "";
-    size_t typed_ = 0;
 };
 
 Program::Program(const Options& options)
@@ -95,7 +78,7 @@ int Program::run() {
     if (!link_.start()) {
         return 1;
     }
-    while (ended == 0 && !over_) {
+    while (!ended() && !over_) {
         catch_up(now_us());
         wait();
         catch_up(now_us());
@@ -116,15 +99,15 @@ void Program::catch_up(uint64_t until_us) {
     }
 }
 
+// What a motor does between two reports shows nowhere: steps are caught up with every millisecond.
 void Program::wait() {
-    const uint64_t now = now_us();
-    const uint64_t next = board_.next_us();
-    // what a motor does between two reports shows nowhere: steps are caught up with every millisecond
-    const uint64_t rest_us = next == kNever ? kUsPerS : next > now ? next - now : 0;
-    pollfd waited[] = {{link_.wake_fd(), POLLIN, 0}, {console_ ? STDIN_FILENO : -1, POLLIN, 0}};
-    poll(waited, 2, static_cast<int>((rest_us + 999) / 1000));
-    if (waited[1].revents != 0) {
-        read_console();
+    const char* line = lines_.wait(link_.wake_fd(), board_.next_us());
+    over_ = over_ || (lines_.over() && options_.until_eof);
+    if (line != nullptr) {
+        const uint64_t now = now_us();
+        catch_up(now);
+        grant(obey(line, now, &board_, &world_));
+        fflush(stdout);
     }
 }
 
@@ -139,26 +122,6 @@ void Program::hear() {
             board_.connect(now, heard.what == Heard::What::kUp);
         }
     }
-}
-
-void Program::read_console() {
-    char c = '\0';
-    if (read(STDIN_FILENO, &c, 1) <= 0) {
-        console_ = false;
-        over_ = options_.until_eof;
-        return;
-    }
-    if (c != '\n') {
-        typed_ += typed_ + 1 < sizeof line_ ? 1 : 0;
-        line_[typed_ - 1] = c;
-        return;
-    }
-    line_[typed_] = '\0';
-    typed_ = 0;
-    const uint64_t now = now_us();
-    catch_up(now);
-    grant(obey(line_, now, &board_, &world_));
-    fflush(stdout);
 }
 
 void Program::grant(const Wish& wish) {
@@ -190,9 +153,7 @@ int main(int count, char** words) {
     if (!read_options(count, words, &options, &status)) {
         return status;
     }
-    srand(static_cast<unsigned>(now_us()) ^ static_cast<unsigned>(getpid()));
-    signal(SIGINT, end);
-    signal(SIGTERM, end);
+    begin_program();
     Program program(options);
     return program.run();
 }

@@ -1,7 +1,5 @@
 // The board of a declared device as a program: the core, a device that is not there, a real broker.
 #include <getopt.h>
-#include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,13 +8,13 @@
 
 #include "../../core/keepsakes.h"
 #include "../link.h"
+#include "../program.h"
 #include "world.h"
 
 namespace {
 
 using namespace arboleda;
 
-constexpr uint64_t kUsPerS = 1000000;
 constexpr int kBadInput = 2;
 
 constexpr char kHelp[] =
@@ -37,16 +35,6 @@ constexpr char kFaults[] =
     "stall MS           its loop hangs so long\n"
     "state              what it drives\n"
     "quit               end\n";
-
-volatile sig_atomic_t ended = 0;
-
-void end(int) { ended = 1; }
-
-uint64_t now_us() {
-    timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return static_cast<uint64_t>(now.tv_sec) * kUsPerS + static_cast<uint64_t>(now.tv_nsec) / 1000;
-}
 
 bool is(const char* word, const char* known) { return strcmp(word, known) == 0; }
 
@@ -78,7 +66,6 @@ private:
     void catch_up(uint64_t until_us);
     void wait();
     void hear();
-    void read_console();
     void obey(const char* line);
     bool put(const char* word, const char* name, int value);
     void say_state() const;
@@ -93,17 +80,15 @@ private:
     DeviceBoard board_{kDevice, world_, *this};
     uint32_t boots_ = static_cast<uint32_t>(time(nullptr));
     uint64_t muted_until_us_ = 0;
-    bool console_ = true;
+    Lines lines_;
     bool over_ = false;
-    char line_[128] = "";
-    size_t typed_ = 0;
 };
 
 int Program::run() {
     if (!link_.start()) {
         return 1;
     }
-    while (ended == 0 && !over_) {
+    while (!ended() && !over_) {
         wait();
         catch_up(now_us());
         hear();
@@ -122,13 +107,12 @@ void Program::catch_up(uint64_t until_us) {
 }
 
 void Program::wait() {
-    const uint64_t now = now_us();
-    const uint64_t next = next_us();
-    const uint64_t rest_us = next > now + kUsPerS ? kUsPerS : next > now ? next - now : 0;
-    pollfd waited[] = {{link_.wake_fd(), POLLIN, 0}, {console_ ? STDIN_FILENO : -1, POLLIN, 0}};
-    poll(waited, 2, static_cast<int>((rest_us + 999) / 1000));
-    if (waited[1].revents != 0) {
-        read_console();
+    const char* line = lines_.wait(link_.wake_fd(), next_us());
+    over_ = over_ || (lines_.over() && options_.until_eof);
+    if (line != nullptr) {
+        catch_up(now_us());
+        obey(line);
+        fflush(stdout);
     }
 }
 
@@ -145,25 +129,6 @@ void Program::hear() {
             board_.receive(now, heard.message.message);
         }
     }
-}
-
-void Program::read_console() {
-    char c = '\0';
-    if (read(STDIN_FILENO, &c, 1) <= 0) {
-        console_ = false;
-        over_ = options_.until_eof;
-        return;
-    }
-    if (c != '\n') {
-        typed_ += typed_ + 1 < sizeof line_ ? 1 : 0;
-        line_[typed_ - 1] = c;
-        return;
-    }
-    line_[typed_] = '\0';
-    typed_ = 0;
-    catch_up(now_us());
-    obey(line_);
-    fflush(stdout);
 }
 
 // `input NAME 0|1`, `counts NAME N`; false where there is no such input.
@@ -263,9 +228,7 @@ int main(int count, char** words) {
     if (!read_device_options(count, words, &options, &status)) {
         return status;
     }
-    srand(static_cast<unsigned>(now_us()) ^ static_cast<unsigned>(getpid()));
-    signal(SIGINT, end);
-    signal(SIGTERM, end);
+    begin_program();
     Program program(options);
     return program.run();
 }
