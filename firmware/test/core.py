@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 BUILD = Path(__file__).parents[1] / "build"
 CAPACITY = 1 << 22
@@ -37,12 +38,15 @@ class Decoded(ctypes.Structure):
     )
 
 
+def load(name: str) -> ctypes.CDLL:
+    """One of the libraries that `make firmware-test` builds."""
+    return ctypes.CDLL(str(BUILD / name))
+
+
 @cache
 def library() -> ctypes.CDLL:
-    """The library that `make firmware-test` builds."""
-    loaded = ctypes.CDLL(str(BUILD / "libscripted.so"))
-    loaded.arboleda_run.restype = ctypes.c_size_t
-    loaded.arboleda_run.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_size_t)
+    """That of a SCARA's board."""
+    loaded = load("libscripted.so")
     loaded.arboleda_angle.restype = ctypes.c_size_t
     loaded.arboleda_angle.argtypes = (ctypes.c_double, ctypes.c_char_p, ctypes.c_size_t)
     text = (ctypes.c_char_p, ctypes.c_size_t)
@@ -61,7 +65,14 @@ def _buffer() -> ctypes.Array[ctypes.c_char]:
 
 def run(lines: list[str]) -> list[str]:
     """What the core's board said under a script, a line each."""
-    size = library().arboleda_run("\n".join(lines).encode(), _buffer(), CAPACITY)
+    return run_in(library().arboleda_run, lines)
+
+
+def run_in(runner: Any, lines: list[str]) -> list[str]:
+    """The same with a board of another library."""
+    runner.restype = ctypes.c_size_t
+    runner.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_size_t)
+    size = runner("\n".join(lines).encode(), _buffer(), CAPACITY)
     assert size < CAPACITY, "the board says more than this test has room for"
     return _buffer()[:size].decode().splitlines()
 

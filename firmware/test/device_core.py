@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from functools import cache
 
-from .core import BUILD, CAPACITY
+from .core import load, run_in
 
 
 class DecodedOrder(ctypes.Structure):
@@ -27,25 +27,19 @@ class DecodedOrder(ctypes.Structure):
 
 @cache
 def library() -> ctypes.CDLL:
-    """The library that `make firmware-test` builds."""
-    loaded = ctypes.CDLL(str(BUILD / "libscripted_device.so"))
-    loaded.arboleda_device_run.restype = ctypes.c_size_t
-    loaded.arboleda_device_run.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_size_t)
-    text = (ctypes.c_char_p, ctypes.c_size_t)
-    loaded.arboleda_decode_order.argtypes = (*text, ctypes.POINTER(DecodedOrder))
+    """That of a valve's board."""
+    loaded = load("libscripted_device.so")
+    loaded.arboleda_decode_order.argtypes = (
+        ctypes.c_char_p,
+        ctypes.c_size_t,
+        ctypes.POINTER(DecodedOrder),
+    )
     return loaded
-
-
-@cache
-def _buffer() -> ctypes.Array[ctypes.c_char]:
-    return ctypes.create_string_buffer(CAPACITY)
 
 
 def run(lines: list[str]) -> list[str]:
     """What the core's board said under a script, a line each."""
-    size = library().arboleda_device_run("\n".join(lines).encode(), _buffer(), CAPACITY)
-    assert size < CAPACITY, "the board says more than this test has room for"
-    return _buffer()[:size].decode().splitlines()
+    return run_in(library().arboleda_device_run, lines)
 
 
 def decode(raw: bytes) -> DecodedOrder:

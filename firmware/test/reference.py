@@ -1,4 +1,4 @@
-"""The virtual board of the plant under a script: what the core has to say, word for word and when."""
+"""The virtual board of a SCARA under a script, and what may happen to the arm that it moves."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from arboleda.model.plant_model import Evidence
 from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.testing import shipped
-from arboleda.wire.topics import Channel, topic
-from arboleda.wire.transport import Delivery
 
+from .author import FIRST_BOOT
 from .scripts import CHANNELS, PLACES, Setting
+from .virtual import Virtual
 
 
-class Reference:
+class Reference(Virtual):
     """One virtual SCARA, told the lines of a script."""
 
     def __init__(self, setting: Setting, now_us: int) -> None:
@@ -24,60 +24,15 @@ class Reference:
         self.body = ArmBody(
             self.arm, start=self._si(setting.start), pickups=[self._si(place) for place in PLACES]
         )
-        self.board = Board(self.arm, self.body, boot_id=100, now_us=now_us)
-        self.now_us = now_us
-        self.said: list[str] = []
-
-    def run(self, lines: list[str]) -> list[str]:
-        """What the board said, a line each: time, kind, payload."""
-        for line in lines:
-            at_us, _, event = line.partition(" ")
-            if at_us.isdigit():
-                self._until(int(at_us))
-                self._event(*event.split())
-                self._until(int(at_us))
-        return self.said
+        board = Board(self.arm, self.body, boot_id=FIRST_BOOT, now_us=now_us)
+        super().__init__(self.arm, board, now_us, CHANNELS)
 
     def _si(self, steps: tuple[int, ...]) -> tuple[float, ...]:
         return tuple(count * joint.step for count, joint in zip(steps, self.arm.joints, strict=True))
 
-    def _until(self, until_us: int) -> None:
-        while (due_us := self.board.next_deadline_us) is not None and due_us <= until_us:
-            self._advance(max(due_us, self.now_us))
-        self._advance(until_us)
-
-    def _advance(self, now_us: int) -> None:
-        self.now_us = now_us
-        self.board.advance(now_us)
-        self._collect()
-
-    def _collect(self) -> None:
-        for sent in self.board.take():
-            kind = "P" if sent.retain else "S"
-            self.said.append(f"{self.now_us} {kind} {sent.payload.decode()}")
-
-    def _event(self, what: str, *words: str) -> None:
-        getattr(self, f"_{what}")(*words)
-        self._collect()
-
-    def _message(self, channel: str, retained: str, raw: str = "") -> None:
-        where = topic(self.arm.mqtt, Channel(CHANNELS[int(channel)]))
-        payload = bytes.fromhex(raw)
-        delivery = Delivery(at=0.0, topic=where, payload=payload, retain=retained == "1")
-        self.board.receive(self.now_us, delivery)
-
-    def _connect(self, up: str) -> None:
-        self.board.connect(self.now_us, up == "1")
-
-    def _reboot(self, boot_id: str, homed: str) -> None:
+    def _reboot(self, boot_id: str, homed: str = "1") -> None:
         self.board._assume_homed = homed == "1"
-        self.board.reboot(self.now_us, int(boot_id))
-
-    def _fail(self) -> None:
-        self.board.fail(self.now_us)
-
-    def _repair(self) -> None:
-        self.board.repair(self.now_us)
+        super()._reboot(boot_id)
 
     def _slip(self, joint: str, steps: str) -> None:
         self.body.lose_steps(int(joint), int(steps))

@@ -6,6 +6,7 @@
 #include "../core/scara.h"
 #include "../core/writer.h"
 #include "../linux/world.h"
+#include "script.h"
 
 namespace {
 
@@ -13,10 +14,10 @@ using namespace arboleda;
 
 class Script final : public Voice {
 public:
-    Script(char* out, size_t capacity) : out_(out), capacity_(capacity) { config_.stall_us = 0; }
+    Script(char* out, size_t capacity) : transcript_(out, capacity) { config_.stall_us = 0; }
 
     void line(const char* text);
-    size_t size() const { return size_; }
+    size_t size() const { return transcript_.size(); }
 
     void present() override { say("P", "1"); }
     void tell(const Telemetry& said) override;
@@ -27,38 +28,19 @@ private:
     void message(const char* rest);
     void reboot(const char* rest);
     void probe();
-    void run_until(uint64_t until_us);
-    void say(const char* kind, const char* payload);
+    void say(const char* kind, const char* payload) { transcript_.say(now_us_, kind, payload); }
 
-    char* out_;
-    size_t capacity_;
-    size_t size_ = 0;
+    Transcript transcript_;
     uint64_t now_us_ = 0;
     Config config_ = scara_config();
     World world_{config_};
     Board board_{config_, world_, *this};
 };
 
-void Script::say(const char* kind, const char* payload) {
-    const int wrote = snprintf(out_ + size_, capacity_ - size_, "%llu %s %s\n",
-                               static_cast<unsigned long long>(now_us_), kind, payload);
-    size_ += static_cast<size_t>(wrote);
-    size_ = size_ < capacity_ ? size_ : capacity_;
-}
-
 void Script::tell(const Telemetry& said) {
     char payload[kMessageBytes + 1];
     payload[encode(said, payload, kMessageBytes)] = '\0';
     say("S", payload);
-}
-
-void Script::run_until(uint64_t until_us) {
-    while (board_.next_us() <= until_us) {
-        now_us_ = board_.next_us() > now_us_ ? board_.next_us() : now_us_;
-        board_.poll(now_us_);
-    }
-    now_us_ = until_us;
-    board_.poll(now_us_);
 }
 
 // `config LEVEL RETARGET_US HOME_BY`, `boot TIME ID`, then `at Q1 Q2 Q3` and `place Q1 Q2 Q3` in steps.
@@ -90,9 +72,9 @@ void Script::line(const char* text) {
         set_up(text);
         return;
     }
-    run_until(at_us);
+    run_until(board_, at_us, &now_us_);
     event(what, text + rest);
-    run_until(at_us);
+    run_until(board_, at_us, &now_us_);
 }
 
 void Script::event(const char* what, const char* rest) {
@@ -124,20 +106,10 @@ void Script::event(const char* what, const char* rest) {
     }
 }
 
-// `CHANNEL RETAINED HEX`, the channel as its number.
 void Script::message(const char* rest) {
-    unsigned channel = 0;
-    unsigned retained = 0;
-    int hex = 0;
-    sscanf(rest, "%u %u %n", &channel, &retained, &hex);
-    uint8_t bytes[2 * kMessageBytes];
-    size_t size = 0;
-    unsigned byte = 0;
-    for (const char* at = rest + hex; size < sizeof bytes && sscanf(at, "%2x", &byte) == 1; at += 2) {
-        bytes[size++] = static_cast<uint8_t>(byte);
-    }
-    const auto topic = static_cast<Channel>(channel);
-    board_.receive(now_us_, decode(topic, bytes, size, retained != 0, kScara.axes));
+    const Delivered sent(rest);
+    const auto topic = static_cast<Channel>(sent.channel);
+    board_.receive(now_us_, decode(topic, sent.bytes, sent.size, sent.retained != 0, kScara.axes));
 }
 
 void Script::reboot(const char* rest) {
@@ -163,17 +135,7 @@ extern "C" {
 
 // Runs the lines of a zero-terminated script; the length of what was said.
 size_t arboleda_run(const char* script, char* out, size_t capacity) {
-    Script run(out, capacity);
-    char line[2 * 2 * kMessageBytes + 64];
-    while (*script != '\0') {
-        const size_t length = strcspn(script, "\n");
-        const size_t kept = length < sizeof line ? length : sizeof line - 1;
-        memcpy(line, script, kept);
-        line[kept] = '\0';
-        run.line(line);
-        script += length + (script[length] == '\n' ? 1 : 0);
-    }
-    return run.size();
+    return run_script<Script>(script, out, capacity);
 }
 
 // What `decode` makes of these bytes; one struct of C for ctypes.

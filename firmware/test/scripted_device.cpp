@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../core/device_board.h"
+#include "script.h"
 #include "valve_config.h"
 
 namespace {
@@ -22,10 +23,10 @@ public:
 
 class Script final : public DeviceVoice {
 public:
-    Script(char* out, size_t capacity) : out_(out), capacity_(capacity) {}
+    Script(char* out, size_t capacity) : transcript_(out, capacity) {}
 
     void line(const char* text);
-    size_t size() const { return size_; }
+    size_t size() const { return transcript_.size(); }
 
     void present() override { say("P", "1"); }
     void tell(const DeviceTelemetry& said) override;
@@ -33,23 +34,13 @@ public:
 private:
     void event(const char* what, const char* rest);
     void message(const char* rest);
-    void run_until(uint64_t until_us);
-    void say(const char* kind, const char* payload);
+    void say(const char* kind, const char* payload) { transcript_.say(now_us_, kind, payload); }
 
-    char* out_;
-    size_t capacity_;
-    size_t size_ = 0;
+    Transcript transcript_;
     uint64_t now_us_ = 0;
     NoHardware hardware_;
     DeviceBoard board_{kDevice, hardware_, *this};
 };
-
-void Script::say(const char* kind, const char* payload) {
-    const int wrote = snprintf(out_ + size_, capacity_ - size_, "%llu %s %s\n",
-                               static_cast<unsigned long long>(now_us_), kind, payload);
-    size_ += static_cast<size_t>(wrote);
-    size_ = size_ < capacity_ ? size_ : capacity_;
-}
 
 void Script::tell(const DeviceTelemetry& said) {
     char payload[kMessageBytes + 1];
@@ -57,30 +48,22 @@ void Script::tell(const DeviceTelemetry& said) {
     say("S", payload);
 }
 
-void Script::run_until(uint64_t until_us) {
-    while (board_.next_us() <= until_us) {
-        now_us_ = board_.next_us() > now_us_ ? board_.next_us() : now_us_;
-        board_.poll(now_us_);
-    }
-    now_us_ = until_us;
-    board_.poll(now_us_);
-}
-
 void Script::line(const char* text) {
     unsigned long long at_us = 0;
     char what[16] = "";
     int rest = 0;
+    unsigned boot_id = 0;
+    if (sscanf(text, "boot %llu %u", &at_us, &boot_id) == 2) {
+        now_us_ = at_us;
+        board_.boot(now_us_, boot_id);
+        return;
+    }
     if (sscanf(text, "%llu %15s %n", &at_us, what, &rest) < 2) {
         return;
     }
-    if (strcmp(what, "boot") == 0) {
-        now_us_ = at_us;
-        board_.boot(now_us_, static_cast<uint32_t>(strtoul(text + rest, nullptr, 10)));
-        return;
-    }
-    run_until(at_us);
+    run_until(board_, at_us, &now_us_);
     event(what, text + rest);
-    run_until(at_us);
+    run_until(board_, at_us, &now_us_);
 }
 
 void Script::event(const char* what, const char* rest) {
@@ -97,23 +80,15 @@ void Script::event(const char* what, const char* rest) {
     }
 }
 
-// `CHANNEL RETAINED HEX`: 0 orden, 1 paro, 2 latido.
+// 0 orden, 1 paro, 2 latido.
 void Script::message(const char* rest) {
-    unsigned channel = 0;
-    unsigned retained = 0;
-    int hex = 0;
-    sscanf(rest, "%u %u %n", &channel, &retained, &hex);
-    uint8_t bytes[2 * kMessageBytes];
-    size_t size = 0;
-    unsigned byte = 0;
-    for (const char* at = rest + hex; size < sizeof bytes && sscanf(at, "%2x", &byte) == 1; at += 2) {
-        bytes[size++] = static_cast<uint8_t>(byte);
-    }
-    if (channel == 0) {
-        board_.receive(now_us_, decode_order(kDevice, bytes, size, retained != 0));
+    const Delivered sent(rest);
+    const bool retained = sent.retained != 0;
+    if (sent.channel == 0) {
+        board_.receive(now_us_, decode_order(kDevice, sent.bytes, sent.size, retained));
     } else {
-        const Channel topic = channel == 1 ? Channel::kStop : Channel::kBeat;
-        board_.receive(now_us_, decode(topic, bytes, size, retained != 0, 0));
+        const Channel topic = sent.channel == 1 ? Channel::kStop : Channel::kBeat;
+        board_.receive(now_us_, decode(topic, sent.bytes, sent.size, retained, 0));
     }
 }
 
@@ -123,17 +98,7 @@ extern "C" {
 
 // Runs the lines of a zero-terminated script; the length of what was said.
 size_t arboleda_device_run(const char* script, char* out, size_t capacity) {
-    Script run(out, capacity);
-    char line[2 * 2 * kMessageBytes + 64];
-    while (*script != '\0') {
-        const size_t length = strcspn(script, "\n");
-        const size_t kept = length < sizeof line ? length : sizeof line - 1;
-        memcpy(line, script, kept);
-        line[kept] = '\0';
-        run.line(line);
-        script += length + (script[length] == '\n' ? 1 : 0);
-    }
-    return run.size();
+    return run_script<Script>(script, out, capacity);
 }
 
 // What `decode_order` makes of these bytes; one struct of C for ctypes.

@@ -58,8 +58,10 @@ PIECES = (
 def test_boards_of_a_device_say_the_same_under_random_scripts(group: int) -> None:
     late = 0
     for seed in range(group, SCRIPTS, GROUPS):
-        script = Author(seed).script()
-        wanted = Reference().run(script)
+        author = Author(seed)
+        now_us = author.now_us
+        script = author.script()
+        wanted = Reference(now_us).run(script)
         assert device_core.run(script) == wanted, f"script {seed}"
         assert len(wanted) > 2
         late += any('"rechazo":"tarde"' in line for line in wanted)
