@@ -158,8 +158,6 @@ class Board:
         return next(fresh, UINT32) <= heard <= self._number
 
     def _objection(self, order: dict[str, Any]) -> str | None:
-        if "visto" in order and not self._in_time(order["visto"]):
-            return "tarde"
         verb = VERBS.get(order["verbo"])
         if verb is None or not fits(verb.get("with", {}), order["valores"]):
             return "formato"
@@ -167,8 +165,9 @@ class Board:
             return "paro"
         if verb["work"] and self._work is not None:
             return "ocupado"
-        needs = verb.get("needs", {})
-        return None if all(self._facts[name] == value for name, value in needs.items()) else "condicion"
+        if any(self._facts[name] != value for name, value in verb.get("needs", {}).items()):
+            return "condicion"
+        return "tarde" if "visto" in order and not self._in_time(order["visto"]) else None
 
     def _begin(self, order: dict[str, Any]) -> None:
         """On a real board outputs are set here."""

@@ -167,13 +167,16 @@ void Board::accept(const Message& goal) {
 }
 
 Refusal Board::refusal(const Message& goal) const {
-    const bool effector = goal.channel == Channel::kEffector;
     if (goal.channel == Channel::kStop) {
         return Refusal::kNone;
     }
-    if (!uplink_.in_time(now_us_, goal)) {
-        return Refusal::kLate;
-    }
+    const Refusal word = objection(goal);
+    return word == Refusal::kNone && !uplink_.in_time(now_us_, goal) ? Refusal::kLate : word;
+}
+
+// What the board's own state has against a command.
+Refusal Board::objection(const Message& goal) const {
+    const bool effector = goal.channel == Channel::kEffector;
     if (effector && !goal.on) {
         return Refusal::kNone;
     }

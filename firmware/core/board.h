@@ -58,6 +58,7 @@ private:
     void move(const Message& goal);
     void home();
     Refusal refusal(const Message& goal) const;
+    Refusal objection(const Message& goal) const;
     bool within_limits(const Message& goal) const;
     void stop(bool latch);
     void finish();

@@ -300,9 +300,6 @@ bool DeviceBoard::take_numbers(const Message& head) {
 }
 
 Refusal DeviceBoard::objection(const Order& order) const {
-    if (!uplink_.in_time(now_us_, order.head)) {
-        return Refusal::kLate;
-    }
     if (!order.known) {
         return Refusal::kFormat;
     }
@@ -313,7 +310,10 @@ Refusal DeviceBoard::objection(const Order& order) const {
     if (is_work(spec) && (working() || faulted())) {
         return Refusal::kBusy;
     }
-    return needs_are_met(spec) && !breaks_work(order) ? Refusal::kNone : Refusal::kCondition;
+    if (!needs_are_met(spec) || breaks_work(order)) {
+        return Refusal::kCondition;
+    }
+    return uplink_.in_time(now_us_, order.head) ? Refusal::kNone : Refusal::kLate;
 }
 
 bool DeviceBoard::lets_go(const Order& order) const {

@@ -12,7 +12,7 @@ from arboleda.recorder.plain_data import TYPE
 
 Words = Callable[[Any], str]
 UNTOLD = frozenset(
-    {TYPE, "id", "robot"}
+    {TYPE, "id", "heard", "robot"}
 )  # of a command: what its line says by itself, or what no one compares
 TASK = "task "
 NUMBERS = 4  # digits of a number
