@@ -531,7 +531,7 @@ class _Board:
         if alike and report.words == self._words[2].words:
             self._words = (before, after, report)
             return True
-        said = _read(delivery.payload, self.robot)
+        said = self._fields(delivery.payload)
         if said is None or not _agree(report, said, self.robot) or not self._names(report, said, place):
             return False
         self._words = (before, after, report)
