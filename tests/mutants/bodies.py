@@ -59,6 +59,7 @@ MOTION = (
         "nothing_moves_unasked",
         "A board that boots homes by itself.",
         edit(Board.reboot, "self.body.reset()", "self.body.reset(); self.body.home(now_us)"),
+        likely=6,
     ),
     mutant(
         "arm_stays_within_limits",
@@ -104,6 +105,7 @@ GRIP = (
             "*_at(context, robot, back, off)",
             "off",
         ),
+        likely=6,
     ),
     mutant(
         "no_part_dropped",

@@ -51,6 +51,7 @@ TASKS = (
         edit(evidence._stays_short, STAYS_SHORT, ":\n        return False\n    return True or belief"),
         weather="none",
         seeds=SHARED,
+        likely=6,
     ),
     mutant(
         "only_legal_task_states",

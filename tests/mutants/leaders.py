@@ -40,6 +40,7 @@ LEADERS = (
         edit(LeaderRow.is_fenced, "epoch == self.epoch", "True"),
         weather=CHANGES,
         standby=True,
+        likely=4,
     ),
 )
 PLANTED_LEADERS = (

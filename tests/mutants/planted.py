@@ -23,6 +23,7 @@ PLANTED = (
         edit(evidence._look_at_goal, "if place is None and not _tells(report, entry.sets):", "if False:"),
         seeds=SHARED,
         weather={"operator_hold": 30.0, "operator_resume": 60.0, "loss": 10.0},
+        likely=8,
     ),
     mutant(
         "proofs_end_commands",
@@ -72,13 +73,14 @@ PLANTED = (
         "A board may have taken any commands since where its task stands was kept.",
         edit(Known.explains, "if now == before:", "if True:"),
         weather={**DIES, "power_cut": 12.0},
-        likely=2,
+        likely=22,
     ),
     mutant(
         "effector_on_only_between_pick_and_place",
         "What a board never took counts as done after a restart.",
         edit(fate, "return Fate.UNTAKEN", "return Fate.DONE"),
         weather={**DIES, "loss": 20.0},
+        likely=5,
     ),
     mutant(
         "verbs_are_refused_rightly",

@@ -25,6 +25,7 @@ RESTARTS = (
         "A task that has ended is kept without its text.",
         edit(Task.of.__func__, "text=kept.text", 'text=""'),
         weather={**DIES, "double_submit": 20.0},
+        likely=12,
     ),
     mutant(
         "ends_once_over_all_starts",

@@ -26,13 +26,14 @@ PROOFS = (
         "A bridge's restart does not fail open commands.",
         edit(evidence._broken_link, "report.epoch != before.epoch", "False"),
         weather={"bridge_restart": 30.0, "hop_partition": 40.0},
-        likely=9,
+        likely=19,
     ),
     mutant(
         "ends_are_proven",
         "Reports made before a command was sent are judged.",
         edit(evidence.judge, " or report.at < entry.sent_at", ""),
         weather={"plant_stall": 60.0, "operator_home": 20.0, "operator_release": 40.0, "operator_stop": 10.0},
+        likely=9,
     ),
 )
 

@@ -401,6 +401,10 @@ BITES: list[tuple[str, Bug, Scenario | Weather]] = [
     ("no_internal_failure", raises_at_a_verb, told("load")),
     ("at_rest_at_end", advises_nothing, {"operator_stop": 6.0}),
 ]
+LIKELY = {  # seeds that found them, tried first
+    ("what_a_task_left_is_so", believed_on_its_word): 9,
+    ("nothing_is_dropped", moves_while_its_tool_may_open): 5,
+}
 
 
 @pytest.mark.parametrize(("name", "bug", "how"), BITES, ids=[f"{n}: {b.__name__}" for n, b, _ in BITES])
@@ -412,7 +416,8 @@ def test_it_bites(monkeypatch: Patch, name: str, bug: Bug, how: Scenario | Weath
             how(watched)
     else:
         model = SHARING if bug is shared_with_all else None
-        found = (run(seed, how, only=name, cycles=3, model=model) for seed in range(1, 11))
+        seeds = sorted(range(1, 11), key=lambda seed: seed != LIKELY.get((name, bug)))
+        found = (run(seed, how, only=name, cycles=3, model=model) for seed in seeds)
         assert any(broken is not None and broken.invariant == name for broken in found)
 
 

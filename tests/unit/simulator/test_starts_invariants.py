@@ -113,6 +113,10 @@ BITES: list[tuple[str, Bug]] = [
     ("one_pick_one_place_over_all_starts", begins_anew),
     ("nothing_moves_after_a_restart", goes_on_by_itself),
 ]
+LIKELY = {  # seeds that found them, tried first
+    ("storage", takes_ended_for_others): 3,
+    ("storage", gives_again_what_is_proven): 4,
+}
 HERE = {"storage": shipped(), "devices": shop(load)}
 CASES = [
     (kind, name, bug)
@@ -128,7 +132,8 @@ IDS = [f"{kind}: {name} by {bug.__name__}" for kind, name, bug in CASES]
 @pytest.mark.parametrize(("kind", "name", "bug"), CASES, ids=IDS)
 def test_it_bites(monkeypatch: Patch, kind: str, name: str, bug: Bug) -> None:
     bug(monkeypatch)
-    found = (run(HERE[kind], seed, only=name) for seed in range(1, 25))
+    seeds = sorted(range(1, 25), key=lambda seed: seed != LIKELY.get((kind, bug)))
+    found = (run(HERE[kind], seed, only=name) for seed in seeds)
     assert any(broken is not None and broken.invariant == name for broken in found)
 
 
