@@ -23,6 +23,14 @@ void move_after(Bench& bench, uint32_t heard) {
     bench.send(Channel::kJoints, text);
 }
 
+// The same, which waited so long on its way to a board that has run for a while.
+void move_that_waited(Bench& bench, uint64_t waited_us) {
+    bench.run(5 * kSecondUs);
+    const uint32_t heard = bench.last.number;
+    bench.run(waited_us);
+    move_after(bench, heard);
+}
+
 }  // namespace
 
 TEST(homing_finds_the_reference_from_anywhere) {
@@ -194,19 +202,13 @@ TEST(an_effector_lets_go_on_a_stop_where_it_is_configured) {
 
 TEST(a_move_by_who_has_heard_the_board_lately_is_carried_out) {
     Bench bench;
-    bench.run(5 * kSecondUs);
-    const uint32_t heard = bench.last.number;
-    bench.run(1700000);
-    move_after(bench, heard);
+    move_that_waited(bench, 1700000);
     CHECK(bench.board.state() == State::kMoving);
 }
 
 TEST(a_move_that_waited_is_too_late_and_moves_nothing) {
     Bench bench;
-    bench.run(5 * kSecondUs);
-    const uint32_t heard = bench.last.number;
-    bench.run(2300000);
-    move_after(bench, heard);
+    move_that_waited(bench, 2300000);
     CHECK(bench.board.state() == State::kStopped && bench.last.receipts.refusal() == Refusal::kLate);
     CHECK(bench.last.receipts.refused() == 2);
 }
@@ -230,6 +232,13 @@ TEST(a_late_command_lets_nothing_go_and_a_late_stop_stops) {
     CHECK(bench.world.effector() && bench.last.receipts.refused() == 2);
     bench.send(Channel::kStop, R"({"paro":1,"seq":3,"epoca":5,"visto":1})");
     CHECK(bench.board.state() == State::kLatched && bench.last.receipts.accepted().value == 3);
+}
+
+TEST(what_else_is_against_a_late_move_is_said_first) {
+    Bench bench;
+    bench.board.boot(bench.now_us, 101, false);
+    move_that_waited(bench, 2300000);
+    CHECK(bench.last.receipts.refusal() == Refusal::kNotHomed);
 }
 
 TEST(who_heard_a_board_before_it_was_away_has_to_hear_it_again) {

@@ -278,6 +278,8 @@ TEST(even_what_lets_go_may_come_too_late_and_a_stop_never) {
     bench.run(4 * kSecondUs);
     bench.order(R"({"verbo":"clamp","valores":{"on":false},"seq":4,"epoca":5,"visto":1})");
     CHECK(bench.last.receipts.numbers().refusal() == Refusal::kLate && bench.world.output(kClamp));
+    bench.order(R"({"verbo":"hammer","seq":4,"epoca":5,"visto":1})");
+    CHECK(bench.last.receipts.numbers().refusal() == Refusal::kFormat);
     bench.send(Channel::kStop, R"({"paro":1,"seq":5,"epoca":5,"visto":1})");
     CHECK(bench.last.state == State::kLatched);
 }

@@ -223,6 +223,15 @@ def test_a_number_that_it_has_not_told_since_power_up_is_too_late() -> None:
     assert own == virtual_as(virtual, own) and own.refusal == "tarde"
 
 
+def test_what_else_is_against_a_late_order_is_said_first() -> None:
+    both = Both()
+    heard = both.tell()
+    both.wait(2.3)
+    both.orders(heard, seq=1, **DOSE, **ORDER)
+    virtual, own = both.tell()
+    assert own == virtual_as(virtual, own) and own.refusal == "condicion"
+
+
 def virtual_as(virtual: Telemetry, own: Telemetry) -> Telemetry:
     """What the virtual board said, with the number of the message of the other."""
     return replace(virtual, seq=own.seq)
