@@ -31,7 +31,7 @@ LEADERS = (
         "A board forgets under which number it has heard a leader beat.",
         edit(Receipts.objection, "self.least is not None and goal.epoch < self.least", "False"),
         weather=LATE,
-        likely=27,
+        likely=42,
         standby=True,
     ),
     mutant(
