@@ -157,10 +157,21 @@ def no_thread_left(request: pytest.FixtureRequest) -> Iterator[None]:
     assert not left, f"threads left behind: {', '.join(left)}"
 
 
-@pytest.fixture
-def free_port() -> int:
+def unused_port() -> int:
     """A TCP port that nothing has, and that the system gives to no outgoing connection meanwhile."""
     return next(port for port in _ports if _is_free(port))
+
+
+@pytest.fixture
+def free_port() -> int:
+    return unused_port()
+
+
+@pytest.fixture
+def page_ports() -> tuple[int, int]:
+    """Ports of two pages that stay open when their plants end: the usual one is taken by the next plant of
+    any test, and they would show that one."""
+    return unused_port(), unused_port()
 
 
 def _is_free(port: int) -> bool:
@@ -175,7 +186,7 @@ def _is_free(port: int) -> bool:
 @pytest.fixture(scope="session")
 def postgres() -> Iterator[Server]:
     """A PostgreSQL server for all tests of this process; a test that stops it starts it again."""
-    server = Server(next(port for port in _ports if _is_free(port)))
+    server = Server(unused_port())
     yield server
     server.remove()
 

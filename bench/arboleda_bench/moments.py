@@ -14,6 +14,7 @@ from arboleda.model.commands import Command
 class Moment:
     """A robot received a command, or ended its move; `at` in s of the benchmark's clock.
 
+    A drive may end twice: as the robot stops, and as it reports what proves that.
     `last`: the move was the last one of a task, so a pause that the recipe declares follows.
     """
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from arboleda.app.config import load
+from arboleda.dispatch.belief import APART_S
 
 from . import plants, steps
 from .moments import Reaction, kind, milliseconds, reactions
@@ -60,7 +61,8 @@ def _result(ours: Sequence[Reaction], floor: Sequence[Reaction]) -> Result:
             "pause lies in are not counted.",
             f"Plant file: link ros, evidence joints, poses close together, dwell_s and effector_settle_s "
             f"{PAUSE_S:g} s; moves of {SHORTEST_S * 1000:g} to {LONGEST_S * 1000:g} ms. "
-            "An effector command of ours is on disk before it leaves, the floor keeps nothing.",
+            "An effector command of ours is on disk before it leaves, the floor keeps nothing. A drive of "
+            f"ours ends with the report that proves it, {APART_S:g} s or more after its stop.",
         ),
     )
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import UInt8
 
+from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Stop
@@ -77,6 +80,7 @@ class Body:
         self._move_s = move_s
         self._moments = moments
         self._moving: Command | None = None
+        self._proven_from = math.inf  # who hears its last node from then on knows that the drive has ended
         self._state = node.create_publisher(UInt8, f"{robot.name}/motion_state", qos.COMMAND)
         self._joints = node.create_publisher(JointState, joint_states_topic(robot), qos.COMMAND)
         self._position = JointsMessage(robot)
@@ -94,7 +98,17 @@ class Body:
 
     def tell(self) -> None:
         """Telemetry: where it is."""
+        at = now()
         self._joints.publish(self._here)
+        if at >= self._proven_from:
+            self._prove(at)
+
+    def _prove(self, at: float) -> None:
+        """A drive ends once more, as its node is told: who waits for that could not go on before."""
+        self._proven_from = math.inf
+        last = self._moments[-1]
+        if last.ended and last.command.robot == self._robot.name:
+            self._moments.append(replace(last, at=at))
 
     def _hearing(self, kind: type[Command]) -> Callable[[Any], None]:
         def heard(message: Any) -> None:
@@ -108,6 +122,7 @@ class Body:
             self._halt()
             return
         self._moments.append(Moment(at=at, command=command, ended=False))
+        self._proven_from = math.inf
         if isinstance(command, MoveJoints | FollowPath):
             self._moving = command
             self._state.publish(UInt8(data=int(MotionState.MOVING)))
@@ -121,8 +136,11 @@ class Body:
         last = isinstance(command, MoveJoints) and self._cell.arm.reached(command.q, self._cell.home.q)
         self._joints.publish(self._here)
         stopped = UInt8(data=int(MotionState.STOPPED))
-        self._moments.append(Moment(at=now(), command=command, ended=True, last=last))
+        at = now()
+        self._moments.append(Moment(at=at, command=command, ended=True, last=last))
         self._state.publish(stopped)
+        if isinstance(command, FollowPath):
+            self._proven_from = at + APART_S
 
     def _halt(self) -> None:
         self._moving = None

@@ -6,6 +6,7 @@ python examples/mixed/start.py --ros2 "line ship slot_1 200"       where ROS 2 w
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -38,7 +39,9 @@ def main(options: list[str]) -> int:
             return 1  # it has said why
         tasks = [each for each in options if each != "--ros2"]
         up = ["up", *tasks, "--plant", str(plant), "--boards", "drivers", "--no-ros"]
-        return subprocess.run([ARBOLEDA, *up], check=False).returncode
+        plant_process = subprocess.Popen([ARBOLEDA, *up])
+        signal.signal(signal.SIGINT, lambda *_: None)  # Ctrl-C is for the plant, which halts what moves
+        return plant_process.wait()
     except KeyboardInterrupt:
         return 0
     finally:

@@ -31,6 +31,7 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from .deeds import ALONE, PICK_UP, Deed, Did
+from .steady import unix_s
 
 NOWHERE = "no pose"
 
@@ -73,7 +74,7 @@ class WatchedDevices:
 
     def _add(self, robot: str, did: Did, what: str) -> None:
         cell = self._model.cell_of[robot].name
-        self.deeds.append(Deed(at=time.time(), cell=cell, robot=robot, did=did, what=what))
+        self.deeds.append(Deed(at=unix_s(), cell=cell, robot=robot, did=did, what=what))
 
     def _place(self, robot: str, body: ArmBody) -> str:
         """The pose at which the arm truly stands, to the step of its motors."""

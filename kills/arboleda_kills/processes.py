@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +33,7 @@ class Ended(Exception):
 class Plant:
     """`arboleda up` as people start it, until `kill`; no board is there before `joined_at`.
 
-    `command`: another one that runs the plant of `state`, instead.
+    `command`: another one that runs the plant of `state`, instead. `shown`: headers of whoever asks it.
     """
 
     def __init__(
@@ -44,10 +44,12 @@ class Plant:
         options: Sequence[str] = (),
         *,
         command: Sequence[str] = (),
+        shown: Mapping[str, str] | None = None,
     ) -> None:
         self.started_at = time.time()
         self.joined_at = float("inf")
         self._state, self._log, self._on_broker = state, log, on_broker
+        self._shown = dict(shown or {})
         self._port: int | None = None
         up = (sys.executable, "-c", UP, "up", "--no-ros", "--boards", "real", "--state", str(state))
         self._child = subprocess.Popen(
@@ -83,7 +85,9 @@ class Plant:
             self.check()
             running = find_running(self._state)
             if running is not None and running.port is not None and running.pid == self._child.pid:
-                self.http = httpx.Client(base_url=running.url, trust_env=False, timeout=10.0)
+                self.http = httpx.Client(
+                    base_url=running.url, headers=self._shown, trust_env=False, timeout=10.0
+                )
                 return self.http.get("/api/plant").status_code == httpx.codes.OK
             time.sleep(LOOK_S)
         return False

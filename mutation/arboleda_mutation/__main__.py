@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -77,7 +78,9 @@ def _options(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--sample", type=int, default=400, help="how many mutants are drawn")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--seeds", type=int, default=100, help="how many seeds the simulator gets for each")
-    parser.add_argument("--jobs", type=int, default=1, help="how many processes judge at the same time")
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, help="how many processes judge at the same time"
+    )
     parser.add_argument("--judge", choices=JUDGES, help="have only this judge look")
     parser.add_argument("--tests", nargs="+", default=by_tests.TESTS, help="folders of the tests that judge")
     parser.add_argument(

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from . import by_simulator, by_tests
 from .book import Book, Verdict
@@ -60,6 +59,7 @@ class Judging:
         self._sources = sources
         self._tests = tests
         self._state = state
+        self._log = state / "log.txt"
         state.mkdir(parents=True, exist_ok=True)
         self.book = Book(state / "verdicts.jsonl")
         folders = {TESTS: (*FOLDERS[TESTS], *tests), SIMULATOR: FOLDERS[SIMULATOR]}
@@ -68,11 +68,10 @@ class Judging:
     def run(self, order: Order, tell: Told) -> Iterator[Verdict]:
         """Each new verdict as it comes; what the book has already is not judged again."""
         warm()
-        with Children[Task](order.jobs, self._state / "log.txt") as children:
-            reaches = {judge: self._reach(children, judge, order.seeds, tell) for judge in order.judges}
-            breadth = reaches[TESTS].breadth() if TESTS in reaches else {}
-            tasks = (each for each in self._tasks(order, reaches, breadth))
-            for (mutant, judge, asked), ended in children.run(tasks):
+        reaches = self._reaches(order, tell)
+        breadth = reaches[TESTS].breadth() if TESTS in reaches else {}
+        with Children[Task](order.jobs, self._log) as children:
+            for (mutant, judge, asked), ended in children.run(self._tasks(order, reaches, breadth)):
                 verdict = self._verdict(mutant, judge, asked, ended)
                 self.book.add(verdict)
                 yield verdict
@@ -109,25 +108,36 @@ class Judging:
             key=mutant.key, judge=judge, of=self._of[judge], asked=asked, cpu_s=ended.cpu_s, **said
         )
 
-    def _reach(self, children: Children[Any], judge: str, seeds: int, tell: Told) -> Reach:
-        path = self._state / f"reach-{judge}.json"
-        kept = json.loads(path.read_text()) if path.exists() else {}
-        if kept.get("of") == self._of[judge] and kept.get("seeds", 0) >= seeds:
-            return Reach(**kept["reach"])
-        tell(f"measuring which {'tests' if judge == TESTS else 'seeds'} reach which lines")
-        root = self._sources.root
-        if judge == TESTS:
-            work: Work = partial(by_tests.measure, root, self._tests)
-        else:
-            work = partial(by_simulator.measure, root, seeds)
-        ended = next(iter(children.run([((), work)])))[1]
-        if ended.said is None:
-            raise RuntimeError(f"nothing could be measured; {self._state / 'log.txt'} says why")
-        reach = Reach(**ended.said)
-        if reach.failed:
-            tell(f"these fail with nothing planted, and are left out: {', '.join(reach.failed)}")
-        path.write_text(json.dumps({"of": self._of[judge], "seeds": seeds, "reach": ended.said}))
-        return reach
+    def _reaches(self, order: Order, tell: Told) -> dict[str, Reach]:
+        """Who reaches what, for each judge; measured at the same time where that is not known yet."""
+        reaches: dict[str, Reach] = {}
+        missing: dict[str, Work] = {}
+        for judge in order.judges:
+            path = self._reach_file(judge)
+            kept = json.loads(path.read_text()) if path.exists() else {}
+            if kept.get("of") == self._of[judge] and kept.get("seeds", 0) >= order.seeds:
+                reaches[judge] = Reach(**kept["reach"])
+                continue
+            tell(f"measuring which {'tests' if judge == TESTS else 'seeds'} reach which lines")
+            root = self._sources.root
+            missing[judge] = (
+                partial(by_tests.measure, root, self._tests)
+                if judge == TESTS
+                else partial(by_simulator.measure, root, order.seeds)
+            )
+        with Children[str](order.jobs, self._log) as children:
+            for judge, ended in children.run(missing.items()):
+                if ended.said is None:
+                    raise RuntimeError(f"nothing could be measured; {self._log} says why")
+                reaches[judge] = reach = Reach(**ended.said)
+                if reach.failed:
+                    tell(f"these fail with nothing planted, and are left out: {', '.join(reach.failed)}")
+                found = {"of": self._of[judge], "seeds": order.seeds, "reach": ended.said}
+                self._reach_file(judge).write_text(json.dumps(found))
+        return reaches
+
+    def _reach_file(self, judge: str) -> Path:
+        return self._state / f"reach-{judge}.json"
 
 
 def warm() -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import random
+from datetime import timedelta
 
 import psycopg
 import pytest
 from tests.postgres import Server
 
 from arboleda.adapters.plant_memory import Superseded
+from arboleda.adapters.postgres.leader_row import END_LEASE, LAST_SEEN
 from arboleda.adapters.postgres.leadership import Leadership
 from arboleda.adapters.postgres.memory import LEAD, PostgresMemory
 from arboleda.core.leading import LEASE_S, WANTED_S
@@ -16,7 +18,7 @@ from arboleda.model.messages import Fact, Remember
 from arboleda.simulator.hosts.database import LeaderRow
 
 NOW = 1000.0
-AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0)
+AGES_S = (0.1, LEASE_S + 1.0, WANTED_S - 5.0, WANTED_S + 5.0, -3600.0)  # or the clock is set back
 
 
 class Both:
@@ -26,7 +28,8 @@ class Both:
     it took does not count.
     """
 
-    def __init__(self, server: Server, address: str, plant: str) -> None:
+    def __init__(self, server: Server, address: str, plant: str, dice: random.Random) -> None:
+        self._dice = dice
         self.row = LeaderRow(epoch=0)
         self.others = Leadership(address, plant)
         self.processes: list[tuple[PostgresMemory, int]] = []
@@ -36,9 +39,9 @@ class Both:
     def lead(self, proposed: int) -> None:
         self._agree()
         expected = self.row.lead(proposed, NOW)
-        if expected is None:  # the process itself would wait for the lease to end
+        if expected is None:  # the process itself would wait for the end of the lease
             with self._connection() as db:
-                values = (proposed, "x", 1, WANTED_S, LEASE_S)
+                values = (proposed, "x", 1, WANTED_S)
                 assert db.execute(LEAD, values).fetchone() is None
             return
         memory = PostgresMemory(self._address, self._plant)
@@ -80,6 +83,19 @@ class Both:
         self.row.seen = None if self.row.seen is None else self.row.seen - seconds
         self.row.wanted = None if self.row.wanted is None else self.row.wanted - seconds
 
+    def end_lease(self) -> None:
+        """As who has waited for the length of a lease, and has perhaps missed a sign of life."""
+        self._agree()
+        said_nothing = self._dice.random() < 0.5
+        with self._connection() as db:
+            seen = db.execute(LAST_SEEN).fetchone()
+            if seen is None or seen[1] is None:
+                return
+            values = seen if said_nothing else (seen[0], seen[1] - timedelta(seconds=0.5))
+            db.execute(END_LEASE, values)
+        last = self.row.last_seen
+        self.row.end_lease(last if said_nothing else (last[0], NOW + 1.0))
+
     def compare(self) -> None:
         self._agree()
         leader = self.others.leader()
@@ -111,17 +127,20 @@ class Both:
 def test_the_row_of_the_simulator_does_what_a_server_does(
     postgres: Server, database: str, plant: str, seed: int
 ) -> None:
-    dice, both = random.Random(seed), Both(postgres, database, plant)
+    dice = random.Random(seed)
+    both = Both(postgres, database, plant, dice)
     of_one = (both.renew, both.renew, both.write, both.write, both.hand_over, both.end)
     try:
         for _ in range(60):
-            what = dice.randrange(4)
+            what = dice.randrange(5)
             if what == 0 or not both.processes:
                 both.lead(dice.randrange(40))
             elif what == 1:
                 both.grow_older(dice.choice(AGES_S))
             elif what == 2 and dice.random() < 0.4:
                 both.want()
+            elif what == 3:
+                both.end_lease()
             else:
                 dice.choice(of_one)(*dice.choice(both.processes))
             both.compare()

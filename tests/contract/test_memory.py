@@ -16,8 +16,18 @@ from arboleda.adapters.plant_memory import PRUNED, PlantMemory
 from arboleda.adapters.postgres.history import PostgresHistory
 from arboleda.adapters.postgres.memory import PostgresMemory
 from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import History, TaskHistory, TaskQuery, answers_of
-from arboleda.model.messages import Fact, Journal, Reason, Remember, TaskAnswer, TaskChanged, TaskState, Verb
+from arboleda.adapters.task_rows import History, TaskHistory, TaskQuery, answers_of, course_of
+from arboleda.model.messages import (
+    Course,
+    Fact,
+    Journal,
+    Reason,
+    Remember,
+    TaskAnswer,
+    TaskChanged,
+    TaskState,
+    Verb,
+)
 from arboleda.model.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
@@ -159,6 +169,16 @@ def test_what_was_answered_is_kept_with_the_end_of_a_task(site):
     with site.memory() as store:
         kept = {row.id: answers_of(row) for row in store.tasks(TaskQuery())}
     assert kept == {"a": tuple(heard), "b": ()}
+
+
+def test_how_a_task_went_is_kept_with_its_end(site):
+    course = Course(seconds=31.507, begun={"drive path 0B #1": 0.2, "move to “home” #2": 28.0})
+    with site.memory() as store:
+        for id, how in (("a", course), ("b", None)):
+            store.task(queued(id), "storage", 5.0)
+            store.task(replace(ended(id), course=how), "storage", 9.0)
+    with site.memory() as store:
+        assert {row.id: course_of(row) for row in store.tasks(TaskQuery())} == {"a": course, "b": None}
 
 
 def test_old_times_of_cells_are_forgotten_at_a_start(site):

@@ -8,7 +8,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 
 import pytest
 from tests.postgres import DATABASE, PASSWORD, USER, Server
@@ -94,6 +94,29 @@ def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
         monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now + LEASE_S)
         with pytest.raises(Superseded):
             memory.confirm()
+
+
+@pytest.mark.parametrize("hours", [1, -1], ids=["an hour on", "an hour back"])
+def test_who_waits_goes_by_its_own_clock_wherever_that_of_the_server_is_set(
+    postgres: Server, database: str, plant: str, monkeypatch: pytest.MonkeyPatch, hours: int
+) -> None:
+    now = 1000.0
+    monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now)
+    others = Leadership(database, plant)
+    with leading(database, plant) as memory, closing(others):
+        assert not others.is_free()
+        with postgres.connection() as db:  # as if the clock had been set the other way since
+            db.execute(f"UPDATE \"plant_{plant}\".leader SET seen = seen - {hours} * interval '1 hour'")
+        assert not others.leader().leads
+        assert not others.is_free()
+        now += LEASE_S - 0.1
+        assert not others.is_free()
+        memory.renew()
+        assert not others.is_free() and others.leader().leads
+        now += LEASE_S
+        assert others.is_free()
+        with pytest.raises(Superseded):
+            memory.renew()
 
 
 def test_a_plant_has_one_leader(database: str, plant: str) -> None:
@@ -233,7 +256,7 @@ def test_tables_of_an_older_format_are_brought_up_and_keep_what_they_have(
     with postgres.connection() as db:
         db.execute(f'SET search_path TO "plant_{plant}"')
         db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")
-        db.execute("ALTER TABLE task DROP COLUMN choice")
+        db.execute("ALTER TABLE task DROP COLUMN choice, DROP COLUMN course")
         db.execute("DROP TABLE standby")
         db.execute("UPDATE leader SET format = 1")
     history = PostgresHistory(database, plant)

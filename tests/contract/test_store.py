@@ -20,10 +20,10 @@ from tests.rights import modes_count
 
 from arboleda.adapters.memory_file import VERSION
 from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of, course_of
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.messages import Fact, Journal, Remember, TaskChanged, TaskState, Verb
+from arboleda.model.messages import Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
@@ -288,6 +288,17 @@ def test_tasks_of_an_older_format_have_no_choice_and_new_ones_have(path):
         assert [choice_of(row) for row in store.tasks(TaskQuery())] == [why, None]
 
 
+def test_tasks_of_an_older_format_have_no_course_and_new_ones_have(path):
+    with Store(path) as store:
+        for name in ("a", "b"):
+            store.task(queued(name), "storage", 5.0)
+    of_before_courses(path).close()
+    course = Course(seconds=31.5, begun={"0.0.1": 0.0, "0.1": 2.25})
+    with Store(path) as store:
+        store.task(replace(queued("b"), state=TaskState.DONE, course=course), "storage", 6.0)
+        assert [course_of(row) for row in store.tasks(TaskQuery())] == [course, None]
+
+
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
         store.task(queued("a"), "storage", 5.0)
@@ -303,10 +314,19 @@ def test_a_file_without_times_of_cells_gets_them(path):
 
 def of_before_choices(path):
     """The file as a format had it in which no task said why it is done in its cell."""
-    db = sqlite3.connect(path)
+    db = of_before_courses(path)
     if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
         db.execute("ALTER TABLE task DROP COLUMN choice")
     db.execute("PRAGMA user_version = 7")
+    return db
+
+
+def of_before_courses(path):
+    """The file as a format had it in which no task said how it went."""
+    db = sqlite3.connect(path)
+    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
+        db.execute("ALTER TABLE task DROP COLUMN course")
+    db.execute("PRAGMA user_version = 8")
     return db
 
 

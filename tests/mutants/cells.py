@@ -11,6 +11,7 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes import storage
 from arboleda.simulator.run import NO_EXCEPTION
 from arboleda.trees.leaves import Dwell, TakeZones
+from arboleda.trees.tree_run import TreeRun
 from arboleda.wire import strict
 
 from .mutant import SHARED, edit, mutant
@@ -71,6 +72,12 @@ TASKS = (
         edit(best, "min(prospects", "max(prospects"),
         weather="none",
         any_of=True,
+    ),
+    mutant(
+        "courses_are_as_seen",
+        "The time for which a task is held counts as its work.",
+        edit(TreeRun.course, "self._context.now", "self._context.plant_now"),
+        weather={"operator_hold": 30.0, "operator_resume": 60.0},
     ),
     mutant(
         "tasks_stay_in_their_cell",
@@ -136,8 +143,8 @@ TASKS = (
         "A path is cut where its robot stands, even where nobody knows that.",
         edit(
             storage._follow,
-            "nodes[nodes.index(node) :] if node in nodes else nodes",
-            "nodes[nodes.index(node) :]",
+            "elif known is None or not cell.drive_to_start:",
+            "elif not cell.drive_to_start:",
         ),
         seeds=SHARED,
         weather={"brown_out": 30.0},

@@ -7,6 +7,7 @@ from arboleda.core.intake import Intake
 from arboleda.core.leaving import leaves_unkept
 from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
+from arboleda.model.messages import Course
 from arboleda.trees.trail import Known, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
@@ -17,6 +18,12 @@ from .restarts import DIES, FULL
 
 PLANTED = (
     *PLANTED_LEADERS,
+    mutant(
+        "tasks_go_to_the_best_cell",
+        "A task whose step takes longer than ever counts as nearly done.",
+        edit(Course.left, "min(at + seconds, following)", "min(at + seconds, self.seconds)"),
+        any_of=True,
+    ),
     mutant(
         "ends_are_proven",
         "A position from before the command counts at joints.",

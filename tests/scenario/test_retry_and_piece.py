@@ -9,9 +9,11 @@ from typing import Any, cast
 import pytest
 
 from arboleda.core.cell_states import CellState
+from arboleda.kinds.mobile import FollowPath
 from arboleda.model.messages import Reason, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Retry
 from arboleda.sim.arm import ArmBody
+from arboleda.sim.mobile import MobileBody
 from arboleda.testing import Rig, Witness, faults
 from arboleda.trees.tree_run import TreeRun
 from arboleda.wire.transport import Publication
@@ -65,6 +67,47 @@ def test_a_lost_goal_is_sent_again_after_the_back_off(stage: Stage, evidence: Ev
     timeout_s = rig.model.cell("sis_a").arm.timeout_s
     assert second - first >= timeout_s + TWICE.backoff_s and third - second >= timeout_s + TWICE.backoff_s
     assert honest(witness)
+
+
+@levels
+@pytest.mark.parametrize(
+    ("starts_on", "drives"),
+    [
+        (2, [(2, 1, 0), (8, 5, 2, 1, 0), (0, 3, 4, 7)]),
+        (0, [(0, 3, 4, 7), (8, 5, 2, 1, 0, 3, 4, 7)]),
+    ],
+    ids=["on the way to the start", "on the path"],
+)
+def test_a_drive_is_given_anew_from_where_the_mobile_was_carried_to(
+    stage: Stage, evidence: Evidence, starts_on: int, drives: list[tuple[int, ...]]
+) -> None:
+    rig, witness = stage(evidence, retry=TWICE)
+    put(rig, starts_on)
+    goals = first_lost(rig, "rm_sis_a/camino", 1)
+    rig.submit(TASK)
+    rig.wait(5.0, until=lambda: bool(goals))
+    put(rig, 8)
+    assert ended(rig).state is TaskState.DONE
+    assert [each.nodes for each in rig.sent if isinstance(each, FollowPath)] == drives
+    assert honest(witness)
+
+
+def test_where_a_cell_drives_to_no_start_a_path_is_given_anew_as_it_was(stage: Stage) -> None:
+    rig, witness = stage(retry=TWICE, drive_to_start=False)
+    first_lost(rig, "rm_sis_a/camino", 1)
+    rig.submit(TASK)
+    rig.wait(5.0, until=lambda: any(isinstance(each, FollowPath) for each in rig.sent))
+    put(rig, 8)
+    assert ended(rig).reason is Reason.REJECTED
+    assert {each.nodes for each in rig.sent if isinstance(each, FollowPath)} == {(0, 3, 4, 7)}
+    assert honest(witness)
+
+
+def put(rig: Rig, node: int) -> None:
+    """Carry the mobile robot there, and wait until it has said so."""
+    body = cast(MobileBody, rig.devices.boards["rm_sis_a"].body)
+    body.node = body.true_node = node
+    rig.wait(0.5)
 
 
 @levels

@@ -11,7 +11,7 @@ from arboleda.simulator.run import Simulation
 from arboleda.testing import shipped, slowed
 
 SEEDS = (1, 2, 3, 4)  # robots say where they are and that they move together, apart, or of two instants
-CYCLES = 6
+CYCLES = 3
 
 
 def plant(evidence: Evidence, place: str, slower: float) -> PlantModel:

@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
@@ -47,7 +47,7 @@ class Process:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            env={**os.environ, **WIDE, "PYTHONUNBUFFERED": "1", **(env or {})},
+            env={**os.environ, **WIDE, "PYTHONUNBUFFERED": "1", "PYTHONFAULTHANDLER": "1", **(env or {})},
             start_new_session=True,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -72,8 +72,8 @@ class Process:
                 pytest.fail(f"no {text!r} in:\n{self.output}")
 
     def interrupt(self) -> int:
-        """Ctrl-C: the exit status."""
-        self._child.send_signal(signal.SIGINT)
+        """Ctrl-C, which a terminal sends to all of its group: the exit status."""
+        os.killpg(self._child.pid, signal.SIGINT)
         return self.wait()
 
     def kill(self) -> None:
@@ -83,8 +83,16 @@ class Process:
         self.wait()
 
     def wait(self) -> int:
-        """The exit status."""
-        status = self._child.wait(PATIENCE_S)
+        """The exit status; where it does not end, what each of its threads is at fails the test."""
+        try:
+            status = self._child.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self._child.send_signal(signal.SIGABRT)  # a fault handler of Python writes that
+            self._child.wait(PATIENCE_S)
+            with suppress(ProcessLookupError):
+                os.killpg(self._child.pid, signal.SIGKILL)  # what it left of its group
+            self._reader.join(PATIENCE_S)
+            pytest.fail(f"it does not end:\n{self.output}")
         self._reader.join(PATIENCE_S)
         return status
 

@@ -54,4 +54,6 @@ def test_a_part_is_delivered_by_one_command(tmp_path: Path, start: Callable[...,
     plant = start(sys.executable, str(tmp_path / "start.py"), "line deliver slot_1 200", *state)
     plant.wait_for("done      line slot_1 200", patience_s=90)
     assert plant.interrupt() == 0, plant.output
+    assert "stopping: whatever moves is halted" in plant.output
+    assert "belt: still" in plant.output
     assert "Traceback" not in plant.output

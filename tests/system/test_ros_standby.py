@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 
 pytest.importorskip("rclpy", reason="rclpy is not installed")
@@ -19,6 +20,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
 from arboleda.adapters.postgres.memory import PostgresMemory
+from arboleda.app.state import find_running
 from arboleda_kills.processes import paths
 
 from ..postgres import Server
@@ -62,7 +64,13 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
     leader.open()
     leader.lead(int(time.time()))
     monkeypatch.setenv("PYTHONPATH", paths())
-    words = ("-p", f"store:={database}", "-p", "standby:=true", "-p", f"state_dir:={tmp_path / 'state'}")
+    values = (
+        f"store:={database}",
+        "standby:=true",
+        "dashboard_host:=0.0.0.0",
+        f"state_dir:={tmp_path}/state",
+    )
+    words = [word for value in values for word in ("-p", value)]
     command = [sys.executable, "-m", "arboleda_ros.nodes", "orchestrator", "--ros-args", *words]
     node = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
@@ -70,6 +78,9 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
         waits = "waits for the end of process"
         until(lambda: leader.renew() or any(waits in said for level, said in heard(name) if level == 0))
         assert not heard("arboleda: orchestrator on ROS 2")
+        running = find_running(tmp_path / "state")
+        assert running is not None and running.guarded, "other hosts reach it, with a token"
+        assert httpx.get(f"{running.url}/api/plant", trust_env=False).status_code == 401
         leader.close()
         until(lambda: heard("arboleda: orchestrator on ROS 2"))
         assert heard(name)[-1] == (0, "leads the plant from now on")

@@ -67,6 +67,15 @@ def test_a_status_that_says_the_same_under_the_next_number_is_not_read_again(mon
     assert heard == [NUMBERED, replace(NUMBERED, number=42)]
 
 
+def test_a_number_that_no_board_can_tell_is_refused_also_where_nothing_else_changed():
+    said, heard = StatusMessage(ARM), []
+    ear = statuses.Ear(ARM, lambda: 0.0, heard.append)
+    ear(serialize_message(said.of(NUMBERED)))
+    with pytest.raises(PayloadError, match="number is '9999999999'; an integer of 0 to 4294967295 is needed"):
+        ear(serialize_message(said.of(NUMBERED.again(0.0, number=9_999_999_999))))
+    assert heard == [NUMBERED]
+
+
 def test_a_bad_status_is_refused_each_time_it_comes():
     heard = []
     ear = statuses.Ear(ARM, lambda: 0.0, heard.append)

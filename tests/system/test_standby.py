@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from arboleda.app.state import find_running
+
 from ..postgres import Server
 from .two_hosts import PATIENCE_S, TAKEN_OVER_S, Hosts
 
@@ -58,8 +60,11 @@ def test_a_planned_handover_fails_no_task_and_needs_nobody_to_resume(
     hosts: Hosts, arboleda: Callable[..., Any], tmp_path: Path
 ) -> None:
     hosts.at_work()
+    waited_at = find_running(tmp_path / "b").url
     asked = arboleda("handover", "--state", str(tmp_path / "a"))
     assert asked.wait() == 0, asked.output
+    hosts.until(lambda: hosts.cell("b"))
+    assert find_running(tmp_path / "b").url == waited_at
     assert f"process {hosts.plants['b'].pid} on" in asked.output
     gap_s = float(re.search(r"for ([\d.]+) s of them nobody did", asked.output)[1])
     assert gap_s < TAKEN_OVER_S

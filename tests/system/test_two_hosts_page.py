@@ -18,9 +18,9 @@ pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")
 
 
 def test_a_page_at_the_standby_becomes_the_plants_and_one_at_the_old_leader_leads_there(
-    hosts: Hosts, browser: Any, arboleda: Callable[..., Any], tmp_path: Path
+    hosts: Hosts, browser: Any, arboleda: Callable[..., Any], tmp_path: Path, page_ports: tuple[int, int]
 ) -> None:
-    hosts.led_by_a()
+    hosts.led_by_a(page_ports)
     at_a, at_b = (find_running(tmp_path / name).url for name in "ab")
     context = browser.new_context(locale="es")
     left, waiting = context.new_page(), context.new_page()

@@ -79,6 +79,6 @@ def test_a_killed_plant_finishes_its_task_after_resume(site: Site) -> None:
         assert site.plant.ask("POST", "/api/cells/sis_a/resume")[0] == 200
     site.until(lambda cell: cell["state"] == "idle")
     (row,) = site.plant.ask("GET", "/api/history")[1]
-    assert (row["id"], row["state"]) == ("lot-1", "done")
+    assert (row["id"], row["state"]) == ("lot-1", "done"), row
     parts = [(deed.did, deed.what) for deed in site.boards.deeds if deed.did is not Did.WAS_TOLD]
     assert parts == [(Did.PICKED, "pick-up"), (Did.LET_GO, "station 7")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -58,11 +58,12 @@ class Hosts:
             time.sleep(0.02)
         return time.monotonic() - began
 
-    def led_by_a(self) -> None:
-        """A leader whose first cell could work, and a standby that waits for it."""
-        self.up("a")
+    def led_by_a(self, ports: Sequence[int] = ()) -> None:
+        """A leader whose first cell could work, and a standby that waits for it; `ports` of their pages."""
+        at_a, at_b = (("--port", str(port)) for port in ports) if ports else ((), ())
+        self.up("a", *at_a)
         self.until(lambda: self.cell("a").get("not_ready", "no") is None)
-        self.up("b", "--standby")
+        self.up("b", "--standby", *at_b)
         self.until(lambda: "process" in self.ask("b").get("sentence", ""))
 
     def at_work(self) -> None:

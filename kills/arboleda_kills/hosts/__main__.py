@@ -3,12 +3,13 @@
 Two hosts for plants, one that leads and one that stands by, and one each for PostgreSQL, the MQTT broker, the
 bridge (over DDS) and the virtual boards. Faults at random instants of work: kill -9, freezes, a handover,
 links that are cut in one direction or both, that are late and lose packets, database, broker and bridge that
-are restarted or crash.
+are restarted or crash, wall clocks that are stepped on one host. Tasks come to who leads, and from a
+host without a plant: by commands, and by the address of who stands by.
 
 Exit status 1 where a task was lost, a part was taken up or set down twice, or dropped, where a robot moved
 before anybody let it, where boards accepted a command of one leader after one of the next, or where something
 ended that should not. Status 2 where this machine makes no network namespaces. It needs root, iproute2,
-postgresql and mosquitto.
+postgresql, mosquitto and gcc.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from arboleda.app.waiting import interruptible
 from arboleda_bench.result import percentile
 
 from ..database import NoServer, programs
-from .faults import FAULTS
+from .clocks import NoCompiler
+from .faults import CLOCKS, FAULTS
 from .namespaces import NoNamespaces
 from .run import Run
 
@@ -54,7 +56,7 @@ def _tried(wanted: argparse.Namespace, folder: Path, say: Callable[[str], None])
         if shutil.which("mosquitto") is None:
             raise NoServer("mosquitto is not installed")
         run = Run(folder, seed=wanted.seed, rate=wanted.rate)
-    except NoServer as error:
+    except (NoServer, NoCompiler) as error:
         print(f"something is missing, so nothing was tried: {error}")
         return NOT_HERE
     except NoNamespaces as error:
@@ -85,7 +87,11 @@ def _report(run: Run, folder: Path) -> int:
         print(f"{name}: {len(times)}, p50 {percentile(times, 50):.2f} s, p99 {percentile(times, 99):.2f} s")
     print(f"faults: {dict(sorted(run.counts.items()))}")
     states = Counter(row.state if row.reason is None else f"{row.state} ({row.reason})" for row in rows)
-    print(f"{len(run.customers.accepted)} tasks accepted: {dict(states)}")
+    print(f"{len(rows)} tasks accepted: {dict(states)}")
+    visitors, ways = run.visitors, run.ways
+    print(f"of them sent from another host: {dict(visitors.sent)}; followed: {dict(ways.followed)}")
+    for (way, words), count in sorted((visitors.refused + ways.looked).items()):
+        print(f"refused or broken off {count} times {way}: {words[:300]}")
     for words, count in sorted(run.ends.items()):
         print(f"ended {count} times after {words}")
     counted = {
@@ -119,6 +125,13 @@ def _options() -> argparse.Namespace:
     names = [fault.name for fault in FAULTS]
     parser.add_argument(
         "--only", nargs="*", choices=names, metavar="FAULT", help="; ".join(names).replace("%", "%%")
+    )
+    parser.add_argument(
+        "--only-clocks",
+        action="store_const",
+        const=[each.name for each in CLOCKS],
+        dest="only",
+        help="those that step clocks",
     )
     parser.add_argument("--keep", action="store_true", help="keep the logs also where all is well")
     parser.add_argument(

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import httpx
+
+from arboleda.adapters.web.auth import Role
+from arboleda.app import tokens
+from arboleda.app.state import find_running
 
 from ..database import DATABASE, PASSWORD, USER, Server
 from ..processes import PATIENCE_S, Boards, Plant, paths
@@ -31,10 +36,12 @@ NODES = ("-m", "arboleda_ros.nodes")
 class HostPlant(Plant):
     """A plant on a host of its own: whoever asks it does so from there."""
 
-    def __init__(self, network: Network, host: str, folder: Path, command: Sequence[str]) -> None:
+    def __init__(
+        self, network: Network, host: str, folder: Path, command: Sequence[str], shown: Mapping[str, str]
+    ) -> None:
         self.host = host
-        self._network = network
-        super().__init__(folder, folder.with_suffix(".log"), _nobody, command=command)
+        self._network, self._folder = network, folder
+        super().__init__(folder, folder.with_suffix(".log"), _nobody, command=command, shown=shown)
 
     def await_api(self, until: float) -> bool:
         with self._network.inside(self.host):
@@ -43,6 +50,14 @@ class HostPlant(Plant):
     def ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> tuple[int, Any]:
         with self._network.inside(self.host):
             return super().ask(method, path, body)
+
+    @property
+    def url(self) -> str:
+        """Where other hosts reach it; OSError where it listens nowhere."""
+        running = find_running(self._folder)
+        if running is None or running.port is None:
+            raise ConnectionRefusedError(f"nothing listens on {self.host}")
+        return f"http://{self._network.address(self.host)}:{running.port}"
 
     @property
     def runs(self) -> bool:
@@ -89,6 +104,9 @@ class Cast:
         os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"
         os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
         self._network, self._folder = network, folder
+        self.visitor = folder / "visitor"  # the state directory of who types commands on another host
+        token = tokens.read(self.visitor)[Role.OPERATOR]
+        self.shown = {"authorization": f"Bearer {token}"}
         self._starts = 0
         with network.inside(DATA):
             self.database = Server(DATABASE_PORT, before=network.on(DATA), others=NETWORK)
@@ -106,15 +124,18 @@ class Cast:
         """One more start of the plant on a host."""
         self._starts += 1
         state = self._folder / f"{host}-{self._starts}"
+        state.mkdir(mode=0o700)
+        shutil.copy(self.visitor / tokens.TOKENS, state)
         words = {
             "store": self.store,
             "state_dir": state,
             "standby": str(standby).lower(),
             "dashboard": "true",
+            "dashboard_host": "0.0.0.0",
         }
         parameters = [word for key, value in words.items() for word in ("-p", f"{key}:={value}")]
         node = (*self._network.on(host), sys.executable, *NODES, "orchestrator", "--ros-args", *parameters)
-        return HostPlant(self._network, host, state, node)
+        return HostPlant(self._network, host, state, node, self.shown)
 
     def restart_bridge(self) -> None:
         """kill -9, and another one at once."""

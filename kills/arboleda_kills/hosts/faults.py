@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 import signal
 import subprocess
@@ -13,6 +14,7 @@ from ..processes import PATIENCE_S, UP
 from .cast import BRIDGE, BROKER, DATA, FLOOR, HOSTS, Cast, HostPlant
 from .network import Network
 
+HOUR_S, DAY_S = 3600.0, 86_400.0
 End = Callable[[], None]
 Link = tuple[str, str]
 
@@ -117,6 +119,67 @@ def _between(name: str, one: Callable[[Scene], str], other: str, *, takes_over: 
     ]
 
 
+def _step(scene: Scene, host: str, ahead_s: float) -> End:
+    scene.network.clocks.step(host, ahead_s)
+    return lambda: scene.network.clocks.step(host, 0.0)
+
+
+def _drawn_s(dice: random.Random) -> float:
+    """A second, or up to a day, ahead or behind."""
+    return dice.choice((-1.0, 1.0)) * dice.choice((1.0, math.exp(dice.uniform(0.0, math.log(DAY_S)))))
+
+
+def _clock(name: str, one: Callable[[Scene], str]) -> list[Fault]:
+    """The clock of a host is stepped, and set right again."""
+    how: dict[str, Callable[[random.Random], float]] = {
+        "an hour on": lambda _: HOUR_S,
+        "an hour back": lambda _: -HOUR_S,
+        "by a drawn time": _drawn_s,
+    }
+    return [
+        Fault(
+            name=f"clock of {name} {words}",
+            begin=lambda scene, ahead_s=ahead_s: _step(scene, one(scene), ahead_s(scene.dice)),
+        )
+        for words, ahead_s in how.items()
+    ]
+
+
+def _killed_meanwhile(one: Callable[[Scene], str], ahead_s: float) -> Callable[[Scene], End]:
+    """The clock of a host is stepped, and at once the leader dies."""
+
+    def begin(scene: Scene) -> End:
+        over = _step(scene, one(scene), ahead_s)
+        scene.leader.kill()
+        return over
+
+    return begin
+
+
+def _bridge_killed_meanwhile(scene: Scene) -> End:
+    over = _step(scene, BRIDGE, -HOUR_S)
+    scene.cast.restart_bridge()
+    return over
+
+
+CLOCKS = (
+    *_clock("leader", lambda scene: scene.leader.host),
+    *_clock("standby", lambda scene: scene.standby.host),
+    *_clock("database", lambda scene: DATA),
+    *_clock("bridge", lambda scene: BRIDGE),
+    *_clock("floor", lambda scene: FLOOR),
+    *(
+        Fault(
+            name=f"killed, clock of {name} an hour {words}",
+            begin=_killed_meanwhile(one, ahead_s),
+            takes_over=True,
+            ends=True,
+        )
+        for name, one in (("standby", lambda scene: scene.standby.host), ("database", lambda scene: DATA))
+        for words, ahead_s in (("on", HOUR_S), ("back", -HOUR_S))
+    ),
+    Fault(name="bridge killed, its clock an hour back", begin=_bridge_killed_meanwhile),
+)
 FAULTS = (
     Fault(name="killed", begin=_kill, takes_over=True, ends=True),
     Fault(name="frozen", begin=_freeze, takes_over=True, ends=True),
@@ -135,4 +198,5 @@ FAULTS = (
     Fault(name="database restarted", begin=_restart_database(signal.SIGINT, 0.8), ends=True),
     Fault(name="database crashed", begin=_restart_database(signal.SIGQUIT, 4.0), ends=True),
     Fault(name="database frozen", begin=_freeze_database, ends=True),
+    *CLOCKS,
 )

@@ -8,16 +8,20 @@ import subprocess
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
+from pathlib import Path
 
 from ..processes import PATIENCE_S, paths
 from . import namespaces
 from .cable import DEVICE
+from .clocks import Clocks
 
 
 class Network:
-    """`hosts` on one cable; `spoil` some of its directed links, and all others are perfect."""
+    """`hosts` on one cable; `spoil` some of its directed links, and all others are perfect. Each has a wall
+    clock of its own, whose file is in `folder`."""
 
-    def __init__(self, hosts: Sequence[str]) -> None:
+    def __init__(self, hosts: Sequence[str], folder: Path) -> None:
+        self.clocks = Clocks(folder, hosts)
         self._names = {host: f"arboleda-{os.getpid()}-{host}" for host in hosts}
         self._cable: subprocess.Popen[str] | None = None
         try:
@@ -36,7 +40,7 @@ class Network:
 
     def on(self, host: str) -> tuple[str, ...]:
         """What a command begins with that runs there."""
-        return "ip", "netns", "exec", self._names[host]
+        return "ip", "netns", "exec", self._names[host], *self.clocks.before(host)
 
     def inside(self, host: str) -> AbstractContextManager[None]:
         """Sockets that this thread opens meanwhile are those of that host."""
@@ -60,6 +64,7 @@ class Network:
             self._cable.stdin.close()
             self._cable.wait(PATIENCE_S)
             self._cable = None
+        self.clocks.close()
         for name in self._names.values():
             namespaces.remove(name)
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from arboleda.adapters.postgres.history import PostgresHistory
 from arboleda.adapters.postgres.leadership import Leader, Leadership
+from arboleda.adapters.postgres.schema import schema_of
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.app import config
 from arboleda.model.errors import ArboledaError
@@ -19,12 +20,16 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from ..database import DATABASE, USER
 from ..judge import Kill, Verdict, judge
-from ..people import Attendant, Customers, Said
+from ..people import OVER, Attendant, Customers, Said
+from .books import keep_books, truly
 from .cast import DATA, DATABASE_PORT, HOSTS, LEFT, RIGHT, UNHEARD, Cast, HostPlant
 from .faults import Fault, Scene
 from .network import Network
+from .visitors import Visitors
+from .ways import Ways
 
 NAME = "arboleda"
+SCHEMA = schema_of(NAME)
 STORE = f"postgresql://{USER}@127.0.0.1:{DATABASE_PORT}/{DATABASE}"  # on its own host
 WELL_S = 90.0  # after a fault all robots are heard by then, and somebody waits
 LOOK_S, PASS_S, ASK_S = 0.02, 0.05, 0.2
@@ -44,7 +49,7 @@ class Run:
         model = config.load(None)
         cells = [cell for cell in model.cells if isinstance(cell, StorageCell)]
         self._cells = [cell.name for cell in cells]
-        self.network = Network(HOSTS)
+        self.network = Network(HOSTS, folder)
         self.cast = Cast(self.network, folder, rate, list(model.robots))
         self._others = Leadership(STORE, NAME)
         self.customers = Customers(cells, self._dice, f"s{seed}")
@@ -61,9 +66,15 @@ class Run:
         self._superseded: HostPlant | None = None
         self._seen: tuple[int, ...] = ()
         self._patience = 0.0
+        with self.network.inside(DATA):
+            self._others.prepare()
+            with self.cast.database.connection() as db:
+                keep_books(db, SCHEMA)
         self._plants = {LEFT: self.cast.plant(LEFT, standby=False)}
         self._until(lambda _: True)
         self._plants[RIGHT] = self.cast.plant(RIGHT, standby=True)
+        self.ways = Ways(self.network, self.cast, lambda: self._other)
+        self.visitors = Visitors(cells, self.ways.all)
 
     def once(self, fault: Fault) -> str:
         """One fault, from work to work; what it was."""
@@ -86,10 +97,12 @@ class Run:
 
     def finish(self) -> None:
         """Let all that is open end."""
-        self.customers.bring = False
-        self._until(lambda _: not self.customers.waiting)
+        self.customers.bring = self.visitors.bring = False
+        self._until(lambda snapshot: not self.customers.waiting and self._is_idle(snapshot))
+        self.trouble += self.ways.trouble
 
     def close(self) -> None:
+        self.visitors.bring = False
         for plant in self._plants.values():
             plant.freeze(on=False)
             plant.kill()
@@ -103,12 +116,21 @@ class Run:
             history = PostgresHistory(STORE, NAME)
             rows = history.select(TaskQuery(limit=None))
             history.close()
+            with self.cast.database.connection() as db:
+                rows = truly(db, SCHEMA, rows)
         customers, deeds, said = self.customers, self.cast.boards.deeds, self.attendant.said
+        visitors = self.visitors
         last = Kill(started_at=self._led_at, joined_at=self._led_at)
         found = judge(
-            rows, deeds, self.kills, said, accepted=customers.accepted, told=customers.told, last=last
+            rows,
+            deeds,
+            self.kills,
+            said,
+            accepted=customers.accepted | visitors.accepted,
+            told=customers.told | visitors.told,
+            last=last,
         )
-        found.lost += customers.contradictions
+        found.lost += customers.contradictions + visitors.contradictions
         return found, two_leaders(self.cast.watch.seen), rows
 
     @property
@@ -117,8 +139,17 @@ class Run:
         return self._leader
 
     def _scene(self) -> Scene:
-        other = next(plant for plant in self._plants.values() if plant is not self._plant)
-        return Scene(network=self.network, cast=self.cast, leader=self._plant, standby=other, dice=self._dice)
+        return Scene(
+            network=self.network, cast=self.cast, leader=self._plant, standby=self._other, dice=self._dice
+        )
+
+    @property
+    def _other(self) -> HostPlant:
+        return next(plant for plant in self._plants.values() if plant is not self._leader)
+
+    def _is_idle(self, snapshot: dict[str, Any]) -> bool:
+        """Nobody waits for anything, and all that was brought has ended."""
+        return self.visitors.are_gone and all(task["state"] in OVER for task in snapshot["tasks"])
 
     def _is_at_work(self, snapshot: dict[str, Any]) -> bool:
         return self._is_well(snapshot) and any(cell["task"] for cell in snapshot["cells"])

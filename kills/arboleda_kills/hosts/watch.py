@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 import sys
 import threading
-import time
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.executors import ExternalShutdownException
 from rclpy.qos import QoSProfile
+
+from ..steady import unix_s
 
 DEPTH = 100
 
@@ -28,7 +29,7 @@ def main() -> None:
         id = next((pair.value for pair in message.values if pair.key == "accepted"), "")
         if id and accepted.get(robot) != id:
             accepted[robot] = id
-            print(json.dumps({"at": time.time(), "robot": robot, "id": id}), flush=True)
+            print(json.dumps({"at": unix_s(), "robot": robot, "id": id}), flush=True)
 
     for robot in sys.argv[1:]:
         node.create_subscription(

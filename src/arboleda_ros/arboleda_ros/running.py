@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import logging
 import os
-import signal
 import sys
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from arboleda.adapters.broker_login import login
+from arboleda.adapters.web.names import LOCAL
 from arboleda.app.alarm_options import alarm_options
 from arboleda.app.build import App, Options, build
 from arboleda.app.config import load_recorded
 from arboleda.app.log_file import LogFile
 from arboleda.app.log_queue import log_to
+from arboleda.app.waiting import raise_at_signals
+from arboleda.app.web_options import WebOptions
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 
@@ -43,6 +44,7 @@ _PARAMETERS: dict[str, tuple[Value, str]] = {
 }
 _DASHBOARD: dict[str, tuple[Value, str]] = {
     "dashboard": (False, "serve the page and the HTTP API on this machine: port 8080, or a free one"),
+    "dashboard_host": (LOCAL, "IP address where they listen; one that other hosts reach wants tokens"),
 }
 _STORE: dict[str, tuple[Value, str]] = {
     "store": ("", "database that keeps the plant's memory; empty: what the plant file says, else a file"),
@@ -53,9 +55,8 @@ _KINDS = {float: "a number", str: "a text", bool: "true or false"}
 
 
 def run(name: str) -> int:
-    """Run the node `name` until a signal raises KeyboardInterrupt; 1 where it cannot start."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _interrupt)
+    """Run the node `name` until a signal interrupts it; 1 where it cannot start."""
+    raise_at_signals()
     try:
         return _run(name)
     except ArboledaError as error:
@@ -126,6 +127,7 @@ def _app(link: Link, name: str) -> App:
         log_name="arboleda.log" if name == "orchestrator" else f"{name}.log",
         state_dir=Path(values["state_dir"]) if values["state_dir"] else None,
         store=values.get("store", ""),
+        web=WebOptions(host=values.get("dashboard_host", LOCAL)),
         recording=recording,
     )
     if values.get("standby"):
@@ -172,10 +174,3 @@ def _typed(key: str, value: Any, default: Value) -> Value:
     if type(value) is not wanted:
         raise StartError(f"the parameter {key} is {value!r}; {_KINDS[wanted]} is needed")
     return value
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    """Ends the wait; a second signal must not break the clean end."""
-    for each in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(each, signal.SIG_IGN)
-    raise KeyboardInterrupt

@@ -11,6 +11,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 from arboleda.wire.status import NUMBER, NUMBER_DIGITS, Status, from_status
+from arboleda.wire.strict import UINT32
 
 _TAIL = NUMBER_DIGITS + 1  # bytes of a serialized status that ends with its number: a zero follows it
 
@@ -65,7 +66,8 @@ class Ear:
         number = data[end:-1]
         if not self._tail:
             return self._last.again(at)
-        return self._last.again(at, number=int(number)) if number.isdigit() else None
+        allowed = number.isdigit() and int(number) <= UINT32  # what is not, is read and refused
+        return self._last.again(at, number=int(number)) if allowed else None
 
     def _read(self, at: float, data: bytes) -> Report:
         message = deserialize_message(data, DiagnosticStatus)

@@ -12,7 +12,7 @@ from .bench import HALT, LATCH, PATIENCE_S, Ref
 
 STATE_S = 0.02
 HOME = "home"
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+UNKNOWN, SUCCEEDED, CANCELED, ABORTED = 0, 4, 5, 6
 
 
 class Body(Protocol):
@@ -173,7 +173,10 @@ class PlayedServer:
         return response
 
     async def _hear_result(self, request: Any, response: Any) -> Any:
-        goal = self._goals[bytes(request.goal_id.uuid)]
+        goal = self._goals.get(bytes(request.goal_id.uuid))
+        if goal is None:  # sent before it booted
+            response.status = UNKNOWN
+            return response
         response.status = await goal.ended
         if goal.failed:
             self._body.give_up(response.result)

@@ -240,14 +240,32 @@ def test_after_silence_here_only_what_is_done_once_is_asked_of_the_next_leader(
     assert plant.texts == ["sis_a 0B 7 #lot-1"] and plant.acts == [(Verb.STOP, "", False)]
 
 
-def test_a_leader_that_is_silent_here_is_not_asked_twice(
-    state: Path, cutting: int, database: Database
-) -> None:
+def test_where_nobody_else_leads_silence_here_is_said(state: Path, cutting: int, database: Database) -> None:
     database.led = replace(led_at(cutting), process=os.getpid())
     with StateDir(state, plant="demo") as here:
         here.announce(cutting)
         with pytest.raises(Silent, match=r"did not answer\.$"):
             client(state).operate(Verb.STOP)
+
+
+def test_a_stop_that_a_slow_leader_has_not_answered_at_once_is_told_it_again(
+    state: Path, database: Database
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener, StateDir(state, plant="demo") as here:
+
+        def answer_the_second() -> None:
+            first, second = listener.accept()[0], listener.accept()[0]
+            second.recv(4096)
+            second.sendall(b'HTTP/1.1 200 OK\r\nContent-Length: 15\r\n\r\n{"verb":"stop"}')
+            second.close()
+            first.close()
+
+        thread = threading.Thread(target=answer_the_second, daemon=True)
+        thread.start()
+        here.announce(listener.getsockname()[1])
+        database.led = replace(led_at(listener.getsockname()[1]), process=os.getpid())
+        assert client(state).operate(Verb.STOP) == {"verb": "stop"}
+        thread.join()
 
 
 def test_who_follows_a_task_goes_on_with_the_next_leader(

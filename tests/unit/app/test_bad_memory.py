@@ -41,14 +41,22 @@ def _at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(session.Session, "run", run)
 
 
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The memory of a plant with tasks."""
+    path = tmp_path_factory.mktemp("filled") / "plant.sqlite"
+    fill(path)
+    return path.read_bytes()
+
+
 @pytest.fixture
-def memory(tmp_path: Path) -> Path:
+def memory(tmp_path: Path, filled: bytes) -> Path:
     """That of a plant with a task, in its state directory; beside that, a good backup of it."""
     for name in ("state", "other"):
         (tmp_path / name).mkdir()
     path = tmp_path / "state" / "plant.sqlite"
-    fill(path)
-    fill(tmp_path / "backup.sqlite")
+    path.write_bytes(filled)
+    (tmp_path / "backup.sqlite").write_bytes(filled)
     return path
 
 

@@ -275,6 +275,25 @@ def test_what_gives_a_robot_that_time_is_taken(tmp_path: Path, old: str, new: st
     load(tmp_path, (times + HASTY + STATIONS).replace(old, new))
 
 
+def test_at_joints_a_drive_is_given_the_time_for_a_node_that_is_told_long_after_its_stop(
+    tmp_path: Path,
+) -> None:
+    quick = ONE_CELL.replace("evidence: ids}\n    home:", "evidence: joints, timeout_s: 0.5}\n    home:")
+    (found,) = problems(tmp_path, TIMES.replace("0.1", "0.5") + quick + STATIONS)
+    assert "cells.sis_a.mobile: a move may take only 0.5 s longer than computed" in found
+    assert "an arrival may show 0.8 s later: a deadline_floor_s of 0.8 or more" in found
+    load(tmp_path, TIMES.replace("0.1", "0.8") + quick + STATIONS)
+
+
+def test_a_drive_over_a_path_may_begin_on_any_node_of_the_grid(tmp_path: Path) -> None:
+    """Eight edges of 1 s for a path of four nodes; 6 s are enough without the way to its start."""
+    mobile = "evidence: joints, speed_mm_s: 100, timeout_s: 6, grid: {pitch_mm: 100}}\n    home:"
+    slow = ONE_CELL.replace("evidence: ids}\n    home:", mobile)
+    (found,) = problems(tmp_path, TIMES + slow + STATIONS)
+    assert "cells.sis_a.mobile: a move may take only 0.1 s longer than computed (timeout_s 6," in found
+    load(tmp_path, TIMES + slow + STATIONS + "    drive_to_start: false\n")
+
+
 def test_at_state_a_move_of_no_length_is_given_time_for_a_word(tmp_path: Path) -> None:
     silent = ONE_CELL.replace("evidence: ids", "evidence: state") + STATIONS
     of_arm, of_mobile = problems(tmp_path, "timing: {stop_timeout_s: 0.2}\n" + silent)

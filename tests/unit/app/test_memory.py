@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import TaskQuery, course_of
 from arboleda.app.memory import kept_tasks, remembered
 from arboleda.model.errors import StartError
-from arboleda.model.messages import Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
+from arboleda.model.messages import Course, Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN, Phrase, retold
 
 
@@ -75,6 +76,24 @@ def test_a_task_comes_back_with_what_was_answered(store: Store) -> None:
     store.task(replace(change, state=TaskState.DONE), "weigh", 1002.0, answers=[heard])
     (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
     assert task.answers == (heard,)
+
+
+def test_a_task_comes_back_with_how_it_went_and_without_where_that_is_damaged(store: Store) -> None:
+    change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
+    store.task(change, "weigh", 1000.0)
+    course = Course(seconds=2.0, begun={"look #1": 0.25})
+    store.task(replace(change, state=TaskState.DONE, course=course), "weigh", 1002.0)
+    (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
+    assert task.course == course
+    (row,) = store.tasks(TaskQuery())
+    for damaged in (
+        "{",
+        "[]",
+        '{"seconds": 2}',
+        '{"seconds": "x", "begun": {}}',
+        '{"seconds": 2, "begun": 3}',
+    ):
+        assert course_of(replace(row, course=damaged)) is None
 
 
 def test_a_sentence_that_was_kept_with_braces_is_said_as_it_was() -> None:

@@ -45,7 +45,7 @@ from arboleda.testing.plants import shipped
 from arboleda.wire import status
 
 GRIP = Remember(fact=Fact.EFFECTOR, name="ra1", value="switching")
-ON = SetEffector(id="7-1", robot="ra1", on=True)
+ON, OFF = (SetEffector(id=id, robot="ra1", on=on) for id, on in (("7-1", True), ("7-9", False)))
 ACT = Journal(verb=Verb.STOP, scope="", cell=None, sentence=OWN(text="everything stopped"))
 
 
@@ -167,6 +167,14 @@ def test_the_latches_of_one_stop_are_kept_by_one_commit_before_the_first_leaves(
     assert plant.robots.messages == [stop_one, stop_two]
     turn(plant, first)
     assert told[2:] == [(first,)]
+
+
+def test_facts_that_stand_side_by_side_are_kept_by_one_commit(plant, store, monkeypatch):
+    step, over = Remember(fact=Fact.STEP, name="sis_a", value="1"), replace(GRIP, value="off")
+    told = commits(store, monkeypatch)
+    turn(plant, GRIP, step, ON, over, OFF, GRIP)
+    assert told == [(GRIP, step), (over,), (GRIP,)]
+    assert plant.robots.messages == [ON, OFF]
 
 
 def test_latches_of_the_same_robot_are_kept_in_their_order(plant, store, monkeypatch):

@@ -1,10 +1,12 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from queue import SimpleQueue
 
 import pytest
@@ -47,6 +49,56 @@ def test_what_is_put_is_taken_in_order_up_to_none() -> None:
     for word in ("one", "two", None, "three"):
         queue.put(word)
     assert list(waiting.taken_from(queue)) == ["one", "two"]
+
+
+PROGRAM = """
+from contextlib import suppress
+from arboleda.app.waiting import interruptible
+
+with suppress(KeyboardInterrupt), interruptible():
+    exec("import signal; signal.raise_signal(signal.{name}); print('not ended')")
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_while_a_class_is_made_from_a_text_leaves_a_clean_end(tmp_path: Path, name: str) -> None:
+    (tmp_path / "program.py").write_text(PROGRAM.format(name=name))
+    ran = subprocess.run(
+        [sys.executable, "-m", "program"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "", "")
+
+
+DROPPED = """
+import signal, sys, threading
+from arboleda.app import waiting
+from arboleda.app.waiting import interruptible, until, until_interrupted
+
+waiting.LOOK_S = 0.01
+
+class Last:
+    def __del__(self):
+        signal.raise_signal(signal.{name})
+
+sys.unraisablehook = lambda dropped: print(dropped.exc_type.__name__)
+with interruptible():
+    with until_interrupted():
+        Last()
+        until(threading.Event())
+    over = threading.Event()
+    threading.Timer(0.2, over.set).start()
+    until(over)
+    print("a clean end")
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_that_comes_in_a_finalizer_ends_the_next_wait_and_no_later_one(name: str) -> None:
+    """Python drops what is raised there."""
+    ran = subprocess.run(
+        [sys.executable, "-c", DROPPED.format(name=name)], capture_output=True, text=True, timeout=30
+    )
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "Interrupted\na clean end\n", "")
 
 
 def _signal_once_asleep(main: int) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from arboleda.core.choosing import CHOSEN, CHOSEN_IN_TROUBLE, FULL, HINDERED, LATER, PastTimes
 from arboleda.model.errors import TextError
-from arboleda.model.messages import TaskChanged, TaskRequest, TaskState, Verb
+from arboleda.model.messages import Course, TaskChanged, TaskRequest, TaskState, Verb
 from arboleda.model.task import Order, Task
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
@@ -34,6 +34,31 @@ def done(text: str, *seconds: float, recipe: str = "storage") -> list[Task]:
     return tasks
 
 
+def went(text: str, *courses: Course) -> list[Task]:
+    """Tasks that were held for a while each, so that what they took says nothing."""
+    tasks = done(text, *(1000.0 for _ in courses))
+    for task, course in zip(tasks, courses, strict=True):
+        task.course = course
+    return tasks
+
+
+def left(rig: Rig, cell: str) -> float:
+    """What is expected to be left of the task that runs there; nothing waits in its queue."""
+    times = PastTimes(rig.plant.intake.tasks.values())
+    (mine,) = (each for each in rig.plant.prospects(TASK) if each.order.cell == cell)
+    return mine.seconds - times.expected(mine.order)
+
+
+def learned(rig: Rig, text: str = "sis_a 0B 1") -> Course:
+    """How a task went that is done when it begins where the one before it has ended."""
+    for words in ("sis_a 0B 1", text):
+        task = rig.submit(words).task
+        assert rig.wait(60.0, lambda: rig.plant.intake.tasks[task].state is TaskState.DONE)  # noqa: B023
+    course = rig.plant.intake.tasks[task].course
+    assert course is not None
+    return course
+
+
 def order(text: str, recipe: str = "storage") -> Order:
     return Order(text=text, cell=text.split()[0], recipe=recipe)
 
@@ -56,6 +81,11 @@ def test_what_was_done_before_is_expected_to_take_as_long(rig: Rig) -> None:
     answer = rig.submit("sis_b,sis_a palletizing")
     assert answer.cell == "sis_a", "sis_b is at work"
     assert answer.choice is not None and answer.choice.values["seconds"] < 60.0, "something was done before"
+
+
+def test_a_task_that_ended_before_it_began_by_a_clock_that_was_set_back_says_nothing() -> None:
+    times = PastTimes(done("sis_a 0B 7", 30.0, -3570.0))
+    assert times.expected(order("sis_a 0B 7")) == 30.0
 
 
 def test_a_cell_in_trouble_is_left_out_however_little_it_has_to_do(rig: Rig) -> None:
@@ -165,6 +195,87 @@ def test_expected_of_what_was_never_done_is_what_is_most_like_it() -> None:
     assert times.expected(order("sis_c 0C 4")) == 25.0, "its recipe in other cells"
     assert times.expected(order("sis_c other", recipe="other")) == 20.0, "whatever was done"
     assert PastTimes([]).expected(order("sis_a 0B 1")) == 60.0
+
+
+def test_the_time_for_which_a_task_was_held_is_not_learned() -> None:
+    times = PastTimes(went("sis_a 0B 1", Course(seconds=20.0, begun={})))
+    assert times.expected(order("sis_a 0B 1")) == 20.0
+
+
+def test_what_is_left_is_what_was_left_at_that_step_less_what_it_took_so_far() -> None:
+    times = PastTimes(went("sis_a 0B 1", Course(seconds=20.0, begun={"a": 0.0, "b": 4.0, "c": 12.0})))
+    assert [times.left(order("sis_a 0B 1"), [("b", seconds)]) for seconds in (0.0, 5.0)] == [16.0, 11.0]
+
+
+def test_a_step_that_takes_longer_than_ever_leaves_what_comes_after_it() -> None:
+    times = PastTimes(went("sis_a 0B 1", Course(seconds=20.0, begun={"a": 0.0, "b": 4.0, "c": 12.0})))
+    assert times.left(order("sis_a 0B 1"), [("b", 3600.0)]) == 8.0
+    assert times.left(order("sis_a 0B 1"), [("c", 3600.0)]) == 0.0
+
+
+def test_steps_are_known_of_other_tasks_of_the_recipe_and_of_no_other_recipe() -> None:
+    courses = [Course(seconds=seconds, begun={"b": 4.0}) for seconds in (10.0, 12.0, 30.0)]
+    times = PastTimes(went("sis_a 0B 1", *courses))
+    assert times.left(order("sis_a 0C 4"), [("b", 1.0)]) == 7.0
+    assert times.left(order("sis_b 0C 4"), [("b", 1.0)]) == 7.0
+    assert times.left(order("sis_a 0C 4"), [("other", 0.5), ("b", 1.0)]) == 7.0, "the last that is known"
+    assert times.left(order("sis_a 0C 4"), [("other", 0.5)]) is None
+    assert times.left(order("sis_a palletizing", recipe="palletizing"), [("b", 1.0)]) is None
+
+
+def test_a_task_that_was_held_long_is_not_nearly_done(rig: Rig) -> None:
+    course = learned(rig)
+    rig.submit("sis_a 0B 1")
+    rig.wait(5.0)
+    assert left(rig, "sis_a") == pytest.approx(course.seconds - 5.0, abs=0.5)
+    rig.operate(Verb.HOLD, "sis_a")
+    rig.wait(300.0)
+    assert left(rig, "sis_a") == pytest.approx(course.seconds - 5.0, abs=0.5), "it stands"
+    rig.operate(Verb.RESUME, "sis_a")
+    rig.wait(2.0)
+    assert course.seconds - 5.5 > left(rig, "sis_a") > 0.5
+
+
+def test_a_task_is_learned_without_its_hold(rig: Rig) -> None:
+    course, task = learned(rig), rig.submit("sis_a 0B 1").task
+    rig.wait(5.0)
+    rig.operate(Verb.HOLD, "sis_a")
+    rig.wait(300.0)
+    rig.operate(Verb.RESUME, "sis_a")
+    assert rig.wait(60.0, lambda: rig.plant.intake.tasks[task].state is TaskState.DONE)
+    again = rig.plant.intake.tasks[task].course
+    assert again is not None and again.seconds == pytest.approx(course.seconds, abs=5.0)
+    assert again.begun.keys() == course.begun.keys()
+
+
+def test_how_tasks_went_is_known_after_a_restart_too(rig: Rig) -> None:
+    course = learned(rig, "sis_a 0B 1 #lot7")
+    rig.crash(PLANT)
+    rig.wait(5.0)
+    assert rig.plant.intake.tasks["lot7"].course == course
+
+
+def test_a_task_into_which_a_restart_cut_says_nothing_of_its_steps(rig: Rig) -> None:
+    rig.submit("sis_a 0B 1 #lot7")
+    rig.wait(5.0)
+    rig.crash(PLANT)
+    rig.wait(5.0)
+    rig.operate(Verb.RESUME, "sis_a")
+    task = rig.plant.intake.tasks["lot7"]
+    assert rig.wait(60.0, lambda: task.state is TaskState.DONE) and task.course is None
+
+
+def test_what_is_left_after_a_restart_goes_by_the_steps_that_began_since(rig: Rig) -> None:
+    course = learned(rig)
+    rig.submit("sis_a 0B 1 #lot7")
+    rig.wait(5.0)
+    rig.crash(PLANT)
+    rig.wait(300.0)
+    run = rig.plant.cells["sis_a"].run
+    assert not run.steps
+    rig.operate(Verb.RESUME, "sis_a")
+    assert rig.wait(30.0, lambda: bool(run.steps))
+    assert course.seconds > left(rig, "sis_a") > 1.0
 
 
 def test_what_cells_promise_is_said_without_giving_them_anything(rig: Rig) -> None:

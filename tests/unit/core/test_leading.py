@@ -7,10 +7,9 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.core.leading import (
     LEASE_S,
-    RENEW_S,
     SURE_S,
-    Candidate,
     Lease,
+    Silence,
     Standing,
     all_stand,
     at_work,
@@ -39,14 +38,17 @@ def test_a_lease_counts_from_when_it_was_asked_for_and_ends_before_that_of_the_s
 def test_a_clock_that_is_slower_finds_its_lease_over_before_anybody_else_may_lead(slower: float) -> None:
     lease = Lease()
     lease.renewed(0.0)
-    assert not lease.lasts(slower * LEASE_S)
+    faster = 2.0 - slower
+    assert not lease.lasts(slower * LEASE_S / faster)
 
 
-def test_who_waits_to_lead_gives_up_where_somebody_lives_and_after_the_longest_lease() -> None:
-    candidate = Candidate(10.0, (7, "seen"))
-    assert not candidate.gives_up(10.0 + LEASE_S + RENEW_S, (7, "seen"))
-    assert candidate.gives_up(10.1, (7, "seen again"))
-    assert candidate.gives_up(10.1 + LEASE_S + RENEW_S, (7, "seen"))
+@pytest.mark.parametrize("hours", [0.0, 1.0, -1.0], ids=["right", "an hour on", "an hour back"])
+def test_a_lease_ends_by_the_clock_of_who_waits_wherever_that_of_the_store_is_set(hours: float) -> None:
+    silence = Silence()
+    assert not silence.ends_lease(10.0, (7, 500.0))
+    assert not silence.ends_lease(12.0, (7, 502.0 + 3600.0 * hours))  # he has said something
+    assert not silence.ends_lease(12.0 + LEASE_S - 0.01, (7, 502.0 + 3600.0 * hours))
+    assert silence.ends_lease(12.0 + LEASE_S, (7, 502.0 + 3600.0 * hours))
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
+from arboleda.dispatch.belief import APART_S
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Stop, StopMode
@@ -44,6 +45,8 @@ def driven_to_the_arm(
     (path,) = plant.commands(FollowPath)
     plant.tell("rm_sis_a", state=MOVING, accepted=path.id)
     plant.tell("rm_sis_a", state=STILL, node=7, accepted=path.id, done=path.id)
+    if evidence is Evidence.JOINTS:
+        plant.tell("rm_sis_a", after=APART_S, node=7)
     (move,) = plant.commands(MoveJoints)
     return plant, move
 

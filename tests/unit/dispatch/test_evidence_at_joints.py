@@ -191,6 +191,30 @@ def test_a_path_that_comes_by_its_end_before_must_be_seen_driven(
     assert judged.end is not Feed.DONE if end is None else judged.end is end
 
 
+@pytest.mark.parametrize("nodes", [(0, 3, 0), (3, 0)], ids=str)
+def test_a_node_that_is_told_late_after_the_stop_is_not_where_a_robot_stands(nodes: tuple[int, ...]) -> None:
+    """It began a node before the one that was thought, so it came by its goal, drove on, and was halted."""
+    judged = drive(*nodes)
+    judged.hear(0.01, state=MOVING)
+    judged.hear(0.5, 3)
+    judged.stays(1.5, 2.5, 0)
+    judged.hear(2.5, state=STOPPED)
+    judged.hear(2.49 + APART_S, 0)
+    assert judged.end is None
+    judged.stays(2.51 + APART_S, 4.0, 3)
+    assert judged.end is not Feed.DONE
+
+
+def test_a_node_that_is_told_so_long_after_the_stop_is_where_a_robot_stands() -> None:
+    judged = drive(3, 0)
+    judged.hear(0.5, 3, MOVING)
+    judged.hear(2.0, 0)
+    judged.hear(2.5, state=STOPPED)
+    assert judged.end is None
+    judged.hear(2.5 + APART_S, 0)
+    assert judged.end is Feed.DONE
+
+
 def test_a_halt_is_not_proven_by_what_was_said_before_the_robot_heard_it() -> None:
     judged = move(GOAL)
     belief = judged.belief

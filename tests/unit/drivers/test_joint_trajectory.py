@@ -122,7 +122,6 @@ def test_a_server_that_lies_is_not_believed_while_the_arm_moves(rig: Rig) -> Non
         (Ended(id=GO.id, status=Status.ABORTED), "aborted"),
         (Ended(id=GO.id, status=Status.SUCCEEDED, error=-5), "goal_tolerance_violated"),
         (Ended(id=GO.id, status=Status.CANCELED), "cancelled_by_another_client"),
-        (Ended(id=GO.id, status=Status.UNKNOWN), "goal_unknown_to_the_server"),
     ],
 )
 def test_any_other_end_is_a_failure_with_its_word(rig: Rig, end: Ended, failure: str) -> None:
@@ -231,6 +230,24 @@ def test_joints_that_fall_silent_are_no_link_and_the_goal_is_cancelled_on_return
     rig.q = ZERO
     rig.wait(0.1)
     assert rig.last.state is MotionState.MOVING and rig.count(CancelAll) == 1
+
+
+def test_a_server_that_knows_no_such_goal_has_lost_it_where_no_other_is_found(rig: Rig) -> None:
+    rig.under_way()
+    rig.tell(Ended(id=GO.id, status=Status.UNKNOWN))
+    rig.wait(0.9)
+    assert (rig.last.failed, rig.last.state) == (None, MotionState.MOVING)
+    rig.wait(0.2)
+    assert (rig.last.failed, rig.last.failure) == (GO.id, "goal_unknown_to_the_server")
+
+
+def test_a_server_that_knows_no_such_goal_and_is_another_one_is_a_boot(rig: Rig) -> None:
+    """Asked for the end of a goal, a server that was started anew may answer before it is looked for."""
+    rig.under_way()
+    rig.tell(Ended(id=GO.id, status=Status.UNKNOWN))
+    rig.servers = (SERVER + 1,)
+    rig.wait(2)
+    assert (rig.last.boot_id, rig.last.failed, rig.last.state) == (SERVER + 1, None, MotionState.STOPPED)
 
 
 def test_a_server_that_is_started_anew_is_a_boot_and_knows_no_goal(rig: Rig) -> None:

@@ -1,15 +1,20 @@
-"""Which commands of two leaders boards accepted, and what the cable between hosts makes of a frame."""
+"""Which commands of two leaders boards accepted, how visitors bring tasks, what a cable makes of a frame."""
 
 from __future__ import annotations
 
 import os
 import random
+import threading
 import time
 
 import pytest
 
+from arboleda.recipes.storage_cell import StorageCell
+from arboleda.testing import shipped
 from arboleda_kills.hosts.cable import Cable
 from arboleda_kills.hosts.run import two_leaders
+from arboleda_kills.hosts.visitors import Visitors
+from arboleda_kills.hosts.ways import Answer
 
 ONE_BY_ONE = [(1.0, "ra1", "7-1"), (2.0, "ra1", "7-2"), (3.0, "ra1", "8-1"), (3.1, "ra2", "8-2")]
 
@@ -26,6 +31,46 @@ def test_a_command_of_the_leader_before_is_a_breach(robot: str) -> None:
 
 def test_what_two_boards_accepted_may_be_told_in_another_order() -> None:
     assert two_leaders([*ONE_BY_ONE, (3.2, "ra3", "7-3")]) == []
+
+
+def brought(monkeypatch: pytest.MonkeyPatch, *answers: Answer) -> Visitors:
+    """One visitor, who gets these answers and has brought one task then."""
+    monkeypatch.setattr("arboleda_kills.hosts.visitors.PACE_S", 0.0)
+    left, texts, there = list(answers), list[str](), threading.Event()
+
+    def way(text: str) -> Answer:
+        there.wait()
+        texts.append(text)
+        visitors.bring = len(left) > 1
+        return left.pop(0)
+
+    before = set(threading.enumerate())
+    visitors = Visitors([cell for cell in shipped().cells if isinstance(cell, StorageCell)], {"on foot": way})
+    started = set(threading.enumerate()) - before
+    there.set()
+    for thread in started:
+        thread.join(10.0)
+    assert visitors.are_gone and left == [] and len(set(texts)) == 1, "it is one task, with one id"
+    return visitors
+
+
+def test_a_visitor_asks_again_for_the_same_task_until_it_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    nobody = [Answer(sentence=f"process {number} has ended") for number in (7, 8)]
+    visitors = brought(monkeypatch, *nobody, Answer(state="queued"))
+    assert list(visitors.accepted) == ["v0-1"] and visitors.sent == {"on foot": 1}
+    assert visitors.refused == {("on foot", "process N has ended"): 2}
+    assert visitors.told == {} and visitors.contradictions == []
+
+
+def test_a_visitor_who_waited_in_vain_hears_how_its_task_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    broken_off = Answer(state="queued", sentence="the plant has ended")
+    visitors = brought(monkeypatch, broken_off, Answer(state="done"))
+    assert visitors.sent == {"on foot": 1} and visitors.told == {"v0-1": "done"}
+
+
+def test_an_end_that_becomes_another_one_is_a_contradiction(monkeypatch: pytest.MonkeyPatch) -> None:
+    twice = Answer(state="done", sentence="and then it broke off"), Answer(state="failed")
+    assert brought(monkeypatch, *twice).contradictions == ["v0-1 was done and then failed"]
 
 
 class Wires(Cable):

@@ -216,3 +216,30 @@ def test_an_answer_may_begin_with_what_is_no_id() -> None:
     assert here.operate(Verb.ANSWER, "ana #2") is not None
     assert here.operate(Verb.ANSWER, f"ana #{asked} #1-2 x") is None
     assert here.outcome().state.value == "done"
+
+
+@recipe("look")
+def look(cell: Kit):  # type: ignore[no-untyped-def]
+    left, ana = cell.devices("left", "ana")
+    return work(left.go("feed_2"), ana.ask("Is it clean?", ["yes"]), left.go("feed"), left.home())
+
+
+def test_a_task_that_waits_long_for_an_answer_is_not_nearly_done() -> None:
+    here = Bench(attended(look))
+    here.submit("tending look")
+    assert here.wait(30.0, lambda: question(here) is not None)
+    here.wait(2.0)
+    here.operate(Verb.ANSWER, "ana yes")
+    here.outcome()
+    (course,) = (task.course for task in here.plant.intake.tasks.values())
+    assert course is not None
+    after_answer_s = course.seconds - course.begun["ask ana #1"] - 2.0
+    here.submit("tending look")
+    assert here.wait(30.0, lambda: question(here) is not None)
+    here.wait(500.0)
+    (promised,) = here.plant.prospects("tending look")
+    assert promised.seconds - course.seconds == pytest.approx(after_answer_s)
+    asked_at = here.plant.now
+    here.operate(Verb.ANSWER, "ana yes")
+    here.outcome()
+    assert here.plant.now - asked_at == pytest.approx(after_answer_s, abs=0.5)

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.model.messages import (
+    Course,
     Event,
     Fact,
     Failure,
@@ -60,6 +61,7 @@ KEPT = st.builds(
     ended_at=maybe(NUMBERS),
     attempts=st.integers(0, 9),
     answers=st.lists(ANSWERS, max_size=2).map(tuple),
+    course=maybe(st.builds(Course, seconds=NUMBERS, begun=st.dictionaries(TEXTS, st.floats(0, 9)))),
 )
 NUMBER, WORD, FLAG = maybe(st.integers()), maybe(TEXTS), maybe(st.booleans())
 REPORTS = st.builds(

@@ -16,8 +16,10 @@ from arboleda.recorder import files, reader, recorder, writing
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
+from arboleda.recorder.writing import Writing
+from arboleda.testing import shipped
 
-from .recorded import PATIENCE_S, Site
+from .recorded import DEFAULT, PATIENCE_S, Site, beginning_of
 
 STOPPED = "the record has stopped: {}; the plant goes on without it"
 
@@ -114,6 +116,21 @@ def test_files_follow_each_other_and_the_oldest_go(tmp_path: Path, monkeypatch: 
     assert record.missing == numbers[0] - 1 and record.numbers == tuple(numbers)
     times = [step.now for step in record.steps()]
     assert times == sorted(times) and not record.broken
+
+
+def test_what_was_written_reaches_the_disk_also_where_the_clock_was_set_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now_ns, flushed = [10_000_000_000_000], list[PartFile]()
+    monkeypatch.setattr(PartFile, "flush", lambda part: flushed.append(part) or 0)
+    writing = Writing(tmp_path, beginning_of(shipped()), DEFAULT, unix_ns=lambda: now_ns[0])
+    writing.open()
+    writing.tend()
+    assert flushed == [], "it is not due yet"
+    now_ns[0] -= 3_600_000_000_000
+    writing.tend()
+    assert len(flushed) == 1
+    writing.drop()
 
 
 def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:

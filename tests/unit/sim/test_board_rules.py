@@ -406,7 +406,7 @@ def test_a_command_that_waited_for_longer_than_two_seconds_is_too_late(bench, ch
     assert (refusal(bench), said.state, said.ack) == (("tarde", 1), MotionState.STOPPED, None)
 
 
-def test_a_command_of_before_a_boot_is_too_late_whatever_it_names(bench):
+def test_a_command_that_names_what_was_told_before_a_boot_is_too_late(bench):
     bench.run(5)
     heard = told(bench)
     bench.reboot(BOARD)

@@ -9,7 +9,7 @@ import pytest
 
 from arboleda.core import leading
 from arboleda.core.leading import LEASE_S, LOOK_S, Standing
-from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import NOT_WITH_STANDBY, OF_HOSTS, Fault
@@ -19,6 +19,7 @@ from arboleda.simulator.run import Simulation
 from arboleda.simulator.watched import Broken, Watched
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
+from arboleda.wire.payloads import StopGoal
 
 SOON_S = LEASE_S + 3 * LOOK_S + STARTS_S
 
@@ -110,10 +111,11 @@ def test_an_answer_of_the_store_that_is_lost_changes_nothing() -> None:
 
 
 def cut_off_with_a_slow_clock() -> None:
-    """At the one instant in some hundred ms at which the other one leads between two beats of the first."""
+    """And the clock of who waits is fast."""
     watched = Watched(shipped("sis_a"), standby=True)
     watched.world.advance(2.0)
     watched.begin(fault("clock_drift", "host_a", seconds=90.0, word="slower", amount=0.035))
+    watched.begin(fault("clock_drift", "host_b", seconds=90.0, word="faster", amount=0.035))
     watched.world.advance(6.18)
     watched.begin(fault("store_cut", "host_a", seconds=20.0, word="to the store"))
     watched.world.advance(5.0)
@@ -123,6 +125,8 @@ def cut_off_with_a_slow_clock() -> None:
 def test_a_leader_with_a_slow_clock_that_is_cut_off_is_no_second_leader(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    # who waits leads in the first possible moment
+    monkeypatch.setattr("arboleda.simulator.hosts.hosts.LOOK_S", 0.01)
     cut_off_with_a_slow_clock()
     monkeypatch.setattr(leading, "SURE_S", LEASE_S)  # without the margin for clocks it is one
     with pytest.raises(Broken, match="one_leader_at_a_time"):
@@ -160,3 +164,37 @@ def _rates(model, seed: int, *, standby: bool):  # type: ignore[no-untyped-def]
 def test_what_cannot_befall_the_plant_is_refused(kind: str, standby: bool, sentence: str) -> None:
     with pytest.raises(BadFaults, match=sentence):
         Climate.from_file(shipped("sis_a"), 1, {"rates": {kind: 1.0}}, standby=standby)
+
+
+def test_a_verb_that_a_next_leader_finds_at_its_first_step_is_judged_by_what_it_knows_then() -> None:
+    nothing_heard = fault("hop_delay", word="to plant", amount=1.4, seconds=20.0)
+    with two_hosts(nothing_heard, fault("leader_killed")) as (watched, hosts, _):
+        world = watched.world
+        while hosts.leader.host.name == "host_a":
+            world.advance(0.05)
+        refused: list[str] = []
+        world.watchers.append(
+            lambda: refused.extend(
+                str(each.refusal) for each in world.moment.sent if isinstance(each, OperatorAnswer)
+            )
+        )
+        world.request_verb(Verb.RESUME)
+        world.advance(SOON_S)
+        (why,) = refused
+        assert why == "ra1 was not heard yet; until then nobody can tell what became of the step of sis_a"
+
+
+def test_a_stop_that_comes_in_one_go_with_the_next_leaders_first_beat_counts_as_of_before() -> None:
+    held = fault("partition", "ra_1", word="down, held", seconds=8.0)
+    with two_hosts(held, fault("store_away", "store", seconds=1.6)) as (watched, hosts, _):
+        carried_out: list[tuple[int, StopGoal]] = []
+        watched.world.watchers.append(
+            lambda: carried_out.extend(
+                (len(hosts.numbers), goal)
+                for board, goal in watched.world.moment.executed
+                if board == "ra_1" and isinstance(goal, StopGoal)
+            )
+        )
+        watched.world.advance(12.0)
+        (numbers, stop) = carried_out[0]
+        assert numbers == 2 and stop.epoch == hosts.numbers[0][0]

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.model.plant_model import Cell
 from arboleda.testing import shipped
 from arboleda.trees import fingerprint, steps
 from arboleda.trees.leaves import Unless
@@ -73,3 +74,12 @@ def test_what_a_cell_is_made_of_counts_and_what_only_its_queue_needs_does_not() 
     assert made(arm=replace(cell.arm, timeout_s=77.0)) != same
     assert made(home=replace(cell.home, q=(0.1, 0.1, 0.0))) != same
     assert fingerprint.of_cell(cell, "palletizing", {}) != same
+
+
+def test_a_step_that_has_taken_in_its_cell_does_not_count_its_queue_either() -> None:
+    def named(cell: Cell) -> str:
+        return of(lambda: cell.name != "")
+
+    (cell,) = shipped("sis_a").cells
+    assert named(cell) == named(replace(cell, queue_limit=7, goes_on=True))
+    assert named(cell) != named(replace(cell, name="other"))

@@ -7,7 +7,7 @@ import pytest
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from arboleda.model.messages import Verb
+from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.model.sentence import in_json
 from arboleda.testing import Rig, shipped
@@ -73,6 +73,15 @@ def test_a_dwell_says_how_long_it_has_left(rig: Rig) -> None:
     rig.wait(0.12)
     dwell = row(rig.snapshot(), "dwell")
     assert dwell["since_s"] > 0 and dwell["since_s"] + dwell["deadline_s"] == pytest.approx(0.2)
+
+
+def test_a_dwell_that_is_held_after_its_time_has_none_left(rig: Rig) -> None:
+    """The plant was frozen, and the first that it hears then is that it shall hold."""
+    rig.submit("sis_a 0B 7")
+    rig.wait(0.1)
+    rig.plant.step(rig.now + 1.0, [OperatorRequest(verb=Verb.HOLD, scope="sis_a", at=rig.now)])
+    dwell = row(rig.snapshot(), "dwell")
+    assert dwell["since_s"] > 1.0 and dwell["deadline_s"] == 0.0
 
 
 def test_a_node_that_does_not_run_has_no_times(rig: Rig) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import quoted
 
-VERSION = 8
+VERSION = 9
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
 MOVE_AWAY = (

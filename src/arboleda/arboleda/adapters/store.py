@@ -38,6 +38,7 @@ WHO_AND_HOW_OFTEN = (
 )
 ANSWERS = ("ALTER TABLE task ADD COLUMN answers TEXT",)
 CHOICE = ("ALTER TABLE task ADD COLUMN choice TEXT",)
+COURSE = ("ALTER TABLE task ADD COLUMN course TEXT",)
 TIMES_OF_CELLS = (
     # from which second to which a cell did no work; `until_s` is null while it lasts
     "CREATE TABLE down (number INTEGER PRIMARY KEY, cell TEXT NOT NULL, state TEXT NOT NULL,"
@@ -56,6 +57,7 @@ SCHEMA = (
     *ANSWERS,
     *TIMES_OF_CELLS,
     *CHOICE,
+    *COURSE,
     f"PRAGMA user_version = {VERSION}",
 )
 SINCE = {
@@ -66,6 +68,7 @@ SINCE = {
     5: ANSWERS,
     6: TIMES_OF_CELLS,
     7: CHOICE,
+    8: COURSE,
 }
 IN_MEMORY = Path(":memory:")
 

@@ -16,7 +16,7 @@ from io import StringIO
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Reason, TaskAnswer, TaskState
+from arboleda.model.messages import Course, Reason, TaskAnswer, TaskState
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import OWN, Sentence, retold
 from arboleda.views.oee import Kept, Oee, oee
@@ -36,7 +36,8 @@ class TaskRow:
     task that the plant accepts. `asked_by` is the way by which it came, None where nobody knows;
     `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
     `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
-    `choice` is JSON of why it is done in its cell, None where it names no other.
+    `choice` is JSON of why it is done in its cell, None where it names no other; `course` of how it went,
+    None before it is done.
     """
 
     number: int
@@ -55,6 +56,7 @@ class TaskRow:
     attempts: int = 0
     answers: str | None = None
     choice: str | None = None
+    course: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -149,6 +151,21 @@ def choice_of(row: TaskRow) -> Sentence | None:
 def choice_written(choice: Sentence | None) -> str | None:
     """What `choice_of` reads."""
     return choice and json.dumps({"english": str(choice), **choice.data()}, ensure_ascii=False)
+
+
+def course_of(row: TaskRow) -> Course | None:
+    """How a task went that is done; None where that is not as written."""
+    try:
+        said = json.loads(row.course or "null")
+        begun = {step: float(at) for step, at in said["begun"].items()}
+        return Course(seconds=float(said["seconds"]), begun=begun)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
+
+
+def course_written(course: Course | None) -> str | None:
+    """What `course_of` reads."""
+    return course and json.dumps(vars(course), separators=(",", ":"))
 
 
 def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -106,7 +107,7 @@ class App:
         self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))
         self._metrics: Metrics | None = None
-        self._web = self._web_part(options) if "web" in parts else None
+        self._web: WebPart | None = None
         options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
         self._alarms = alarms_part(model, options.alarms, self._broker, self._seen_at)
         self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
@@ -321,7 +322,11 @@ class App:
     def _build(self, parts: set[str], options: Options) -> None:
         now, bridge, drivers = int(time.time()), None, None
         virtual, scout = "devices" in parts, "broker" not in parts
+        if "web" in parts and options.page:
+            import_module("arboleda.dashboard.page")  # takes longer than a leader may say nothing
         epoch = self._lead(now) if "orchestrator" in parts else now
+        if "web" in parts:  # a process has one page, so it is made by who leads
+            self._web = self._web_part(options)
         if "bridge" in parts:
             waits = virtual and scout
             bridge = self._bridge = BridgePart(

@@ -18,13 +18,14 @@ from arboleda.model.outside import plain
 from . import places
 from .elsewhere import Elsewhere, Nobody
 from .led import of_standby
-from .line import Answer, FarLine, Line, Silent
+from .line import TIMEOUT_S, Answer, FarLine, Line, Silent
 from .state import Running, find_running, running_plants
 
 LONGEST = 500  # characters of a line
 NEXT_S = 30.0  # by then a plant that lost its leader has the next one
 NOBODY_S = 5.0  # who stood by needs less to begin; while it does, nobody leads and nobody waits
 LOOK_S = 0.2
+URGENT_S = 1.5  # a stop is answered within some ms
 STANDS_BY = "this process stands by and does nothing itself: it {it}"
 LOST_TASK = (
     "It may have taken the task: `arboleda tasks` says so. With an id of yours, as in `sis_a 0B 7 #lot42`, it"
@@ -73,7 +74,8 @@ class PlantClient:
         """Have the plant (no scope) or one cell, robot, zone or task do it; Refused where it does not."""
         where = f"cells/{quote(scope, safe='')}" if scope else "plant"
         body = {"by_hand": True} if by_hand else None
-        return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=verb is Verb.STOP)
+        stops = verb is Verb.STOP
+        return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
 
     def changes(self) -> Iterator[tuple[str, dict[str, Any]]]:
         """What `GET /api/events` says, as it happens: the kind of each event and its row, `snapshot` first.
@@ -137,14 +139,25 @@ class PlantClient:
         return [row for row in rows if row["id"] == id]
 
     def _ask(
-        self, method: str, path: str, body: dict[str, Any] | None = None, *, repeatable: bool = False
+        self,
+        method: str,
+        path: str,
+        body: dict[str, Any] | None = None,
+        *,
+        repeatable: bool = False,
+        urgent: bool = False,
     ) -> Any:
-        """`repeatable`: nothing is done twice where two processes of the plant hear it."""
+        """`repeatable`: nothing is done twice where two processes of the plant hear it. `urgent`: a process
+        here that is slow keeps it from a leader elsewhere for no longer than URGENT_S."""
         line = self._listening or self._near() or self._far()
+        hurries = urgent and self._elsewhere.is_known and not isinstance(line, FarLine)
         try:
-            answer = line.ask(method, path, body)
+            answer = line.ask(method, path, body, within_s=URGENT_S if hurries else TIMEOUT_S)
         except Silent as error:
-            line = self._instead(line, error, repeatable=repeatable or method == "GET")
+            other = self._instead(line, error, repeatable=repeatable or method == "GET")
+            if other is None and not hurries:
+                raise
+            line = other or line  # with the rest of its time
             answer = line.ask(method, path, body)
         if answer.stands_by and not isinstance(line, FarLine):
             line = self._beyond(answer)
@@ -195,14 +208,15 @@ class PlantClient:
             raise ArboledaError(f"{here}. {error}") from error
         raise ArboledaError(f"{here}; {_others()}." if running is None else f"{here}.")
 
-    def _instead(self, line: Line, silent: Silent, *, repeatable: bool) -> Line:
-        """To another process that leads the plant, where one on this host was silent; else Silent."""
+    def _instead(self, line: Line, silent: Silent, *, repeatable: bool) -> Line | None:
+        """To another process that leads the plant, where one on this host was silent; None where none does,
+        Silent where it must not be asked as well."""
         led, running = None, find_running(self._state)
         if not isinstance(line, FarLine):
             with suppress(ArboledaError):  # what matters is that the one here was silent
                 led = self._elsewhere.led()
         if led is None or (led.here and running is not None and led.process == running.pid):
-            raise silent
+            return None
         if silent.may_have_heard and not repeatable:
             sentence = f"{silent} Plant {led.plant} is led on {led.host} now."
             raise Silent(sentence, may_have_heard=True) from silent

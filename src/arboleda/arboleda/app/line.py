@@ -67,12 +67,14 @@ class Line:
         self.place = place
         self._name = name
 
-    def ask(self, method: str, path: str, body: dict[str, Any] | None = None) -> Answer:
+    def ask(
+        self, method: str, path: str, body: dict[str, Any] | None = None, *, within_s: float = TIMEOUT_S
+    ) -> Answer:
         """What it answers, refusals too; Silent."""
         import httpx
 
         try:
-            with self._http() as http:
+            with self._http(silence_s=within_s) as http:
                 return _answer(http.request(method, f"{self.place.url}{path}", json=body))
         except (httpx.HTTPError, ValueError) as error:
             raise self._silent(error) from error
@@ -127,7 +129,7 @@ class Line:
         # not followed blindly: where it leads to, another token counts.
         return httpx.Client(
             trust_env=False,
-            timeout=httpx.Timeout(TIMEOUT_S, connect=self.connect_s, read=silence_s),
+            timeout=httpx.Timeout(TIMEOUT_S, connect=min(self.connect_s, silence_s), read=silence_s),
             headers=self._headers,
             verify=self.place.believed(),
             follow_redirects=False,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
@@ -24,7 +23,7 @@ from arboleda.views import view
 
 from .parts.records import Records
 from .urdf import robot_urdf
-from .waiting import interruptible, until
+from .waiting import interruptible, until, until_interrupted
 
 if TYPE_CHECKING:
     from arboleda.recorder.reader import Record
@@ -79,7 +78,7 @@ def show(record: Record, model: PlantModel, query: dict[str, str], port: int | N
             address = server.start()
             print(f"Page: {address}?{urlencode(query)}", flush=True)
             print("Ctrl-C ends it.", flush=True)
-            with suppress(KeyboardInterrupt):
+            with until_interrupted():
                 until(threading.Event())
         finally:
             server.stop()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import partial
 from importlib.metadata import entry_points
 from queue import SimpleQueue
@@ -22,7 +22,7 @@ from .errand import Errand
 from .log_file import LogFile
 from .log_queue import LogQueue, log_to
 from .screen import Screen, logged, parting, summary
-from .waiting import interruptible, taken_from
+from .waiting import interruptible, taken_from, until_interrupted
 
 NO_ROS = (
     "ROS 2 for Python is not installed here; install it with `pip install 'arboleda[ros]'`, "
@@ -68,7 +68,7 @@ class Session:
         with interruptible(), self._logging() as self._log:
             self._start()
             try:
-                with suppress(KeyboardInterrupt):
+                with until_interrupted():
                     self._tell_notes()
                     self._errand.start(self._app.submit)
                     with self._screen:

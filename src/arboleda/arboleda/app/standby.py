@@ -22,7 +22,7 @@ from .build import App, Options, build
 from .led import Led, of_leader
 from .parts.waiting_room import WaitingRoom
 from .state import StateDir, default_state
-from .waiting import interruptible
+from .waiting import heed, interruptible
 
 if TYPE_CHECKING:
     from arboleda.adapters.postgres.leadership import Leader, Leadership
@@ -111,7 +111,7 @@ def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _T
     while True:
         try:
             leader = others.leader()
-            if not leader.leads:
+            if others.is_free():
                 others.wait_no_more()
                 told.waits("leads the plant from now on", OK)
                 return
@@ -122,6 +122,7 @@ def _until_free(others: Leadership, plant: str, own: Callable[[], str], told: _T
         except ArboledaError as error:
             told.waits(f"waits for the database: {error}", WARN)
         time.sleep(LOOK_S)
+        heed()
 
 
 def _led_by(leader: Leader) -> str:

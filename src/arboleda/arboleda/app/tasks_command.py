@@ -145,7 +145,7 @@ def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
 
 
 def _json_of(row: TaskRow) -> dict[str, str | None]:
-    return {"said": row.said, "choice": row.choice}
+    return {"said": row.said, "choice": row.choice, "course": row.course}
 
 
 def _csv(rows: Sequence[TaskRow], *, first: bool) -> None:

@@ -8,9 +8,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 from types import FrameType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 T = TypeVar("T")
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 # Python runs the handler of a signal between two instructions of the main thread. A signal that comes when
 # that thread is about to sleep on a lock does not wake it: its handler waits for the end of the sleep.
@@ -20,7 +21,7 @@ LOOK_S = 0.5
 def until(event: threading.Event) -> None:
     """Block until the event is set."""
     while not event.wait(LOOK_S):
-        pass
+        heed()
 
 
 def taken_from(queue: SimpleQueue[T | None]) -> Iterator[T]:
@@ -29,24 +30,64 @@ def taken_from(queue: SimpleQueue[T | None]) -> Iterator[T]:
         try:
             taken = queue.get(timeout=LOOK_S)
         except Empty:
+            heed()
             continue
         if taken is None:
             return
         yield taken
 
 
+class Interrupted(KeyboardInterrupt):
+    """A signal wants the program to end.
+
+    While Python carries out a text, as it does to make a dataclass, it takes a plain KeyboardInterrupt for
+    one that nobody will catch: `python -m` would end with the status of a signal, however clean the end was.
+    """
+
+
+def raise_at_signals() -> dict[signal.Signals, Any]:
+    """SIGINT and SIGTERM are Interrupted from now on, the first of them only; the handlers of before."""
+    return {number: signal.signal(number, _interrupt) for number in SIGNALS}
+
+
+def heed() -> None:
+    """Interrupted where a signal came for which nobody has ended yet.
+
+    Whatever waits asks for it: what is raised while Python carries out a finalizer is dropped.
+    """
+    if _Signals.unheeded:
+        raise Interrupted
+
+
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """SIGTERM is a KeyboardInterrupt like Ctrl-C; a second signal does not break a clean end."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        for each in before:
-            signal.signal(each, signal.SIG_IGN)
-        raise KeyboardInterrupt
-
-    before = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    """SIGTERM is Interrupted like Ctrl-C; a second signal does not break a clean end."""
+    before = raise_at_signals()
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        _Signals.unheeded = False
+
+
+@contextmanager
+def until_interrupted() -> Iterator[None]:
+    """A signal ends the block, and nothing that waits after it."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        _Signals.unheeded = False
+
+
+class _Signals:
+    """What the handler leaves behind, beside what it raises."""
+
+    unheeded = False
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    for each in SIGNALS:
+        signal.signal(each, signal.SIG_IGN)
+    _Signals.unheeded = True
+    raise Interrupted

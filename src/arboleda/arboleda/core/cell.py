@@ -502,6 +502,7 @@ class CellRun:
     def _ended(self, *, recovered: bool) -> None:
         """The tree has come to its end: the task is over, and the cell ready or held."""
         task, found, leaf = self.task, self.context.failure, self.context.failed_leaf
+        course = self.run.course
         self.run.drop()
         if not recovered:
             unknown = Failure(reason=Reason.INTERNAL, sentence=NO_CAUSE(cell=self.cell.name))
@@ -514,8 +515,11 @@ class CellRun:
             task.fail(found, path_of(leaf) if leaf else None)
         if self._cancelling:
             self._finish(task, TaskState.CANCELLED)
+        elif task.failure:
+            self._finish(task, TaskState.FAILED)
         else:
-            self._finish(task, TaskState.FAILED if task.failure else TaskState.DONE)
+            task.course = course
+            self._finish(task, TaskState.DONE)
 
     def _stuck(self, failure: Failure) -> None:
         self.queue_paused = True

@@ -23,34 +23,52 @@ LATER = Phrase("choice.later", "{cell} in {seconds:.0f} s")
 HINDERED = Phrase("choice.hindered", "not {cell}: {why}")
 FULL = Phrase("choice.full", "not {cell}: its queue is full")
 UNKNOWN_S = 60.0  # what a task is taken to need where nothing like it was ever done
-LAST = 5  # of the times that a task took, those that count
+LAST = 5  # of the tasks that are alike, those that count
+Key = tuple[str, ...]
+ANY: Key = ("any",)
 
 
 class PastTimes:
-    """How long tasks took that were done, as far as the plant remembers them."""
+    """How tasks went that were done, as far as the plant remembers them."""
 
     def __init__(self, tasks: Iterable[Task]) -> None:
-        self._took: dict[tuple[str, ...], deque[float]] = {}
+        self._done: dict[Key, deque[Task]] = {}
         for task in tasks:
-            if task.state is TaskState.DONE and task.started_at is not None and task.ended_at is not None:
-                for key in _keys(task.order):
-                    took = self._took.setdefault(key, deque(maxlen=LAST))
-                    took.append(task.ended_at - task.started_at)
+            if task.state is TaskState.DONE and _took(task) >= 0:  # less where a clock was set back
+                for key in (*_keys(task.order), ANY):
+                    self._done.setdefault(key, deque(maxlen=LAST)).append(task)
 
     def expected(self, order: Order) -> float:
         """The median of the last times that this very task took; else of its recipe in that cell, of its
         recipe in any cell, of whatever was done."""
-        found = (self._took[key] for key in _keys(order) if key in self._took)
-        took = next(found, None)
-        return UNKNOWN_S if took is None else median(took)
+        alike = next((self._done[key] for key in (*_keys(order), ANY) if key in self._done), ())
+        return median(map(_took, alike)) if alike else UNKNOWN_S
+
+    def left(self, order: Order, steps: Sequence[tuple[str, float]]) -> float | None:
+        """What is expected to be left of a task whose steps began so many s ago, the last one first: the
+        median of what was left the last times that such tasks were where it is; None where none ever was.
+        """
+        for key in _keys(order):
+            courses = [task.course for task in self._done.get(key, ()) if task.course is not None]
+            for step, seconds in steps:
+                found = [left for course in courses if (left := course.left(step, seconds)) is not None]
+                if found:
+                    return median(found)
+        return None
 
 
-def _keys(order: Order) -> tuple[tuple[str, ...], ...]:
-    """What a time is kept for, the narrowest first."""
+def _keys(order: Order) -> tuple[Key, ...]:
+    """What is alike, the most alike first."""
     if not order.recipe:
-        return (("text", order.text), ("any",))
-    of_recipe = (("cell", order.cell, order.recipe), ("recipe", order.recipe))
-    return (("text", order.text), *of_recipe, ("any",))
+        return (("text", order.text),)
+    return ("text", order.text), ("cell", order.cell, order.recipe), ("recipe", order.recipe)
+
+
+def _took(task: Task) -> float:
+    """Without the time for which it was held, where that is known."""
+    if task.course is not None:
+        return task.course.seconds
+    return (task.ended_at or 0.0) - (task.started_at or 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,9 +89,18 @@ class Prospect:
 def prospect(order: Order, run: CellRun, times: PastTimes, now: float) -> Prospect:
     """That of one cell: what is left of its task, then those that wait, then this one."""
     seconds = times.expected(order) + sum(times.expected(task.order) for task in run.queue)
-    if run.task is not None and run.task.started_at is not None:
-        seconds += max(times.expected(run.task.order) - (now - run.task.started_at), 0.0)
+    if run.task is not None:
+        seconds += _left(run.task, run, times, now)
     return Prospect(order=order, seconds=seconds, hindrance=run.hindrance, is_full=run.is_full)
+
+
+def _left(task: Task, run: CellRun, times: PastTimes, now: float) -> float:
+    """What is left of the task that runs, by the step at which it is; where nothing is known of that, by how
+    long it has run."""
+    left = times.left(task.order, run.run.steps)
+    if left is not None:
+        return left
+    return max(times.expected(task.order) - (now - (task.started_at or now)), 0.0)
 
 
 def best(prospects: Sequence[Prospect]) -> tuple[Order, Sentence]:

@@ -14,10 +14,10 @@ from arboleda.model.messages import Notice
 from .cell_states import CellState
 from .leaving import leaves_unkept
 
-LEASE_S = 2.5  # by the store's clock: who did not say for so long that he leads may be superseded
-# By his own clock a leader is sure for less. Clocks of two machines do not run equally fast, and one that is
-# slower by up to a twenty-fifth still finds its lease over before anybody else may lead.
-SURE_S = 2.4
+LEASE_S = 2.5  # by the clock of who waits: who did not say for so long that he leads may be superseded
+# By his own clock a leader is sure for less. Clocks of two machines do not run equally fast: where his is
+# slower by up to a twenty-fifth, and that of who waits faster by as much, his lease is still over first.
+SURE_S = 2.3
 RENEW_S = 0.5  # how often a leader says that he leads
 AGAIN_S = 1.0  # for how long what finds no store is tried again, as while a database restarts
 LOOK_S = 0.2  # how often who waits looks whether anybody leads
@@ -47,19 +47,19 @@ class Lease:
         return now < self._until
 
 
-class Candidate:
-    """Tries to lead a plant that may be led: who was killed and cannot say so is waited for, and no longer.
+class Silence:
+    """For how long a leader has said nothing, by the clock of who waits for that: the store's may be set."""
 
-    `seen` is what the store last heard of a leader.
-    """
+    def __init__(self) -> None:
+        self._seen: object = None
+        self._since = math.inf
 
-    def __init__(self, now: float, seen: object) -> None:
-        self._until = now + LEASE_S + RENEW_S
-        self._seen = seen
-
-    def gives_up(self, now: float, seen: object) -> bool:
-        """Whether somebody else leads, and is alive."""
-        return now > self._until or seen != self._seen
+    def ends_lease(self, now: float, seen: object) -> bool:
+        """Whether it has lasted as long as a lease; `seen` is what the store last heard of him, another thing
+        whenever he says anything."""
+        if seen != self._seen:
+            self._seen, self._since = seen, now
+        return now - self._since >= LEASE_S
 
 
 def may_leave(message: Command | Notice, standing: Standing) -> bool:

@@ -251,6 +251,7 @@ class Plant:
             sentence=task.failure.sentence if task.failure else sentence or NOTHING,
             request=request,
             choice=task.choice,
+            course=task.course,
         )
         self.dispatcher.outbox.append(change)
         if task.ended_at is not None:

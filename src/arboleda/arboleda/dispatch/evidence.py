@@ -290,12 +290,26 @@ def _move_by_joints(entry: Entry, belief: Belief, report: Report) -> Verdict | N
     seen = entry.seen
     if belief.state is MotionState.STOPPED:
         if seen.on_goal_since is not None:
-            moved = seen.moving and seen.stopped_since is not None
-            if moved or report.at >= seen.on_goal_since + QUIET_S:
+            if _stays_on_goal(entry, belief, report.at, since=seen.on_goal_since):
                 return Verdict(feed=Feed.DONE)
         elif _stays_short(entry, belief, report.at):
             return _short(entry)
     return Verdict(feed=Feed.ACCEPTED) if seen.moving and entry.state is State.SENT else None
+
+
+def _stays_on_goal(entry: Entry, belief: Belief, at: float, *, since: float) -> bool:
+    """Whether one that says stopped, and its goal `since`, has come to rest there.
+
+    Who goes from node to node may have left the last one that it told: where it was not on the node on which
+    its way was thought to begin, it comes by its goal and goes on. So a node counts that was told so long
+    after the stop that it cannot be from before.
+    """
+    seen = entry.seen
+    if not seen.moving:
+        return at >= since + QUIET_S
+    if seen.stopped_since is None:
+        return False
+    return len(entry.way) <= 1 or belief.position_at >= seen.stopped_since + APART_S
 
 
 def _stays_short(entry: Entry, belief: Belief, at: float) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import Enum
 from functools import cached_property
@@ -69,10 +70,31 @@ class TaskAnswer:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Course:
+    """How a task went that was done: how many s it took, and after how many each of its steps began last, by
+    the step's name and its number among those of that name. While it was held no time passed.
+    """
+
+    seconds: float
+    begun: Mapping[str, float]
+
+    def left(self, step: str, seconds: float) -> float | None:
+        """What was left of it so many s after this step had begun, and at least what was left when the next
+        one began; None where it did not come to this step.
+        """
+        at = self.begun.get(step)
+        if at is None:
+            return None
+        following = min((each for each in self.begun.values() if each > at), default=self.seconds)
+        return self.seconds - min(at + seconds, following)
+
+
+@dataclass(frozen=True, kw_only=True)
 class KeptTask:
     """What was kept of a task that an earlier start accepted; times in s of this start's clock.
 
     `recipe` is "" where nobody knows; `choice` says why it is done in its cell, where several were allowed.
+    `course` is known of tasks that were done from their beginning in one start of the plant.
     """
 
     id: str
@@ -86,6 +108,7 @@ class KeptTask:
     answers: tuple[TaskAnswer, ...] = ()
     recipe: str = ""
     choice: Sentence | None = None
+    course: Course | None = None
 
 
 class Verb(str, Enum):
@@ -124,7 +147,7 @@ class SystemStart:
 class TaskChanged:
     """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
     says of a refused one that the same text may be taken later. `choice` says why it is done in this cell,
-    where several were allowed."""
+    where several were allowed; `course` how it went that is done."""
 
     task: str
     text: str
@@ -135,6 +158,7 @@ class TaskChanged:
     request: str | None = None
     for_now: bool = False
     choice: Sentence | None = field(default=None, repr=False)
+    course: Course | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .errors import IllegalTransition
-from .messages import Failure, KeptTask, TaskAnswer, TaskState
+from .messages import Course, Failure, KeptTask, TaskAnswer, TaskState
 from .sentence import Sentence
 
 
@@ -48,6 +48,7 @@ class Task:
         self.ended_at: float | None = None
         self.attempts = 0  # how often its work was begun, or its step given again by a retry
         self.answers: list[TaskAnswer] = []  # in the order in which they came
+        self.course: Course | None = None  # how it went, once it is done
         self.is_kept = False  # whether an earlier start accepted it
 
     @classmethod
@@ -57,7 +58,7 @@ class Task:
         task = cls(kept.id, order or looked_at, kept.choice)
         task.state, task.failure = kept.state, kept.failure
         task.started_at, task.ended_at, task.is_kept = kept.started_at, kept.ended_at, True
-        task.attempts, task.answers = kept.attempts, list(kept.answers)
+        task.attempts, task.answers, task.course = kept.attempts, list(kept.answers), kept.course
         return task
 
     def become(self, state: TaskState, now: float) -> None:

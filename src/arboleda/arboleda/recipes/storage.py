@@ -157,17 +157,29 @@ def _follow(
 ) -> Behaviour:
     """Drive over nodes; given anew after a hold or a failure, only over what remains of them.
 
+    A robot that stands on none of them by then, as one that lied of its node or was carried away, is led from
+    there where the cell drives to starts: straight to the last node, or, where all of them are to be driven,
+    to the first one.
+
     `whole`: given for the first time all of them, as the robot stands where they begin: the last node that
     it told may be older than the end of its last drive, and a round trip comes by there once more.
     """
-    mobile = _as_storage(context.cell).mobile.name
+    cell = _as_storage(context.cell)
+    mobile = cell.mobile
 
     def all_of_it(id: str) -> FollowPath:
-        return FollowPath(id=id, robot=mobile, nodes=nodes)
+        return FollowPath(id=id, robot=mobile.name, nodes=nodes)
 
     def rest_of_it(id: str) -> FollowPath:
-        node = _node(context)
-        rest = nodes[nodes.index(node) :] if node in nodes else nodes
-        return FollowPath(id=id, robot=mobile, nodes=rest)
+        known = _node(context)
+        if known in nodes:
+            rest = nodes[nodes.index(known) :]
+        elif known is None or not cell.drive_to_start:
+            rest = nodes
+        elif whole:
+            rest = (*mobile.grid.route(known, nodes[0]), *nodes[1:])
+        else:
+            rest = mobile.grid.route(known, nodes[-1])
+        return FollowPath(id=id, robot=mobile.name, nodes=rest)
 
     return Act(title, context, all_of_it if whole else rest_of_it, doing, anew=rest_of_it)

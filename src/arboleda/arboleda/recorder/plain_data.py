@@ -9,6 +9,7 @@ from enum import Enum
 from typing import Any
 
 from arboleda.model.messages import (
+    Course,
     Event,
     Fact,
     Failure,
@@ -218,6 +219,11 @@ def _kept(data: Any) -> KeptTask:
     return kept
 
 
+def _course(data: Any) -> Course:
+    course: Course = _made(Course, data)
+    return course
+
+
 def _answers(data: Any) -> tuple[TaskAnswer, ...]:
     return tuple(_made(TaskAnswer, each) for each in data)
 
@@ -235,7 +241,9 @@ READERS: dict[type, dict[str, Reader]] = {
         "failure": _failure,
         "answers": _answers,
         "choice": sentence_from,
+        "course": _course,
     },
     Failure: {"reason": Reason, "sentence": sentence_from},
     TaskAnswer: {},
+    Course: {"begun": dict},
 }

@@ -80,7 +80,8 @@ class Writing:
 
     def tend(self) -> None:
         """Have on the disk what was written, where that is due."""
-        if self._part is None or self._unix_ns() - self._flushed_ns < FLUSH_S * 1e9:
+        passed_ns = self._unix_ns() - self._flushed_ns  # less than nothing where the clock was set back
+        if self._part is None or 0 <= passed_ns < FLUSH_S * 1e9:
             return
         self._refuse_full_disk()
         self._flushed_ns = self._unix_ns()

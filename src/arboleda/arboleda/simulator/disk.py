@@ -77,7 +77,9 @@ class Content:
                 self.tasks[said.task] = replace(row, state=said.state, started_at=now, attempts=1)
         elif row.ended_at is None:
             failure = Failure(reason=said.reason, sentence=said.sentence) if said.reason else None
-            self.tasks[said.task] = replace(row, state=said.state, failure=failure, ended_at=now)
+            self.tasks[said.task] = replace(
+                row, state=said.state, failure=failure, ended_at=now, course=said.course
+            )
 
 
 class Disk:

@@ -36,6 +36,7 @@ from .recorded.bridge import Bridges
 from .recorded.cells import LOOK_S, KnownCell
 from .recorded.choices import Choices
 from .recorded.commands import Commands, SentCommand
+from .recorded.courses import Courses
 from .recorded.foreign import ForeignCommands
 from .recorded.proofs import Proofs
 from .recorded.refusals import differences
@@ -56,8 +57,9 @@ SLOW_S = 10.0  # after the last sign of it, a bridge that stalled or a slow line
 class Record:
     """Follows requests, commands, reports and tasks step by step.
 
-    `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `news`: whether
-    something changed in it besides what robots report, or it is time to look at everything again.
+    `stepped`: whether the plant made a step in this pass; `born`: whether it started in it; `begins`: whether
+    that step was its first; `news`: whether something changed in it besides what robots report, or it is time
+    to look at everything again.
     `anew`: the last reports that said something else than before, or the same for some time.
     `away`: whether the plant finds in this step that it did nothing for long; `unattended`: the cells for
     which nobody has asked for anything since, and whether they had something to do then; `unasked`: the
@@ -89,7 +91,9 @@ class Record:
         self.asked = Before()
         self.acts = Acts()
         world.before_asking.append(lambda: self.asked.look(self._cells, self.tasks, world))
-        self.choices = Choices(self.robots)
+        self.courses = Courses()
+        self.courses.look(world.plant, born=True)
+        self.choices = Choices(self.robots, self.courses)
         world.before_asking.append(lambda: self.choices.look(world))
         self.kept: dict[Fact, dict[str, str]] = {}  # before this step
         self._kept: dict[Fact, dict[str, str]] = {}
@@ -108,7 +112,8 @@ class Record:
         self.waiting: list[KnownCell] = []  # whose arm waits for zones
         self._requests: tuple[tuple[str, frozenset[str]], ...] = ()
         self.idle: list[KnownCell] = []  # with tasks in the queue, which is not paused
-        self.stepped = self.news = self.born = self.told = False
+        self.stepped = self.news = self.born = self.begins = self.told = False
+        self._has_begun = True
         self.undisturbed = True
         self.unnumbered = False
         self._cells = tuple(self.cells.values())
@@ -160,7 +165,7 @@ class Record:
         if moment.sent or moment.heard or plant.now != self.stepped_at or moment.asked or self._is_new(plant):
             self._look_at_plant(plant)
         elif self.stepped:
-            self.stepped = self.news = self.born = False
+            self.stepped = self.news = self.born = self.begins = False
 
     def effector_of(self, arm: str) -> str:
         """What is kept of an effector."""
@@ -237,6 +242,9 @@ class Record:
             self._take_last_words()
             self._begin(plant)
             self._expect_rest(plant)
+            self._has_begun = False
+        self.begins = self.stepped and not self._has_begun
+        self._has_begun = self._has_begun or self.stepped
         self._earlier.clear()
         self._booted.clear()
         self.away = not self.born and plant.now - self.stepped_at > plant.away_after_s
@@ -255,6 +263,7 @@ class Record:
             if take is not None:
                 take(self, message)
         self._compare(plant)
+        self.courses.look(plant, born=self.born)
         self.stepped_at = plant.now
         if self.acts.of:
             faults, last = self.world.faults_active, self.world.last_fault_at

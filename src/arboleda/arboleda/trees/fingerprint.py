@@ -53,7 +53,7 @@ OF_NODES = frozenset(
         "done",
     ]
 )
-NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on"})
+NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on"})  # of a cell
 
 
 def joined(*words: str) -> str:
@@ -63,9 +63,8 @@ def joined(*words: str) -> str:
 
 def of_cell(cell: Cell, recipe: str, seen: Seen) -> str:
     """The hash of what the tasks of a recipe go by: its code, the devices of its cell, where they go."""
-    said = {each.name: getattr(cell, each.name) for each in fields(cell) if each.name not in NO_MATTER}
     build = next((each.build for each in cell.recipes if each.name == recipe), None)
-    return joined(*_words(said, seen), *_words(build, seen))
+    return joined(*_words(cell, seen), *_words(build, seen))
 
 
 def of_tree(root: Behaviour, seen: Seen) -> str:
@@ -111,6 +110,8 @@ def _parts(value: Any) -> Iterator[Any]:
     elif isinstance(value, Sentence):
         yield value.key
         yield value.values
+    elif isinstance(value, Cell):
+        yield from (getattr(value, each.name) for each in fields(value) if each.name not in NO_MATTER)
     elif is_dataclass(value) and not isinstance(value, type):
         yield from (getattr(value, each.name) for each in fields(value))
     elif isinstance(value, FunctionType):

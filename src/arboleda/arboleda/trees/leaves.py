@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -54,12 +55,14 @@ def title_of(node: Behaviour) -> Sentence:
 
 class Leaf(Keeps, Behaviour):
     """A leaf of ours: `title` is its name as a sentence, `told` its feedback message, `last_failure` that of
-    its last failure, kept when py_trees has forgotten the status.
+    its last failure, kept when py_trees has forgotten the status. `began` is when one that takes its time
+    began last in this start of the plant, in s of the cell's time.
     """
 
     title: Sentence
     told: Sentence = NOTHING
     last_failure: Sentence | None = None
+    began = -math.inf
 
     def __init__(self, name: Sentence | str) -> None:
         super().__init__(str(name))
@@ -144,6 +147,7 @@ class Act(Leaf):
 
     def initialise(self) -> None:
         self.tries, self.left, self.last, self.proven = 0, False, None, False
+        self.began = self.context.now
         self.send()
 
     def kept(self) -> Mapping[str, Any] | None:
@@ -247,7 +251,8 @@ class Dwell(Leaf):
         self.until = 0.0
 
     def initialise(self) -> None:
-        self.until = self.context.now + self.seconds
+        self.began = self.context.now
+        self.until = self.began + self.seconds
         self.context.wake_at(self.until)
 
     def update(self) -> Status:
@@ -316,7 +321,8 @@ class Await(Leaf):
         self.until = 0.0
 
     def initialise(self) -> None:
-        self.until = self.context.now + self.seconds
+        self.began = self.context.now
+        self.until = self.began + self.seconds
         self.context.wake_at(self.until)
 
     def update(self) -> Status:
@@ -345,14 +351,9 @@ class Piece(Await):
     ) -> None:
         super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
         self.robot = robot
-        self.since = 0.0
-
-    def initialise(self) -> None:
-        super().initialise()
-        self.since = self.context.now
 
     def _seen(self) -> bool:
-        return self.context.piece(self.robot, self.since) is True
+        return self.context.piece(self.robot, self.began) is True
 
 
 class Note(Leaf):

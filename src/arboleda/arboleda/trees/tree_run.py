@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.ledger import State
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Failure, InternalError, Reason
+from arboleda.model.messages import Course, Failure, InternalError, Reason
 from arboleda.model.sentence import Phrase, Sentence
 
 from . import steps
 from .context import Context
-from .leaves import Act, title_of
+from .leaves import Act, Leaf, title_of
 from .trail import Keeps
 
 BROKE_IN_TREE = Phrase("cell.broke_in_tree", "{cell}: {kind} in the tree: {error}")
@@ -31,6 +33,7 @@ class TreeRun:
         self.keepers: list[tuple[int, Keeps]] = []  # those of which more than the status is kept, by number
         self._acts: list[Act] = []
         self._recoveries: list[Behaviour] = []
+        self._began: float | None = None  # when it began in this start of the plant, s of the cell's time
         self.rested: tuple[object, ...] = ()  # as what it came to rest last; another one, another state
         self._context = context
 
@@ -41,6 +44,7 @@ class TreeRun:
 
     def begin(self, make: Callable[[], Behaviour]) -> Status:
         """Build a tree and tick it until it rests: RUNNING, SUCCESS or FAILURE."""
+        self._began = self._context.now
         try:
             self.grow(make())
         except Exception as error:  # noqa: BLE001 - a recipe may be user code: it ends its task, not the plant
@@ -65,6 +69,7 @@ class TreeRun:
     def drop(self) -> None:
         """End what runs; whatever moves for it is halted."""
         tree, self.tree = self.tree, None
+        self._began = None
         self.nodes, self.keepers, self._acts, self._recoveries = [], [], [], []
         try:
             if tree is not None:
@@ -78,10 +83,39 @@ class TreeRun:
         """The commands that are under way."""
         return [act for act in self._acts if act.status is Status.RUNNING]
 
+    @property
+    def course(self) -> Course | None:
+        """How it went until now; None where an earlier start of the plant has begun it."""
+        if self._began is None:
+            return None
+        now = self._context.now
+        begun = {step: round(at - self._began, 3) for step, at in self._begun() if at < now}
+        return Course(seconds=round(now - self._began, 3), begun=begun)
+
+    @property
+    def steps(self) -> Sequence[tuple[str, float]]:
+        """Those that have begun in this start of the plant, as a course names them, and how many s ago, the
+        last first; none in a recovery.
+        """
+        if self.recovering:
+            return []
+        now, in_order = self._context.now, sorted(self._begun(), key=lambda step: step[1])
+        return [(step, now - at) for step, at in reversed(in_order)]
+
     def interrupted(self) -> list[Act]:
         """The steps that were under way and have ended without being done."""
         acts = [node for node in self._running() if isinstance(node, Act)]
         return [act for act in acts if act.entry and not act.entry.open and act.entry.state is not State.DONE]
+
+    def _begun(self) -> Iterator[tuple[str, float]]:
+        """The steps that take their time and have begun in this start of the plant, and when; where several
+        have one name they are counted.
+        """
+        number = Counter[str]()
+        for node in self.nodes:
+            number[node.name] += 1
+            if isinstance(node, Leaf) and node.began > -math.inf:
+                yield f"{node.name} #{number[node.name]}", node.began
 
     def _running(self) -> list[Behaviour]:
         nodes = self.tree.iterate() if self.tree else ()

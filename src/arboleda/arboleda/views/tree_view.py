@@ -150,13 +150,13 @@ def _times(node: Behaviour, now: float) -> Times:
         return _command_times(node, now)
     if isinstance(node, Await | Dwell):
         left = node.until - node.context.now
-        return node.seconds - left, left
+        return node.seconds - left, max(left, 0.0)  # nobody ticks it while its cell is being held
     return UNKNOWN
 
 
 def _command_times(node: Act, now: float) -> Times:
     if node.again_at is not None:
-        return None, node.again_at - node.context.now
+        return None, max(node.again_at - node.context.now, 0.0)
     if node.entry is None or not node.entry.open:
         return UNKNOWN
     return now - node.entry.sent_at, node.entry.deadline - now

@@ -29,7 +29,7 @@ _LABEL = "id="
 _HEARD = "heard="
 NUMBER = "number"  # the key that a status ends with, but for what is said of commands of others
 NUMBER_DIGITS = len(str(UINT32))
-_NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
+_FLOAT = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
 _ID = re.compile(r"[A-Za-z0-9_.-]{1,64}", re.ASCII)
 _LONGEST = 300  # characters of a sentence
 _MOST_DATA = 2000  # characters of what a sentence is made of
@@ -170,7 +170,7 @@ def _state(key: str, text: str) -> MotionState:
 
 def _joints(key: str, text: str) -> tuple[float, ...]:
     parts = text.split(",")
-    if not all(_NUMBER.fullmatch(part) and math.isfinite(float(part)) for part in parts):
+    if not all(_FLOAT.fullmatch(part) and math.isfinite(float(part)) for part in parts):
         raise PayloadError(f"{key} is {quoted(text)}; finite numbers separated by commas are needed")
     return tuple(float(part) for part in parts)
 

@@ -9,6 +9,7 @@ from psycopg import sql
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain
 
+from .leader_row import lately
 from .leadership import Leader
 from .memory import LEASE_S
 from .schema import PREFIX
@@ -19,10 +20,8 @@ PLANTS = (
     " AND starts_with(table_schema, %s) ORDER BY table_schema"
 )
 LEADER = (
-    "SELECT {name}, epoch, host, process, url,"
-    " seen IS NOT NULL AND seen > clock_timestamp() - {lease} * interval '1 second',"
-    " (SELECT count(*) FROM {schema}.standby WHERE seen > clock_timestamp() - {lease} * interval '1 second')"
-    " FROM {schema}.leader"
+    f"SELECT {{name}}, epoch, host, process, url, {lately('seen', '{lease}')},"
+    f" (SELECT count(*) FROM {{schema}}.standby WHERE {lately('seen', '{lease}')}) FROM {{schema}}.leader"
 )
 
 

@@ -7,17 +7,18 @@ import socket
 from dataclasses import dataclass
 from typing import Any
 
-from arboleda.core.leading import LEASE_S
+from arboleda.adapters import clock
+from arboleda.core.leading import LEASE_S, Silence
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
+from .leader_row import END_LEASE, LAST_SEEN, lately
 from .schema import prepare, schema_of
 from .server import Impatient, checked, connected, explained, own_address
 
 LEADER = (
-    "SELECT epoch, host, process, url,"
-    " seen IS NOT NULL AND seen > clock_timestamp() - %s * interval '1 second',"
-    " (SELECT count(*) FROM standby WHERE seen > clock_timestamp() - %s * interval '1 second') FROM leader"
+    f"SELECT epoch, host, process, url, {lately('seen')},"
+    f" (SELECT count(*) FROM standby WHERE {lately('seen')}) FROM leader"
 )
 WAITS = (
     "INSERT INTO standby (host, process, url, seen) VALUES (%s, %s, %s, clock_timestamp())"
@@ -27,8 +28,9 @@ WAITS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Leader:
-    """Who led the plant last; `leads` while his lease lasts. `url` is his page, "" where he has said none;
-    `standbys` is how many wait for him to end."""
+    """Who led the plant last; `leads` where he has said so lately, by the clock of the database, by which
+    nobody takes a plant over. `url` is his page, "" where he has said none; `standbys` is how many wait for
+    him to end."""
 
     epoch: int
     host: str
@@ -47,6 +49,7 @@ class Leadership:
         self._schema = schema_of(plant)
         self._me = (plain(socket.gethostname()), os.getpid())
         self._opened: Impatient | None = None
+        self._silence = Silence()
 
     def prepare(self) -> None:
         """Make what a plant has there; StartError says why that cannot be."""
@@ -59,6 +62,14 @@ class Leadership:
         return Leader(
             epoch=epoch, host=plain(host), process=process, url=plain(url), leads=leads, standbys=standbys
         )
+
+    def is_free(self) -> bool:
+        """Whether nobody leads: who did gave the plant back, or was silent for the length of a lease, which
+        is ended then. Ask again and again: that time is counted here."""
+        (seen,) = self._asked(LAST_SEEN)
+        if seen[1] is None:
+            return True
+        return self._silence.ends_lease(clock.seconds(), seen) and bool(self._asked(END_LEASE, *seen))
 
     def wait_here(self, url: str = "") -> None:
         """Say that this process waits to lead, and where its page is."""

@@ -13,11 +13,12 @@ from typing import Any, NoReturn, TypeVar
 import psycopg
 
 from arboleda.adapters import clock
-from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Candidate, Lease
+from arboleda.core.leading import AGAIN_S, LEASE_S, RENEW_S, WANTED_S, Lease, Silence
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.outside import plain
 
 from ..plant_memory import LedElsewhere, PlantMemory, Standby, Statement, Superseded
+from .leader_row import END_LEASE, LAST_SEEN, lately
 from .schema import SUPERSEDED, prepare, schema_of
 from .server import Impatient, checked, connected, explained, own_address, plain_values, translated
 
@@ -26,14 +27,14 @@ LEAD = (
     "UPDATE leader SET epoch = greatest(epoch + 1, %s), host = %s, process = %s, seen = clock_timestamp(),"
     " url = '', wanted = NULL,"
     # what was left at work goes on by itself only where somebody has just asked for the change
-    " going = CASE WHEN wanted > clock_timestamp() - %s * interval '1 second' THEN going ELSE '[]' END"
-    " WHERE seen IS NULL OR seen < clock_timestamp() - %s * interval '1 second' RETURNING epoch, going"
+    f" going = CASE WHEN {lately('wanted')} THEN going ELSE '[]' END"
+    " WHERE seen IS NULL RETURNING epoch, going"
 )
 RENEW = (
     "UPDATE leader SET seen = clock_timestamp() WHERE epoch = %s AND seen IS NOT NULL"
-    " RETURNING wanted > clock_timestamp() - %s * interval '1 second',"
+    f" RETURNING {lately('wanted')},"
     " (SELECT coalesce(json_agg(json_build_array(host, url) ORDER BY host, process), '[]') FROM standby"
-    " WHERE seen > clock_timestamp() - %s * interval '1 second')"
+    f" WHERE {lately('seen')})"
 )
 T = TypeVar("T")
 
@@ -83,20 +84,24 @@ class PostgresMemory(PlantMemory):
 
     def lead(self, epoch: int) -> int:
         """As for every memory; who was killed and cannot say so is waited for, as long as a lease lasts."""
-        candidate = Candidate(clock.seconds(), self._last_seen())
+        silence, first = Silence(), self._last_seen()
         while True:
             asked_at = clock.seconds()
             me = plain(socket.gethostname()), os.getpid()
-            row = self._asked(LEAD, epoch, *me, WANTED_S, LEASE_S)
+            row = self._asked(LEAD, epoch, *me, WANTED_S)
             if row is not None:
                 self._epoch = int(row[0])
                 self._lease.renewed(asked_at)
                 self.going = tuple(json.loads(row[1]))
                 self._asked("UPDATE leader SET going = '[]' WHERE epoch = %s RETURNING epoch", self._epoch)
                 return self._epoch
-            if candidate.gives_up(clock.seconds(), self._last_seen()):
+            seen = self._last_seen()
+            if seen != first and seen[1] is not None:
                 self._refuse_second()
-            time.sleep(PAUSE_S)
+            if silence.ends_lease(clock.seconds(), seen):
+                self._asked(END_LEASE, *seen)
+            else:
+                time.sleep(PAUSE_S)
 
     def renew(self) -> bool:
         if self._renewing is None or self._renewing.closed:
@@ -185,8 +190,11 @@ class PostgresMemory(PlantMemory):
         with explained(self.name, StartError):
             return self._connection().execute(statement, values).fetchone()
 
-    def _last_seen(self) -> object:
-        return self._asked("SELECT epoch, seen FROM leader")
+    def _last_seen(self) -> tuple[Any, ...]:
+        row = self._asked(LAST_SEEN)
+        if row is None:
+            raise self._damaged()
+        return row
 
     def _refuse_second(self) -> NoReturn:
         raise LedElsewhere(

@@ -295,4 +295,5 @@ def _kept(row: TaskRow) -> dict[str, Any]:
     answers = [vars(each) for each in answers_of(row)]
     data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
     said = json.loads(data.pop("said") or "{}")
+    del data["course"]  # for the plant, which expects by it how long the next one takes
     return {**data, **said} if row.sentence else data

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
+from arboleda.model.commands import LABELS
 from arboleda.recorder.plain_data import TYPE
 
 Words = Callable[[Any], str]
-UNTOLD = frozenset(
-    {TYPE, "id", "heard", "robot"}
-)  # of a command: what its line says by itself, or what no one compares
+UNTOLD = frozenset({TYPE, "robot", *LABELS})  # of a command: its line says them, or nobody compares them
 TASK = "task "
 NUMBERS = 4  # digits of a number
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import replace
+from itertools import groupby
 from typing import Any, NamedTuple, Protocol
 from uuid import uuid4
 
@@ -130,7 +132,7 @@ class Orchestrator:
             self._send,
             on_crash=crash,
             on_send_error=self._not_sent,
-            before_send=self._keep_latches,
+            before_send=self._prepare_to_keep,
             on_step=self._stepped,
         )
         self.listeners: list[Callable[[TaskChanged], None]] = []
@@ -143,7 +145,7 @@ class Orchestrator:
         self._drops_waiting = drops_waiting
         self._crash = crash
         self._amnesia: Exception | None = None
-        self._kept: Sequence[Remember] = ()  # what of a step's messages is in the store already
+        self._writes: deque[list[Remember]] = deque()  # for each fact of a step that is still to come
         self._port: PlantPort | None = None
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
@@ -317,16 +319,17 @@ class Orchestrator:
         if is_too_late(message, self.plant, now):
             raise TooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
-    def _keep_latches(self, messages: Sequence[Any]) -> None:
-        """Stops of one step wait for one commit, and not each for its own and for all before it."""
-        self._kept = ()
+    def _prepare_to_keep(self, messages: Sequence[Any]) -> None:
+        """What is committed with which fact of a step. Its stops wait for one commit, which is made here, and
+        not each for its own and for all before it."""
         latches = [each for each in messages if isinstance(each, Remember) and each.fact is Fact.LATCH]
         once_each = len({each.name for each in latches}) == len(latches)  # else their order counts
-        if len(latches) < 2 or not once_each or self._store is None or self._amnesia is not None:
-            return
-        with suppress(ArboledaError):  # then each is tried alone, and says what it is
-            self._store.keep(*latches)
-            self._kept = latches
+        kept: list[Remember] = []
+        if len(latches) > 1 and once_each and self._store is not None and self._amnesia is None:
+            with suppress(ArboledaError):  # then each is tried alone, and says what it is
+                self._store.keep(*latches)
+                kept = latches
+        self._writes = _writes(messages, kept)
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
@@ -334,8 +337,8 @@ class Orchestrator:
         if self._store is None or self._amnesia is not None:
             return
         if isinstance(message, Remember):
-            if message not in self._kept:
-                self._store.keep(message)
+            if facts := self._writes.popleft():
+                self._store.keep(*facts)
             return
         self._store.journal(message, time.time())
         if message.verb is Verb.RETRY:
@@ -461,6 +464,21 @@ class Orchestrator:
         while rows:  # to give back the memory of them all at once takes as long as some slices
             rows.pop()
             yield
+
+
+def _writes(messages: Sequence[Any], kept: Sequence[Remember]) -> deque[list[Remember]]:
+    """For each fact of a step what is committed when it comes, but for those that are `kept` already.
+
+    It is all that stand side by side when the first of them comes, and nothing with the others: nothing
+    leaves between them, and a commit waits for the disk, or for the database's host.
+    """
+    writes: deque[list[Remember]] = deque()
+    for is_fact, run in groupby(messages, lambda each: isinstance(each, Remember)):
+        if is_fact:
+            first, *others = run
+            writes.append([each for each in (first, *others) if each not in kept])
+            writes.extend([] for _ in others)
+    return writes
 
 
 def _log_defect(where: str, error: Exception) -> None:

@@ -19,6 +19,8 @@ SHOWN_S = {
     Evidence.STATE: APART_S + PERIOD_S,
     Evidence.JOINTS: QUIET_S + 2 * PERIOD_S,
 }
+# at `joints`, a drive over nodes: its stop, and its last node, told APART_S or more after that
+DRIVE_SHOWN_S = 3 * APART_S + 2 * PERIOD_S
 ROUNDING_S = 1e-6
 
 
@@ -29,10 +31,15 @@ def check_arrivals_show(document: Document, cells: Iterable[Cell], timing: Timin
             if not robot.goes:
                 continue  # a verb of a declared kind has a time of its own
             _check_patience(document, robot, timing)
-            spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), SHOWN_S[robot.evidence]
+            spare_s, needed_s = _spare_s(robot, _longest_s(cell, robot), timing), _shown_s(robot)
             if spare_s < needed_s - ROUNDING_S:
                 key: Place = (role,) if cell.is_storage else ("devices", role)
                 document.problem(("cells", cell.name, *key), _sentence(robot, timing, spare_s, needed_s))
+
+
+def _shown_s(robot: Robot) -> float:
+    drives = robot.on_grid and robot.evidence is Evidence.JOINTS
+    return DRIVE_SHOWN_S if drives else SHOWN_S[robot.evidence]
 
 
 def _check_patience(document: Document, robot: Robot, timing: Timing) -> None:
@@ -56,7 +63,9 @@ def _longest_s(cell: Cell, robot: Arm | Mobile) -> float:
         return robot.travel_s(None, [robot.reference])
     if cell.is_storage:
         ways = [path.nodes for path in cell.paths]
-        ways += [robot.grid.route(node, way[0]) for way in ways for node in range(robot.grid.size)]
+        if cell.drive_to_start:  # a drive that is given anew leads to the start of its path and over it
+            nodes = range(robot.grid.size)
+            ways = [(*robot.grid.route(node, way[0]), *way[1:]) for way in ways for node in nodes]
     else:
         goals = [pose.q for pose in cell.workspaces[robot.name].poses if isinstance(pose.q, int)]
         ways = [robot.grid.route(node, goal) for goal in goals for node in range(robot.grid.size)]

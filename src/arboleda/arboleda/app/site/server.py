@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from contextlib import suppress
 from pathlib import Path
 
 from fastapi import FastAPI
@@ -20,7 +19,7 @@ from arboleda.model.errors import ArboledaError
 
 from .. import tokens
 from ..places import Find
-from ..waiting import interruptible, until
+from ..waiting import interruptible, until, until_interrupted
 from ..web_options import WebOptions
 from .watch import Site
 
@@ -62,7 +61,7 @@ def serve(find: Find, options: WebOptions, state: Path) -> None:
             for line in server.start():
                 print(line, flush=True)
             print("Ctrl-C ends it; the plants go on.", flush=True)
-            with suppress(KeyboardInterrupt):
+            with until_interrupted():
                 until(threading.Event())
         finally:
             server.stop()

@@ -16,6 +16,7 @@ class Goal:
     """What became of a command so far; `stopped`: nobody waits for its end any more, the plant wants it over.
 
     `parts` are what the server is sent for it, one after the other; at `over_at` the plant has given it up.
+    At `unknown_at` the server, which had accepted it, said that it knows of no such goal.
     """
 
     id: str
@@ -26,6 +27,7 @@ class Goal:
     accepted: bool = False
     stopped: bool = False
     succeeded_at: float | None = None
+    unknown_at: float | None = None
 
     @property
     def key(self) -> str:

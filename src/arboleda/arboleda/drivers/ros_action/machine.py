@@ -22,6 +22,7 @@ from .events import (
     Message,
     Seen,
     SendGoal,
+    Status,
     Unsent,
 )
 from .goal import Goal
@@ -97,6 +98,8 @@ class Machine:
             # No step of a task waits for it any more, and nobody halts a switch.
             self._drop(failed=goal.id, failure="not_ended")
             self._cancel(now)
+        elif goal.unknown_at is not None and now >= goal.unknown_at + GONE_S:
+            self._drop(failed=goal.id, failure="goal_unknown_to_the_server")
         elif goal.succeeded_at is not None:
             self._believe(now, goal, goal.succeeded_at)
         elif goal.stopped and self._cancel_at is None:
@@ -243,6 +246,8 @@ class Machine:
         failure = self._mover.failure(end, goal.what)
         if goal.stopped:
             self._drop()
+        elif end.status is Status.UNKNOWN:
+            goal.unknown_at = now  # most likely it was started anew, which is seen only at the next look
         elif failure:
             self._drop(failed=goal.id, failure=failure)
         else:

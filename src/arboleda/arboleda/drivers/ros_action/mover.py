@@ -59,8 +59,6 @@ def failure(end: Ended, errors: dict[int, str]) -> str:
         return ""
     if end.status is Status.CANCELED:
         word = "cancelled_by_another_client"
-    elif end.status is Status.UNKNOWN:
-        word = "goal_unknown_to_the_server"
     else:
         word = errors.get(end.error, "aborted" if end.error == 0 else f"error {end.error}")
     return f"{word} {end.text}".strip()

@@ -25,13 +25,23 @@ class LeaderRow:
     wanted: float | None = None  # when somebody asked for another leader
     going: tuple[str, ...] = ()  # the cells that the last leader held for the change alone
 
+    @property
+    def last_seen(self) -> tuple[int, float | None]:
+        """What is another thing whenever a leader says anything."""
+        return self.epoch, self.seen
+
     def leads(self, now: float) -> bool:
-        """Whether somebody leads, as who waits sees it."""
-        return self.seen is not None and self.seen > now - LEASE_S
+        """Whether somebody has said lately that he leads, as whoever only looks sees it."""
+        return self.seen is not None and abs(now - self.seen) < LEASE_S
+
+    def end_lease(self, last_seen: tuple[int, float | None]) -> None:
+        """That leader leads no more, where he has said nothing since."""
+        if last_seen == self.last_seen:
+            self.seen = None
 
     def lead(self, proposed: int, now: float) -> tuple[int, tuple[str, ...]] | None:
         """Lead under that number or a higher one, and what is to go on; None where somebody leads."""
-        if self.seen is not None and self.seen >= now - LEASE_S:
+        if self.seen is not None:
             return None
         going = self.going if self._is_wanted(now) else ()
         self.epoch, self.seen = max(self.epoch + 1, proposed), now
@@ -60,7 +70,7 @@ class LeaderRow:
         return epoch == self.epoch
 
     def _is_wanted(self, now: float) -> bool:
-        return self.wanted is not None and self.wanted > now - WANTED_S
+        return self.wanted is not None and abs(now - self.wanted) < WANTED_S
 
 
 class Away(DiskFull):

@@ -99,16 +99,19 @@ class Hosts:
             self._hold_all()
 
     def _look(self, host: Host) -> None:
-        if host.hears and not self.disk.row.leads(self.world.now):
-            asked_at = host.clock(self.world.now)
-            self.world.at(self.world.now + host.delay_s, lambda _: self._lead(host, asked_at))
+        if not host.hears:
+            return
+        asked_at, seen = host.clock(self.world.now), self.disk.row.last_seen
+        if host.silence.ends_lease(asked_at, seen) or seen[1] is None:
+            self.world.at(self.world.now + host.delay_s, lambda _: self._lead(host, asked_at, seen))
 
     # --- a change of leaders ---
 
-    def _lead(self, host: Host, asked_at: float) -> None:
+    def _lead(self, host: Host, asked_at: float, seen: tuple[int, float | None]) -> None:
         row, now = self.disk.row, self.world.now
         if host.name not in self._waits or not host.reaches:
             return
+        row.end_lease(seen)
         proposed = max(0, round(now + host.wall_s))
         if (got := row.lead(proposed, now)) is None or not host.hears:
             return

@@ -6,7 +6,7 @@ from collections import Counter
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from arboleda.core.leading import Lease, Standing
+from arboleda.core.leading import Lease, Silence, Standing
 
 if TYPE_CHECKING:
     from .database import LeaderRow
@@ -32,6 +32,7 @@ class Host:
         self.cuts: Counter[Way] = Counter()
         self.delay_s = 0.0
         self.wall_s = 0.0
+        self.silence = Silence()
         self._rate, self._since, self._shown = 1.0, now, now
 
     def clock(self, now: float) -> float:

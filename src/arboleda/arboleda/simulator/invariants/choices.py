@@ -42,4 +42,17 @@ def tasks_stay_in_their_cell(look: Look) -> Iterator[str]:
             yield f"task {known.id} was in {known.cell}, and {change.said.state.value} in {change.said.cell}"
 
 
-CHOICES = (tasks_go_to_the_best_cell, tasks_stay_in_their_cell)
+@invariant(When.TOLD)
+def courses_are_as_seen(look: Look) -> Iterator[str]:
+    """What is learned of a task that is done is when its steps began and how long it worked, as it was seen;
+    of one that an earlier start has begun nothing is.
+    """
+    for change in look.record.tasks.changes:
+        said, seen = change.said, look.record.courses.ended.get(change.said.task)
+        if said.state is not TaskState.DONE or change.answer or seen is None:
+            continue
+        if seen.differs(said.course):
+            yield f"task {said.task} did not go as it is told: {said.course}"
+
+
+CHOICES = (tasks_go_to_the_best_cell, tasks_stay_in_their_cell, courses_are_as_seen)

@@ -120,7 +120,7 @@ def node(cell: KnownCell, there: Behaviour, row: Row, now: float) -> Iterator[st
         yield from _command(where, there, row, now)
     elif timed and row["since_s"] is not None:
         passed, left = row["since_s"], row["deadline_s"]
-        if abs(passed + left - seconds) > EXACT or passed < -EXACT:
+        if abs(left - max(seconds - passed, 0.0)) > EXACT or passed < -EXACT:
             yield f"{where} is shown {passed} s old with {left} s left of {seconds}"
 
 

@@ -59,9 +59,10 @@ def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
 
 
 def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
-    """The one verb of a step, before which nothing else happened in it but that the plant had been away."""
+    """The one verb of a step, before which nothing else happened in it but that the plant had been away. A
+    plant that has just started first looks what became of the tasks that it found."""
     asked, answers = look.moment.asked, look.record.answers
-    alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.born
+    alone = len(asked) == len(answers) == 1 and not look.moment.heard and not look.record.begins
     if alone and isinstance(asked[0], OperatorRequest) and not _is_shared(look, asked[0]):
         yield asked[0], answers[0]
 

@@ -186,6 +186,7 @@ class _Board:
         self._copies: list[tuple[float, Command]] = []  # that are to come of what the plant said
         self._early: list[tuple[float, Command]] = []  # without an id, whose original may still come
         self._orders: list[tuple[Command, str]] = []  # with the word that refuses it, or ""
+        self._over = 0  # how many of them came before the link was lost: what they moved has ended
         self._fell = self._rose = False
         self.touched = True  # in this step
         self._late = False
@@ -361,7 +362,7 @@ class _Board:
     def _lose(self) -> None:
         self._fell |= self._up
         self._up = False
-        self._motion, self._may_move = None, False
+        self._motion, self._may_move, self._over = None, False, len(self._orders)
 
     def end_step(
         self, now: float, reports: list[Report], published: list[Publication], *, late: bool
@@ -381,7 +382,7 @@ class _Board:
             self._up = False  # what counted only in hindsight may be too old by now
         if self._given and self._words:
             self._words = (None, None, self._words[2])  # the same bytes may name a command by now
-        self._telling, self._maybe, self._orders, self._given = [], [], [], {}
+        self._telling, self._maybe, self._orders, self._given, self._over = [], [], [], {}, 0
         if self._rejections or self._is_foreign_new:
             self._rejections, self._is_foreign_new = [], False
         self._was_down = not self._up
@@ -459,7 +460,7 @@ class _Board:
         if publication.qos < 1:
             self._say(COMMANDS, f"{command} left with QoS {publication.qos}")
         self._number_of(command.id, publication, place)
-        if isinstance(command, Motion):
+        if isinstance(command, Motion) and place >= self._over:
             self._may_move, self._moved, self._still_since = True, False, None
             self._had_ended = False
             self._motion, self._newest = (

@@ -11,13 +11,15 @@ from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.choosing import LAST, UNKNOWN_S
 from arboleda.model.errors import TextError
-from arboleda.model.messages import TaskRequest, TaskState
+from arboleda.model.messages import Course, Fact, TaskRequest, TaskState
 from arboleda.model.task import Order, Task
 
 from ..world import World
+from .courses import Courses
 from .robots import KnownRobot
 
 WORKS = (CellState.IDLE, CellState.EXECUTE)
+STANDS = (CellState.HOLDING, CellState.HELD)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,12 +39,13 @@ class Promise:
 class Choices:
     """The promises by cell, of a request that came alone; none where the plant had nothing to choose.
 
-    Whether a cell is hindered is judged by what robots said and by its state; nothing is asked of what
-    chooses.
+    Whether a cell is hindered is judged by what robots said and by its state, at which step its task is by
+    what was seen of its tree; nothing is asked of what chooses.
     """
 
-    def __init__(self, robots: Mapping[str, KnownRobot]) -> None:
+    def __init__(self, robots: Mapping[str, KnownRobot], courses: Courses) -> None:
         self._robots = robots
+        self._courses = courses
         self.promises: dict[str, Promise] = {}
 
     def look(self, world: World) -> None:
@@ -65,34 +68,65 @@ class Choices:
         ahead = [order, *(task.order for task in run.queue)]
         seconds = sum(_expected(each, past) for each in ahead)
         if run.task is not None and run.task.started_at is not None:
-            seconds += max(0.0, run.task.started_at + _expected(run.task.order, past) - world.now)
+            left = self._left(run, past, world.now - world.plant.now)
+            after = run.task.started_at + _expected(run.task.order, past) - world.now
+            seconds += max(0.0, after) if left is None else left
         return Promise(
             is_full=len(run.queue) >= run.cell.queue_limit,
             is_hindered=self._is_hindered(run, world),
             seconds=seconds,
         )
 
+    def _left(self, run: CellRun, past: list[Task], since_step_s: float) -> float | None:
+        """What was left of tasks like the one that runs, when they had been at its step for as long."""
+        seen = self._courses.at_work.get(run.cell.name)
+        if run.task is None or seen is None or seen.recovers:
+            return None
+        now = run.context.now + (0.0 if run.state in STANDS else since_step_s)
+        for alike in _alike(run.task.order, past)[:-1]:
+            courses = [task.course for task in alike[-LAST:] if task.course]
+            known = [step for step in seen.steps if any(step in course.begun for course in courses)]
+            if known:
+                step = known[-1]
+                with_it = [course for course in courses if step in course.begun]
+                return median(_rest(course, step, now - seen.steps[step]) for course in with_it)
+        return None
+
     def _is_hindered(self, run: CellRun, world: World) -> bool:
         if run.state not in WORKS or run.queue_paused or run.not_ready is not None:
             return True
         now, epoch = world.plant.now, world.plant.epoch
-        return any(self._robots[robot.name].is_unfit(now, epoch) for robot in run.cell.reached)
+        displaced = world.disk.facts.get(Fact.DISPLACED, {})  # by more than reports say
+        return any(
+            robot.name in displaced or self._robots[robot.name].is_unfit(now, epoch)
+            for robot in run.cell.reached
+        )
 
 
 def _expected(order: Order, past: list[Task]) -> float:
     """By what is most like it of what was done."""
-    of_recipe = [task for task in past if order.recipe and task.order.recipe == order.recipe]
-    for alike in (
-        [task for task in past if task.order.text == order.text],
-        [task for task in of_recipe if task.order.cell == order.cell],
-        of_recipe,
-        past,
-    ):
+    for alike in _alike(order, past):
         if alike:
             return median(_took(task) for task in alike[-LAST:])
     return UNKNOWN_S
 
 
+def _alike(order: Order, past: list[Task]) -> tuple[list[Task], ...]:
+    """What was done, from the very same to anything."""
+    of_recipe = [task for task in past if order.recipe and task.order.recipe == order.recipe]
+    in_cell = [task for task in of_recipe if task.order.cell == order.cell]
+    return [task for task in past if task.order.text == order.text], in_cell, of_recipe, past
+
+
+def _rest(course: Course, step: str, seconds: float) -> float:
+    """What was left of a task so many s after a step began, or once its next step did."""
+    began = course.begun[step]
+    following = [at for at in sorted(course.begun.values()) if at > began] or [course.seconds]
+    return max(course.seconds - began - seconds, course.seconds - following[0])
+
+
 def _took(task: Task) -> float:
+    if task.course is not None:
+        return task.course.seconds
     assert task.started_at is not None and task.ended_at is not None
     return task.ended_at - task.started_at

@@ -22,9 +22,9 @@ NO_ORDERS = (Channel.STOP, Channel.BEAT)
 
 class Leaders:
     """`twice` are numbers that were led more than once, or that went back; `old` is what a board carries out
-    in this step of a number lower than one of which it has read a beat, or carried out something, since it
-    booted; `wrong` is what of the history of tasks is lost or doubled, and what was written by who leads no
-    more.
+    in this step of a number lower than one of which it had read a beat before, or carried out something,
+    since it booted; `wrong` is what of the history of tasks is lost or doubled, and what was written by who
+    leads no more.
     """
 
     def __init__(self, world: World, hosts: Hosts, boards: Boards) -> None:
@@ -32,6 +32,7 @@ class Leaders:
         self._known = 0  # of the numbers
         self._boots: dict[str, int] = {}
         self._heard: dict[str, int] = {}
+        self._beats: dict[str, tuple[int, int]] = {}  # boot and newest beat of each board before this step
         self._states: dict[str, TaskState] = {}
         self._last: Write | None = None
         self._starts = world.starts
@@ -47,6 +48,8 @@ class Leaders:
             self._look_at_numbers()
         for board, goal in moment.executed:
             self._carried_out(board, goal)
+        # Only now: which of the beats and commands of one step a board read first is not told.
+        self._beats = {name: (each.boot, each.beat or 0) for name, each in self._boards.by_name.items()}
         for write in moment.writes:
             self._wrote(write)
         if self._world.starts != self._starts:
@@ -68,7 +71,8 @@ class Leaders:
         if self._boots.get(board) != boot:
             self._boots[board] = boot
             self._heard.pop(board, None)
-        heard = max(self._heard.get(board, 0), self._boards.by_name[board].beat or 0)
+        of_boot, beat = self._beats.get(board, (boot, 0))
+        heard = max(self._heard.get(board, 0), beat if of_boot == boot else 0)
         if goal.epoch < heard:
             self.old.append(f"{board} was led under number {heard}, and carries out {goal}")
         self._heard[board] = max(heard, goal.epoch)

@@ -79,12 +79,14 @@ class RobotsTruth:
 
     def mistaken(self, robot: RobotTruth) -> bool:
         """Whether what the plant is told of a robot's place may be wrong: `unseen`, or its board lies, or
-        what it said before an earlier start moved it comes late; of a machine also if it has said that it
-        stood still while it moved.
+        what it said before an earlier start moved it comes late, or it says that it stands still while it
+        moves; of a machine also if it has said so since it began to move.
         """
         if self.world.now < self._late_until and robot.robot.name in self._late:
             return True
         board, from_s = robot.robot.mqtt, robot.worked_from
+        if from_s is None and robot.moving:
+            from_s = self.world.now
         if from_s is not None and self.deceived_since(board, "state", from_s):
             return True
         return self.unseen(robot) or self.deceived_since(board, robot.PLACE, self.world.now)

@@ -1,0 +1,127 @@
+"""How tasks go, as the statuses of their trees show it pass by pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from arboleda.core.plant import Plant
+from arboleda.model.messages import Course
+from arboleda.trees.leaves import Act, Await, Dwell
+from arboleda.trees.steps import RECOVERY
+
+TAKES_TIME = (Act, Await, Dwell)
+ROUNDING_S = 2e-3  # times are kept in ms
+
+
+class Seen:
+    """A task at work, its times in s of its cell's time, which stands still while it is held.
+
+    `whole`: it was seen from its beginning; else only what begins after `began` is known of it.
+    """
+
+    def __init__(self, task: str, nodes: Sequence[Behaviour], began: float, *, whole: bool) -> None:
+        self.task = task
+        self.nodes = nodes
+        self.began = self.ended_at = began
+        self.whole = whole
+        self.begun: dict[Behaviour, float] = {}
+        self._steps = [node for node in nodes if isinstance(node, TAKES_TIME)]
+        self._was = {} if whole else {step: step.status for step in self._steps if not _waits(step)}
+        self._rested: object = None
+        self._repeats = False  # whether a step began more than once
+        self._rests: list[float] = []  # when it came to rest
+        self._over: dict[Behaviour, float] = {}  # since when steps have rested as done or failed
+
+    def look(self, rested: object, now: float) -> None:
+        """Take in what has begun; where it came to rest as before nothing has."""
+        if rested is self._rested:
+            return
+        self._rested = rested
+        self._rests.append(now)
+        for step in self._steps:
+            if step.status in (Status.SUCCESS, Status.FAILURE):
+                self._over.setdefault(step, now)
+            else:
+                self._over.pop(step, None)
+            was, self._was[step] = self._was.get(step, Status.INVALID), step.status
+            if was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING):
+                self._repeats = self._repeats or step in self.begun
+                self.begun[step] = now
+
+    @property
+    def steps(self) -> Mapping[str, float]:
+        """When each step began, by its name and how many before it in the tree have that name; the last of
+        them last."""
+        begun = {name: self.begun[step] for name, step in self._named().items()}
+        return dict(sorted(begun.items(), key=lambda each: each[1]))
+
+    @property
+    def recovers(self) -> bool:
+        """Whether its work has failed."""
+        return any(node.name == RECOVERY and node.status is Status.RUNNING for node in self.nodes)
+
+    def differs(self, told: Course | None) -> bool:
+        """Whether what is told of it, now that it is done, is not what was seen."""
+        if told is None or not self.whole:
+            return (told is None) is self.whole
+        named, took = self._named(), self.ended_at - self.began
+        if abs(told.seconds - took) > ROUNDING_S or not told.begun.keys() <= named.keys():
+            return True
+        return not all(self._began(step, told.begun.get(name, took)) for name, step in named.items())
+
+    def _named(self) -> dict[str, Behaviour]:
+        """The steps that began, by their names as courses have them."""
+        names = [node.name for node in self.nodes]
+        return {
+            f"{node.name} #{names[: number + 1].count(node.name)}": node
+            for number, node in enumerate(self.nodes)
+            if node in self.begun
+        }
+
+    def _began(self, step: Behaviour, after_s: float) -> bool:
+        """Whether a step began last after so many s. One that is repeated and over within a pass looks as it
+        did before: so in a task that repeats steps it may have begun anew whenever its tree came to rest."""
+        at = self.began + after_s
+        if abs(min(self.begun[step], self.ended_at) - at) <= ROUNDING_S:
+            return True
+        over = self._over.get(step, math.inf) if self._repeats else math.inf
+        return at > over and any(abs(each - at) <= ROUNDING_S for each in (*self._rests, self.ended_at))
+
+
+class Courses:
+    """What runs in each cell; `ended` are the tasks of which that was so before this pass, by id."""
+
+    def __init__(self) -> None:
+        self.ended: dict[str, Seen] = {}
+        self._at_work: dict[str, Seen] = {}
+
+    @property
+    def at_work(self) -> Mapping[str, Seen]:
+        """By cell."""
+        return self._at_work
+
+    def look(self, plant: Plant, *, born: bool) -> None:
+        """Take in what the plant did in this step; `born`: what runs was begun by an earlier start of it."""
+        if self.ended:
+            self.ended = {}
+        if born:
+            self._at_work.clear()
+        for name, run in plant.cells.items():
+            seen = self._at_work.get(name)
+            if seen is not None and seen.nodes is not run.run.nodes:
+                self.ended[seen.task], seen.ended_at = self._at_work.pop(name), run.context.now
+                seen = None
+            if seen is None and run.task is not None and run.run.nodes:
+                seen = Seen(run.task.id, run.run.nodes, run.context.now, whole=not born)
+                self._at_work[name] = seen
+            if seen is not None:
+                seen.look(run.run.rested, run.context.now)
+
+
+def _waits(step: Behaviour) -> bool:
+    """Whether it began to wait anew with the start of the plant."""
+    return isinstance(step, Await | Dwell) and step.status is Status.RUNNING

@@ -1,0 +1,146 @@
+"""A process of a host whose wall clock is stepped sees that, and nothing else does."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from arboleda_kills.database import NoServer, Server
+from arboleda_kills.hosts.clocks import Clocks
+
+pytestmark = [pytest.mark.system, pytest.mark.requires("cc")]
+HOUR_S = 3600.0
+SAY = """
+import datetime, json, sys, threading, time
+for line in sys.stdin:
+    began = time.monotonic()
+    threading.Event().wait(0.05)
+    time.sleep(0.05)
+    said = [time.time(), datetime.datetime.now().timestamp(), time.clock_gettime(time.CLOCK_REALTIME)]
+    now = time.monotonic()
+    print(json.dumps({"wall": said, "steady": now, "took": now - began}), flush=True)
+"""
+
+
+@pytest.fixture
+def clocks() -> Iterator[Clocks]:
+    with TemporaryDirectory(prefix="arboleda-clocks-", dir="/tmp") as folder:
+        Path(folder).chmod(0o755)  # a database is run by another user
+        made = Clocks(Path(folder), ["stepped", "right"])
+        yield made
+        made.close()
+
+
+def near(wanted: float) -> object:
+    return pytest.approx(wanted, abs=0.9)
+
+
+def test_a_process_sees_the_steps_of_its_host_while_it_runs_and_waits_as_long_as_ever(clocks: Clocks) -> None:
+    with subprocess.Popen(
+        [*clocks.before("stepped"), sys.executable, "-c", SAY],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as child:
+        assert child.stdin is not None and child.stdout is not None
+        for ahead_s in (0.0, HOUR_S, -HOUR_S, 1.25, 0.0):
+            clocks.step("right", 77.0)
+            clocks.step("stepped", ahead_s)
+            print("wait", file=child.stdin, flush=True)
+            said = json.loads(child.stdout.readline())
+            assert said["wall"] == [near(time.time() + ahead_s)] * 3
+            assert said["steady"] == near(time.monotonic())
+            assert 0.1 <= said["took"] < 1.0
+        child.stdin.close()
+
+
+WAITS = """
+#include <errno.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdio.h>
+#include <time.h>
+
+static struct timespec soon(clockid_t clock) {
+    struct timespec at;
+    clock_gettime(clock, &at);
+    at.tv_nsec += 100000000;
+    if (at.tv_nsec >= 1000000000) { at.tv_nsec -= 1000000000; at.tv_sec++; }
+    return at;
+}
+
+static double began;
+static double now(void) {
+    struct timespec at;
+    clock_gettime(CLOCK_MONOTONIC, &at);
+    return at.tv_sec + at.tv_nsec / 1e9;
+}
+static void said(const char *what) { printf("%s %.3f\\n", what, now() - began); began = now(); }
+static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER, taken = PTHREAD_MUTEX_INITIALIZER;
+
+static void *lock(void *unused) {
+    struct timespec until = soon(CLOCK_REALTIME);
+    pthread_mutex_timedlock(&taken, &until);
+    return unused;
+}
+
+int main(void) {
+    pthread_cond_t real = PTHREAD_COND_INITIALIZER, steady;
+    pthread_condattr_t about;
+    pthread_condattr_init(&about);
+    pthread_condattr_setclock(&about, CLOCK_MONOTONIC);
+    pthread_cond_init(&steady, &about);
+    sem_t semaphore;
+    sem_init(&semaphore, 0, 0);
+    pthread_mutex_lock(&mutex);
+    pthread_mutex_lock(&taken);
+    struct timespec until;
+    began = now();
+    until = soon(CLOCK_REALTIME), pthread_cond_timedwait(&real, &mutex, &until), said("condition");
+    until = soon(CLOCK_MONOTONIC), pthread_cond_timedwait(&steady, &mutex, &until), said("steady condition");
+    until = soon(CLOCK_REALTIME), sem_timedwait(&semaphore, &until), said("semaphore");
+    until = soon(CLOCK_REALTIME), clock_nanosleep(CLOCK_REALTIME, TIMER_ABSTIME, &until, 0), said("sleep");
+    pthread_t other;
+    pthread_create(&other, 0, lock, 0), pthread_join(other, 0), said("lock");
+    return 0;
+}
+"""
+
+
+@pytest.mark.parametrize("ahead_s", [0.0, HOUR_S, -HOUR_S, 0.7])
+def test_who_waits_until_a_time_of_day_waits_as_long_as_was_meant(
+    clocks: Clocks, tmp_path: Path, ahead_s: float
+) -> None:
+    source, program = tmp_path / "waits.c", tmp_path / "waits"
+    source.write_text(WAITS)
+    subprocess.run(["cc", "-pthread", "-o", program, source], check=True)
+    clocks.step("stepped", ahead_s)
+    done = subprocess.run(
+        [*clocks.before("stepped"), program], capture_output=True, text=True, timeout=20, check=True
+    )
+    waits = dict(line.rsplit(" ", 1) for line in done.stdout.splitlines())
+    assert sorted(waits) == ["condition", "lock", "semaphore", "sleep", "steady condition"]
+    assert all(0.09 < float(took) < 1.0 for took in waits.values()), waits
+
+
+def test_a_database_goes_by_the_clock_of_its_host(clocks: Clocks, free_port: int) -> None:
+    try:
+        server = Server(free_port, before=clocks.before("stepped"))
+    except NoServer as error:
+        pytest.skip(str(error))
+    try:
+        with server.connection() as db:
+            for ahead_s in (HOUR_S, -HOUR_S, 0.0):
+                clocks.step("stepped", ahead_s)
+                (said,) = db.execute("SELECT extract(epoch FROM clock_timestamp())::FLOAT8").fetchone() or ()
+                (now,) = db.execute("SELECT extract(epoch FROM now())::FLOAT8").fetchone() or ()
+                assert [said, now] == [near(time.time() + ahead_s)] * 2
+    finally:
+        server.remove()

@@ -1,0 +1,33 @@
+"""A process that was not the first to lead a plant goes on waiting, with all that it needs to lead later."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.adapters.plant_memory import LedElsewhere, PlantMemory
+from arboleda.app import build as building
+from arboleda.app.build import Options, build
+from arboleda.testing import shipped
+
+
+def test_it_has_made_no_page_of_which_a_process_has_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pages, memory_of = [], building.memory_of
+
+    def led_by_another(*about: object) -> PlantMemory:
+        memory: PlantMemory = memory_of(*about)
+        monkeypatch.setattr(memory, "lead", refuse)
+        return memory
+
+    def refuse(epoch: int) -> int:
+        raise LedElsewhere("another process leads")
+
+    monkeypatch.setattr(building, "memory_of", led_by_another)
+    monkeypatch.setattr("arboleda.app.parts.page.mounting", pages.append)
+    for _ in range(2):
+        with pytest.raises(LedElsewhere):
+            build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path))
+    assert pages == []
