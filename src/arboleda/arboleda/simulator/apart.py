@@ -44,16 +44,20 @@ def _ways(robot: Robot) -> tuple[Callable[[World, Robot, Dice], None] | None, ..
 
 
 def _two_topics(world: World, robot: Robot, dice: Dice) -> None:
-    world.partings[robot.name] = TwoTopics(dice).parted
+    world.partings[robot.name] = TwoTopics(dice, lambda: world.skipped_s).parted
 
 
 class TwoTopics:
-    """Each report as one of its position and one of all the rest; each of them late, and in its own order."""
+    """Each report as one of its position and one of all the rest; each of them late, and in its own order.
 
-    def __init__(self, dice: Dice) -> None:
+    `skipped_s` is how much of the time until now nobody did anything: what was under way came later by it.
+    """
+
+    def __init__(self, dice: Dice, skipped_s: Callable[[], float]) -> None:
         self._dice = dice
+        self._skipped_s = skipped_s
         self._latest_s = {which: dice.pick((0.0, APART_S)) for which in ("state", "position")}
-        self._last = {"state": 0.0, "position": 0.0}  # when the last of each comes
+        self._last = {"state": 0.0, "position": 0.0}  # when the last of each comes, less what was skipped
 
     def parted(self, report: Report) -> Iterable[Report]:
         """The parts, stamped with when they come."""
@@ -65,9 +69,9 @@ class TwoTopics:
         yield self._late("state", rest, report.at)
 
     def _late(self, which: str, part: Report, at: float) -> Report:
-        late_s = self._dice.between(0.0, self._latest_s[which])
-        self._last[which] = max(self._last[which], at + late_s)
-        return part.again(self._last[which])
+        late_s, skipped_s = self._dice.between(0.0, self._latest_s[which]), self._skipped_s()
+        self._last[which] = max(self._last[which], at + late_s - skipped_s)
+        return part.again(self._last[which] + skipped_s)
 
 
 def _two_instants(world: World, robot: Robot, dice: Dice) -> None:

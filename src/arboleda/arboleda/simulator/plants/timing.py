@@ -12,7 +12,7 @@ TIMES: dict[str, tuple[float, ...]] = {
     "stale_after_s": (0.3, 0.5, 1, 3),
     "stop_timeout_s": (0.3, 1, 5),
     "deadline_factor": (1, 1.5, 3),
-    "deadline_floor_s": (0.5, 1, 2),
+    "deadline_floor_s": (0.5, 0.8, 1, 2),
     "piece_wait_s": (0.5, 1, 2),
     "piece_debounce_s": (0, 0.05, 0.1, 0.3),
 }
