@@ -70,7 +70,7 @@ def test_a_signal_while_a_class_is_made_from_a_text_leaves_a_clean_end(tmp_path:
 
 
 DROPPED = """
-import signal, sys, threading
+import signal, threading
 from arboleda.app import waiting
 from arboleda.app.waiting import interruptible, until, until_interrupted
 
@@ -80,9 +80,13 @@ class Last:
     def __del__(self):
         signal.raise_signal(signal.{name})
 
-sys.unraisablehook = lambda dropped: print(dropped.exc_type.__name__)
+class Broken:
+    def __del__(self):
+        raise OSError("no signal")
+
 with interruptible():
     with until_interrupted():
+        Broken()
         Last()
         until(threading.Event())
     over = threading.Event()
@@ -94,11 +98,12 @@ with interruptible():
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_a_signal_that_comes_in_a_finalizer_ends_the_next_wait_and_no_later_one(name: str) -> None:
-    """Python drops what is raised there."""
+    """Python drops what is raised there, and tells of it only where something went wrong."""
     ran = subprocess.run(
         [sys.executable, "-c", DROPPED.format(name=name)], capture_output=True, text=True, timeout=30
     )
-    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "Interrupted\na clean end\n", "")
+    assert (ran.returncode, ran.stdout) == (0, "a clean end\n")
+    assert ran.stderr.count("Exception ignored") == ran.stderr.count("OSError: no signal") == 1
 
 
 def _signal_once_asleep(main: int) -> None:

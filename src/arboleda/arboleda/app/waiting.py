@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 from types import FrameType
@@ -47,6 +48,7 @@ class Interrupted(KeyboardInterrupt):
 
 def raise_at_signals() -> dict[signal.Signals, Any]:
     """SIGINT and SIGTERM are Interrupted from now on, the first of them only; the handlers of before."""
+    sys.unraisablehook = _silent_about_signals(sys.unraisablehook)
     return {number: signal.signal(number, _interrupt) for number in SIGNALS}
 
 
@@ -62,12 +64,14 @@ def heed() -> None:
 @contextmanager
 def interruptible() -> Iterator[None]:
     """SIGTERM is Interrupted like Ctrl-C; a second signal does not break a clean end."""
+    told_before = sys.unraisablehook
     before = raise_at_signals()
     try:
         yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        sys.unraisablehook = told_before
         _Signals.unheeded = False
 
 
@@ -84,6 +88,16 @@ class _Signals:
     """What the handler leaves behind, beside what it raises."""
 
     unheeded = False
+
+
+def _silent_about_signals(tell: Callable[[Any], object]) -> Callable[[Any], None]:
+    """Tells what Python drops, but not a signal: the next wait ends for it, so nothing went wrong."""
+
+    def tell_if_wrong(dropped: Any) -> None:
+        if not issubclass(dropped.exc_type, Interrupted):
+            tell(dropped)
+
+    return tell_if_wrong
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
