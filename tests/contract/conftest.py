@@ -22,11 +22,11 @@ from arboleda.adapters.server_tls import pinned, server_tls
 from arboleda.wire.transport import Connection, Delivery
 
 from ..conftest import need_tool
+from ..patience import PATIENCE_S
 
 MESSAGES = all(map(find_spec, ("control_msgs", "nav2_msgs")))  # no wheels have them
 collect_ignore = [] if MESSAGES else ["test_virtual_actions.py"]
 
-PATIENCE_S = 8.0
 NEW_KEY = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes")
 
 

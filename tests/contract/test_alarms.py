@@ -21,7 +21,8 @@ from arboleda.app.parts.broker import OtherBroker
 from arboleda.model.messages import Verb
 from arboleda.testing import shipped
 
-from .conftest import PATIENCE_S, Inbox
+from ..patience import PATIENCE_S
+from .conftest import Inbox
 
 ALARM = {"id": "lab-1-1", "sentence": "sis_a is held", "dropped": 0}
 
@@ -151,7 +152,7 @@ def plant(hooked: Hooked, tmp_path: Path) -> Iterator[App]:
 
 def at(app: App, state: str) -> None:
     """Wait until its cell is in this state."""
-    end = time.monotonic() + 4 * PATIENCE_S
+    end = time.monotonic() + PATIENCE_S
     while (cell := app.snapshot()["cells"][0])["state"] != state or cell["not_ready"]:
         assert time.monotonic() < end, (cell["state"], cell["not_ready"])
         time.sleep(0.05)

@@ -21,7 +21,8 @@ from arboleda.adapters.mqtt_broker.access import ALLOWED, Access, Role, Who
 from arboleda.model.errors import StartError
 from arboleda.wire.transport import Publication
 
-from .conftest import PATIENCE_S, text
+from ..patience import PATIENCE_S
+from .conftest import text
 
 USERS = {"ra_1": "one", "ra_2": "two", "ana": "look"}
 BOARDS = frozenset({"ra_1", "ra_2"})

@@ -24,7 +24,8 @@ from arboleda.app.parts.groot2 import Groot2Options, Groot2Part
 from arboleda.model.errors import StartError
 from arboleda.testing import shipped
 
-PATIENCE_S = 20.0
+from ..patience import PATIENCE_S
+
 MOST_BYTES = 1 << 16
 
 

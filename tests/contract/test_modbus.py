@@ -27,10 +27,11 @@ from arboleda.drivers.modbus.registers import Register
 from arboleda.drivers.modbus.settings import Settings
 from arboleda.kinds.declared import Device
 
+from ..patience import PATIENCE_S
+
 pytestmark = [pytest.mark.system, pytest.mark.requires("pymodbus", "serial")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor/plant.yaml"
-PATIENCE_S = 10.0
 
 
 class Memory:

@@ -15,7 +15,8 @@ from arboleda.adapters.broker_login import CA, CERTIFICATE, Address, address
 from arboleda.model.errors import StartError
 from arboleda.wire.transport import Publication
 
-from .conftest import PATIENCE_S, Authority
+from ..patience import PATIENCE_S
+from .conftest import Authority
 
 pytestmark = [pytest.mark.requires("mosquitto"), pytest.mark.requires("openssl")]
 

@@ -29,12 +29,12 @@ from arboleda.drivers.port import DriverError
 from arboleda.kinds.declared import Device
 
 from ..conftest import need_tool
+from ..patience import PATIENCE_S
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("asyncua")]
 
 EXAMPLE = Path(__file__).parents[2] / "examples/plc_conveyor/opcua.yaml"
 PEER = Path(__file__).parent / "opcua_peer.py"
-PATIENCE_S = 20.0
 SPOILT = ("null", "list", "bad", "uncertain")
 
 

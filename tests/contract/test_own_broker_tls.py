@@ -24,7 +24,8 @@ from arboleda.app.parts.broker import OwnBroker
 from arboleda.model.errors import StartError
 from arboleda.wire.transport import Publication
 
-from .conftest import PATIENCE_S, Authority, said
+from ..patience import PATIENCE_S
+from .conftest import Authority, said
 
 pytestmark = pytest.mark.requires("openssl")
 USERS = {"ra_1": "secret", "ra_2": "hidden"}

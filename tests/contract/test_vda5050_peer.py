@@ -22,7 +22,8 @@ from arboleda.model.facts import Value
 from arboleda.model.plant_model import Robot
 from arboleda.wire.transport import Delivery
 
-from .conftest import PATIENCE_S, Inbox, Mosquitto
+from ..patience import PATIENCE_S
+from .conftest import Inbox, Mosquitto
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("node")]
 

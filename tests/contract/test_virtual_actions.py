@@ -28,9 +28,10 @@ from arboleda.virtual.gripper.machine import FAULTS as GRIPPER_FAULTS
 from arboleda.virtual.nav2.machine import FAULTS as BASE_FAULTS
 from arboleda.virtual.trajectory.machine import FAULTS as ARM_FAULTS
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
-PATIENCE_S = 20.0
 ARM = shipped("sis_c").cells[0].arm
 NAMES = tuple(joint.name for joint in ARM.joints)
 GOAL = ARM.quantised(tuple(math.radians(each) for each in (4, 2, -3, 0, 1, 0)))

@@ -25,13 +25,13 @@ from arboleda.model.plant_model import Evidence
 
 from ..chromium import browsers
 from ..conftest import need_tool
+from ..patience import PATIENCE_S
 from ..postgres import Server
 from .two_hosts import Hosts
 
 collect_ignore = [] if find_spec("control_msgs") else ["test_mixed_ros2.py"]  # no wheels have it
 
 ROOT = Path(__file__).parents[2]
-PATIENCE_S = 30.0
 WIDE = {"COLUMNS": "200"}  # of the terminal that a command takes itself to be in
 
 

@@ -12,9 +12,9 @@ from typing import Any
 from arboleda.app.client import PlantClient
 from arboleda.model.messages import ENDED, TaskState, Verb
 
-from .conftest import PATIENCE_S, Process, paths
+from ..patience import PATIENCE_S
+from .conftest import Process, paths
 
-PATIENCE_MS = 20_000
 PARTS = ("cells", "twin", "tasks", "panel", "links", "events")
 
 

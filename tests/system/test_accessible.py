@@ -11,8 +11,9 @@ import yaml
 from arboleda.app.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
 
+from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, PATIENCE_MS, connected, ended, running, show
+from .page import PARTS, connected, ended, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "axe_playwright_python")]
 

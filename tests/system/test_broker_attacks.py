@@ -18,7 +18,7 @@ from arboleda.app.client import PlantClient
 from arboleda.app.line import Refused
 from arboleda.model.messages import Verb
 
-from .conftest import PATIENCE_S
+from ..patience import PATIENCE_S
 from .test_verbs import eventually
 
 pytestmark = pytest.mark.system

@@ -87,7 +87,7 @@ def test_a_running_plant_takes_tasks_tells_its_state_and_ends_cleanly_on_ctrl_c(
 
 
 def test_who_submits_may_wait_for_the_end_of_the_task_and_watch_the_plant(
-    arboleda: Callable[..., Any],
+    arboleda: Callable[..., Any], typed: Callable[..., tuple[int, str]]
 ) -> None:
     up = arboleda("up", "--no-ros", "--rate", "3")
     up.wait_for("HTTP API")
@@ -99,7 +99,7 @@ def test_who_submits_may_wait_for_the_end_of_the_task_and_watch_the_plant(
     watch.wait_for('"state": "done"')
     stopped = arboleda("submit", "--wait", "sis_b 0B 7")
     stopped.wait_for("running: sis_b 0B 7")
-    assert arboleda("stop", "sis_b").wait() == 0
+    assert typed("stop", "sis_b")[0] == 0
     assert stopped.wait() == 1 and "sis_b was stopped by the operator" in stopped.output
     left = arboleda("submit", "--wait", "sis_c 0B 7 #two")
     left.wait_for("running: sis_c 0B 7")

@@ -14,8 +14,9 @@ import yaml
 from arboleda.adapters.store import Store
 from arboleda.model.messages import Fact, Remember
 
+from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
-from .page import PARTS, PATIENCE_MS, connected, running, show
+from .page import PARTS, connected, running, show
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 

@@ -10,12 +10,12 @@ import pytest
 from arboleda.app.build import App, Options, build
 from arboleda.model.messages import TaskChanged, TaskState
 
+from ..patience import PATIENCE_S
 from ..unit.kinds.lab import model
 
 pytestmark = pytest.mark.system
 
 RATE = 10.0
-PATIENCE_S = 30.0
 PARTS = ("broker", "devices", "bridge", "orchestrator")
 
 

@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from .test_linux_boards import PATIENCE_S, Desk
+from ..patience import PATIENCE_S
+from .test_linux_boards import Desk
 
 pytestmark = pytest.mark.system
 

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 
+from ..patience import PATIENCE_MS
 from .conftest import paths
-from .page import PATIENCE_MS, connected, running
+from .page import connected, running
 
 pytestmark = pytest.mark.system
 

@@ -10,7 +10,7 @@ from typing import Any
 import httpx
 import pytest
 
-from .conftest import PATIENCE_S
+from ..patience import PATIENCE_S
 
 pytestmark = pytest.mark.system
 Typed = Callable[..., tuple[int, str]]

@@ -25,12 +25,12 @@ import yaml
 from paho.mqtt.client import Client
 from paho.mqtt.enums import CallbackAPIVersion
 
+from ..patience import PATIENCE_S
 from .conftest import paths
 
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
-PATIENCE_S = 30.0
 
 
 def terminals(page: str) -> tuple[str, list[str]]:

@@ -15,9 +15,10 @@ from arboleda.adapters.broker_login import Address
 from arboleda.adapters.mqtt import MqttClient
 from arboleda.wire.transport import Connection, Delivery, Publication
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
-PATIENCE_S = 20.0
 EPOCH = 7
 
 

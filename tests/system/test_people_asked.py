@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from .page import PATIENCE_MS, connected, running
+from ..patience import PATIENCE_MS
+from .page import connected, running
 from .test_accessible import Eye
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]

@@ -18,8 +18,9 @@ from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import FOLDER, parts_in
 from arboleda.recorder.views import Views
 
+from ..patience import PATIENCE_MS
 from .conftest import Process, paths
-from .page import PATIENCE_MS, connected, running, show, until
+from .page import connected, running, show, until
 from .test_accessible import Eye, eye
 
 __all__ = ["eye"]  # a fixture

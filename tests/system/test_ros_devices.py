@@ -20,11 +20,11 @@ from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
 from arboleda_ros.link import connect
 from arboleda_ros.orchestrator import NoBridge
 
+from ..patience import PATIENCE_S
 from ..unit.kinds.station import STATION, plant
 
 pytestmark = pytest.mark.system
 
-WAIT_S = 10.0
 WARM = STATION.command(id="7-1", robot="station", verb="warm", values={"celsius": 40.5})
 HALT = Stop(id="7-2", robot="station", mode=StopMode.HALT)
 REPORT = Report(
@@ -43,7 +43,7 @@ REPORT = Report(
 
 def eventually(holds: Callable[[], object]) -> object:
     """The first true value of `holds`; the test fails where none comes in time."""
-    until = time.monotonic() + WAIT_S
+    until = time.monotonic() + PATIENCE_S
     while not (value := holds()):
         assert time.monotonic() < until, "nothing came in time"
         time.sleep(0.002)

@@ -49,9 +49,10 @@ from arboleda_ros import statuses
 from arboleda_ros.link import connect, limit_discovery
 from arboleda_ros.orchestrator import NoBridge
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
-WAIT_S = 5.0
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATE = QoSProfile(
     depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
@@ -64,7 +65,7 @@ DRIVE = FollowPath(id="7-2", robot="rm_sis_a", nodes=(0, 3, 4))
 HALT = Stop(id="7-5", robot="ra1", mode=StopMode.HALT)
 
 
-def eventually(holds: Callable[[], object], timeout_s: float = WAIT_S) -> object:
+def eventually(holds: Callable[[], object], timeout_s: float = PATIENCE_S) -> object:
     """The first true value of `holds`; the test fails where none comes in time."""
     until = time.monotonic() + timeout_s
     while not (value := holds()):
@@ -433,7 +434,7 @@ class Operator(Stranger):
 
     def call(self, service: str) -> object:
         client = self.node.create_client(Trigger, service)
-        assert client.wait_for_service(WAIT_S), f"no service {service}"
+        assert client.wait_for_service(PATIENCE_S), f"no service {service}"
         return client.call_async(Trigger.Request())
 
 
@@ -448,7 +449,7 @@ def test_no_task_of_a_burst_is_lost_while_the_plant_is_busy(links):
     free, texts = threading.Event(), []
 
     def on_event(event: TaskRequest) -> None:
-        free.wait(WAIT_S)
+        free.wait(PATIENCE_S)
         texts.append(event.text)
 
     plant = links()
@@ -593,7 +594,7 @@ def test_a_second_commander_at_start_is_refused_by_name(links):
     with pytest.raises(
         StartError, match="another node already commands /ra1/joint_goals_q: /other_plant; stop"
     ):
-        side.port.check_alone(WAIT_S)
+        side.port.check_alone(PATIENCE_S)
     assert side.port._alone.others() == [("/ra1/joint_goals_q", "/other_plant")]
 
 
@@ -602,7 +603,7 @@ def test_a_second_orchestrator_of_the_same_name_is_another_node(links):
     first.port.check_alone(0.0)
     second = Side(links(), "orchestrator", PLANT)
     with pytest.raises(StartError, match="/orchestrator"):
-        second.port.check_alone(WAIT_S)
+        second.port.check_alone(PATIENCE_S)
 
 
 def test_a_heartbeat_of_the_far_future_is_refused_and_said(links, caplog):
@@ -701,7 +702,7 @@ def test_the_way_to_the_bridge_and_back_takes_milliseconds(pair, record_property
         pair.orchestrator.port.send(replace(MOVE, id=f"7-{n + 1}"))
         while len(answers) == n:
             time.sleep(0.0001)
-            assert time.monotonic() < began + WAIT_S
+            assert time.monotonic() < began + PATIENCE_S
         took.append(time.monotonic() - began)
     median = sorted(took)[50]
     logging.getLogger("arboleda.test").info(

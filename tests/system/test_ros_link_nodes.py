@@ -18,9 +18,10 @@ pytest.importorskip("rclpy", reason="rclpy is not installed")
 
 from arboleda_ros.link import connect
 
+from ..patience import PATIENCE_S
+
 pytestmark = pytest.mark.system
 
-WAIT_S = 15.0
 Start = Callable[..., subprocess.Popen[str]]
 
 
@@ -48,7 +49,7 @@ def appeared(name: str) -> bool:
     try:
         watcher = link.node("watcher")
         link.start()
-        until = time.monotonic() + WAIT_S
+        until = time.monotonic() + PATIENCE_S
         while name not in watcher.get_node_names() and time.monotonic() < until:
             time.sleep(0.02)
         return name in watcher.get_node_names()
@@ -62,7 +63,7 @@ def test_a_node_ends_cleanly_on_a_signal(start: Start, name: str, number: signal
     node = start(name, "rate:=10")
     assert appeared(name), node.poll()
     node.send_signal(number)
-    said, _ = node.communicate(timeout=WAIT_S)
+    said, _ = node.communicate(timeout=PATIENCE_S)
     assert node.returncode == 0, said
     assert "Traceback" not in said
 
@@ -80,14 +81,14 @@ def test_a_node_ends_cleanly_on_a_signal(start: Start, name: str, number: signal
 )
 def test_a_bad_parameter_is_one_sentence(start: Start, parameter: str, word: str) -> None:
     node = start("mqtt_bridge", parameter)
-    said, _ = node.communicate(timeout=WAIT_S)
+    said, _ = node.communicate(timeout=PATIENCE_S)
     assert node.returncode == 1, said
     assert word in said and "Traceback" not in said
 
 
 def test_the_dashboard_is_in_the_process_of_the_orchestrator(start: Start, tmp_path: Path) -> None:
     start("orchestrator", "dashboard:=true")
-    until = time.monotonic() + WAIT_S
+    until = time.monotonic() + PATIENCE_S
     while (running := find_running(tmp_path)) is None or running.port is None:
         assert time.monotonic() < until, "no HTTP API was announced"
         time.sleep(0.05)

@@ -23,10 +23,10 @@ from arboleda.adapters.postgres.memory import PostgresMemory
 from arboleda.app.state import find_running
 from arboleda_kills.processes import paths
 
+from ..patience import PATIENCE_S
 from ..postgres import Server
 
 pytestmark = [pytest.mark.system, pytest.mark.usefixtures("quick_discovery")]
-WAIT_S = 60.0
 NAME = "arboleda"
 
 
@@ -87,11 +87,11 @@ def test_a_node_that_waits_says_so_in_the_diagnostics_and_leads_then(
     finally:
         leader.close()
         node.terminate()
-        said = node.communicate(timeout=WAIT_S)[0]
+        said = node.communicate(timeout=PATIENCE_S)[0]
     assert node.returncode == 0 and "Traceback" not in said, said
 
 
 def until(true: Callable[[], object]) -> None:
-    patience = time.monotonic() + WAIT_S
+    patience = time.monotonic() + PATIENCE_S
     while not true():
         assert time.monotonic() < patience

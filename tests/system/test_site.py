@@ -11,8 +11,9 @@ import pytest
 
 from arboleda.app.client import PlantClient
 
+from ..patience import PATIENCE_MS
 from .conftest import Process, paths
-from .page import PATIENCE_MS, connected, running, until
+from .page import connected, running, until
 from .test_accessible import Eye, eye
 
 __all__ = ["eye"]  # a fixture

@@ -11,7 +11,8 @@ import pytest
 from arboleda.app.client import PlantClient
 from arboleda.model.messages import Verb
 
-from .page import PATIENCE_MS, connected, running
+from ..patience import PATIENCE_MS
+from .page import connected, running
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]
 

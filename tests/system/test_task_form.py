@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from .page import PATIENCE_MS, connected, running, show
+from ..patience import PATIENCE_MS
+from .page import connected, running, show
 
 BENCH = Path(__file__).parents[2] / "examples" / "lab_bench" / "plant.yaml"
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]

@@ -11,7 +11,8 @@ from typing import Any
 import httpx
 import pytest
 
-from .conftest import PATIENCE_S, paths
+from ..patience import PATIENCE_S
+from .conftest import paths
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("cryptography")]
 Typed = Callable[..., tuple[int, str]]

@@ -26,12 +26,12 @@ from arboleda.wire.topics import Channel
 from arboleda.wire.values import Presence, Telemetry
 
 from ..chromium import FEW_FRAMES, browsers
+from ..patience import PATIENCE_MS
 from ..unit.description import drawn
 from .conftest import SHIPPED, Process, paths
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright", "xacro", "urdf_parser_py")]
 
-PATIENCE_MS = 20_000
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
 # Drawn in software, each point costs time, and no test looks at one.

@@ -11,7 +11,7 @@ import pytest
 
 from arboleda.app.state import find_running
 
-from .page import PATIENCE_MS
+from ..patience import PATIENCE_MS
 from .two_hosts import Hosts
 
 pytestmark = [pytest.mark.system, pytest.mark.requires("chromium", "playwright")]

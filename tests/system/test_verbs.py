@@ -13,7 +13,8 @@ import httpx
 import pytest
 import yaml
 
-from .conftest import PATIENCE_S, SHIPPED
+from ..patience import PATIENCE_S
+from .conftest import SHIPPED
 
 pytestmark = pytest.mark.system
 

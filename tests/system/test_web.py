@@ -19,7 +19,8 @@ import pytest
 from arboleda.adapters import descriptors
 from arboleda.adapters.web.admission import Admission
 
-from .conftest import PATIENCE_S, Process, paths
+from ..patience import PATIENCE_S
+from .conftest import Process, paths
 
 pytestmark = pytest.mark.system
 Typed = Callable[..., tuple[int, str]]

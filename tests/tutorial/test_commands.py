@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from ..patience import PATIENCE_S
+
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "tutorial"
 CONSOLE = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LEFT_OUT = "..."
 REAL = ("07_ros2_cell", "09_mqtt_board", "10_plant")  # real time, sockets, processes
-PATIENCE_S = 50.0
 
 
 def commands(page: Path) -> Iterator[tuple[str, list[str]]]:

@@ -15,7 +15,8 @@ from typing import Any, Protocol
 from arboleda.app.build import App
 from arboleda.model.messages import TaskChanged, TaskState, Verb
 
-PATIENCE_S = 20.0
+from ...patience import PATIENCE_S
+
 WORK, OTHER, ASK = "work", "other", "ask"
 HALT, LATCH = "halt", "latch"
 OPEN = (TaskState.QUEUED, TaskState.RUNNING)

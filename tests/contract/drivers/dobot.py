@@ -17,7 +17,8 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.drivers.dobot.frames import Feedback, Mode
 
-from .bench import HALT, LATCH, OTHER, PATIENCE_S, WORK, Bench, Device, Ref
+from ...patience import PATIENCE_S
+from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
 FRAME_S = 0.02
 HOME = "home"

@@ -15,7 +15,8 @@ from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.app.build import App, Options, build
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .bench import PATIENCE_S, Bench, Device
+from ...patience import PATIENCE_S
+from .bench import Bench, Device
 from .press import CODES, NAME, STOPS, Order, Press, Words, plant
 
 

@@ -13,7 +13,8 @@ from typing import Any, Protocol
 from arboleda.app.config import load
 from arboleda.model.plant_model import MotionState, PlantModel
 
-from .bench import ASK, HALT, LATCH, OTHER, PATIENCE_S, WORK, Ref
+from ...patience import PATIENCE_S
+from .bench import ASK, HALT, LATCH, OTHER, WORK, Ref
 
 BEAT_S = 0.1
 NAME = "press"

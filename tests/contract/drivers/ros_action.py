@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Protocol
 
-from .bench import HALT, LATCH, PATIENCE_S, Ref
+from ...patience import PATIENCE_S
+from .bench import HALT, LATCH, Ref
 
 STATE_S = 0.02
 HOME = "home"

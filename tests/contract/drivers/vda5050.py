@@ -17,7 +17,8 @@ from arboleda.app.build import App, Options, build
 from arboleda.app.config import load
 from arboleda.wire.transport import Connection, Delivery, Publication
 
-from .bench import HALT, LATCH, OTHER, PATIENCE_S, WORK, Bench, Device, Ref
+from ...patience import PATIENCE_S
+from .bench import HALT, LATCH, OTHER, WORK, Bench, Device, Ref
 
 BEAT_S = 0.1
 VERSION, TOPICS = "2.1", "uagv/v2/played/agv1"

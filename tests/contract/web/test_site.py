@@ -25,10 +25,10 @@ from arboleda.dashboard.frames import ended
 from arboleda.dashboard.site.side import PlantSeen
 from arboleda.model.messages import OperatorAnswer, Verb
 
+from ...patience import PATIENCE_S
 from .conftest import QUEUED, TOKENS, VIEW, Plant, running
 
 T = TypeVar("T")
-PATIENCE_S = 30.0
 
 
 @contextmanager

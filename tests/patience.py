@@ -1,0 +1,7 @@
+"""How long tests wait for what comes by itself.
+
+It is for the busiest machine: who is answered waits no longer than that takes, only a failure takes it all.
+"""
+
+PATIENCE_S = 60.0
+PATIENCE_MS = 1000 * PATIENCE_S
