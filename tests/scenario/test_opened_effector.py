@@ -8,7 +8,7 @@ import pytest
 
 from arboleda.core.cell_states import CellState
 from arboleda.kinds.arm import SetEffector
-from arboleda.model.messages import Reason, Verb
+from arboleda.model.messages import Interference, Reason, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
@@ -40,6 +40,18 @@ def test_the_task_fails_and_says_that_nobody_of_ours_commanded_it(rig: Rig, step
     assert rig.plant.cells["sis_a"].state is CellState.IDLE
     ons = [each.on for each in rig.sent if isinstance(each, SetEffector)]
     assert ons == [True], "nothing is left to carry back"
+
+
+@pytest.mark.parametrize(("ago_s", "named"), [(1.0, True), (6.0, False)])
+def test_what_another_node_sent_is_named_only_where_it_was_obeyed_lately(
+    rig: Rig, *, ago_s: float, named: bool
+) -> None:
+    rig.wait_for("sis_a", "main/move to station 4")
+    sent = "ra1: effector_cmd 0 of /teleop was sent to it"
+    rig.tell(Interference(at=rig.now - ago_s, robot="ra1", sentence=sent))
+    rig.open_effector("ra_1")
+    rig.wait(60.0, until=lambda: rig.plant.at_rest)
+    assert (sent in str(the_end(rig).sentence)) is named
 
 
 def test_the_next_task_is_done(rig: Rig) -> None:

@@ -486,3 +486,14 @@ def test_an_arm_whose_way_home_a_held_one_blocks_waits_for_what_that_cell_needs(
     assert advised(rig, "sis_b")[:2] == ["resume sis_a", "home ra2"]
     assert follow(rig, "sis_b")[:2] == ["resume sis_a", "home ra2"]
     honest(witness)
+
+
+def test_a_zone_that_is_kept_for_an_arm_that_is_gone_is_answered_for_first(zoned: Plants) -> None:
+    """A plant file before this one had the arm."""
+    rig, _ = start(zoned(Evidence.IDS))
+    rig.memory.setdefault(Fact.QUARANTINE, {})["centre"] = "ra9"
+    rig.crash()
+    rig.crash("ra_2")
+    rig.wait(2.0)
+    assert advised(rig, "sis_b") == ["see that nobody is in centre", "override centre", "home ra2"]
+    assert not any(each.instead for each in rig.plant.advice("sis_b")), "there is no other way"
