@@ -132,8 +132,7 @@ class Belief:
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._said, self.lost = report.words, report.lost
-        if report.state is not MotionState.NO_LINK:
-            self._count_rate(report.at)
+        self._count_rate(report.at)
         self._hear(report)
         self.online = self._is_online()
 
@@ -155,7 +154,7 @@ class Belief:
 
     def _count_rate(self, at: float) -> None:
         since, reports = self._counted
-        if self.heard_at is None or not self._is_online():
+        if self.heard_at is None or not self.online:
             self.rate_hz, self._counted = None, (at, self.reports)
         elif at - since >= RATE_S:
             self.rate_hz, self._counted = (self.reports - reports) / (at - since), (at, self.reports)
