@@ -130,8 +130,8 @@ def main() -> None:
         outcome = lesson.run(tree, cell.clock)
         tried = cell.cause if outcome is Status.FAILURE else ""
         print(f"  {outcome.value} after {cell.clock.now:g} s{tried and f': {tried}'}\n")
-    print("In Arboleda a retry may help after:", ", ".join(r.value for r in Reason if r in RETRYABLE))
-    print("It is not tried again after:", ", ".join(r.value for r in Reason if r not in RETRYABLE))
+    print("Arboleda gives a command again after:", ", ".join(r.value for r in Reason if r in RETRYABLE))
+    print("It does not after:", ", ".join(r.value for r in Reason if r not in RETRYABLE))
 
 
 if __name__ == "__main__":

@@ -30,15 +30,7 @@ NOT_AT_REST = Phrase("device.not_at_rest", "{cell}: {devices} did not come to re
 NOT_OUTSIDE = Phrase("zone.not_outside", "{arm} was not seen outside its zones")
 Guard = Callable[[], "Failure | None"]
 RETRYABLE = frozenset(
-    {
-        Reason.LINK_LOST,
-        Reason.REJECTED,
-        Reason.DEADLINE,
-        Reason.STOPPED_SHORT,
-        Reason.NOT_REACHED,
-        Reason.NO_PIECE,
-        Reason.NOT_GRIPPED,
-    }
+    {Reason.LINK_LOST, Reason.REJECTED, Reason.DEADLINE, Reason.STOPPED_SHORT, Reason.NOT_REACHED}
 )
 
 
