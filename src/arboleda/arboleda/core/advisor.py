@@ -188,7 +188,7 @@ class Advisor:
     def _run_of(self, robot: str) -> CellRun:
         """The cell of a robot; of a shared device that which holds it, where one does."""
         runs = self._runs[robot]
-        return next((run for run in runs if len(runs) > 1 and run.context.has_device(robot)), runs[0])
+        return next((run for run in runs if run.context.has_device(robot)), runs[0])
 
     def _overriding(self, zones: Sequence[str], holder: str, *, instead: bool) -> Iterator[Advice]:
         for zone in zones:

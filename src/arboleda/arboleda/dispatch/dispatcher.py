@@ -469,7 +469,7 @@ class Dispatcher:
         moving = obstacle is not None and obstacle.reason is Reason.REJECTED
         if moving and self._shows_its_own_end(command) and not self._breaks_its_work(command):
             return None  # its last code may be older than the end of its last move, which was proven
-        if by_hand and obstacle and obstacle.reason is Reason.STOPPED:
+        if by_hand and obstacle:
             return self.beliefs[robot].obstacle_besides_stop(was=was)
         return obstacle or self._unmet(command, was=was)
 

@@ -51,7 +51,7 @@ class StorageCell(Cell):
     pickup: Pose
     paths: tuple[Path, ...]
     palletizing: Palletizing
-    drive_to_start: bool = True  # False: a mobile known to be elsewhere fails the task
+    drive_to_start: bool  # False: a mobile known to be elsewhere fails the task
     piece_check: bool = False
     crossings: tuple[Crossing, ...] = ()
     pickups: tuple[tuple[str, Pose], ...] = ()  # by exit

@@ -336,8 +336,6 @@ def _facts(belief: Belief) -> dict[str, Value | None]:
     found = {name: belief.fact(name) for name in robot.fact_names}
     if robot.held_fact is not None:
         found.setdefault(robot.held_fact, belief.fact(robot.held_fact))
-    if belief.effector is not None:
-        found.setdefault("effector", belief.effector)
     if belief.piece is not None:
         found.setdefault("piece", belief.piece)
     return found
