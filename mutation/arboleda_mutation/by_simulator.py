@@ -1,6 +1,7 @@
 """The second judge: the simulator alone, seed by seed, until an invariant breaks.
 
-Odd seeds run both packaged plants in turn, even ones a plant of their own that they draw.
+Seeds take turns: every kind of fault on both packaged plants, on plants that they draw, and on the examples
+of cells of devices, which have recipes of their own; and plants that die again and again.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from .reach import Reach, Tracer
 from .sources import MUTATED, PACKAGE, Sources
 
 SECONDS = 20.0  # for which faults come; then everything has to come to rest
-LEVEL = "many"
+MANY, CRASHES = "many", "crashes"
+EXAMPLES = ("machine_tending", "own_tree", "lab_bench")
 LEAST_CPU_S = 30.0  # a seed takes a fraction of a second
 
 
@@ -25,7 +27,7 @@ def measure(root: Path, seeds: int, say: Say) -> dict[str, Any]:
     """What each seed reaches, with nothing planted."""
     tracer = Tracer(root / PACKAGE, MUTATED)
     with tracer.running():
-        run = _runner()
+        run = _runner(root)
         for seed in range(1, seeds + 1):
             began = time.process_time()
             with tracer.during(str(seed)):
@@ -41,7 +43,7 @@ def judge(sources: Sources, mutant: Mutant, seeds: list[int], say: Say) -> dict[
     """Run these seeds until one breaks."""
     plant(mutant, sources)
     try:
-        run = _runner()
+        run = _runner(sources.root)
     except Exception as error:  # noqa: BLE001 - a plant that cannot even be built is found at once
         return {"killed": True, "by": f"{type(error).__name__} before the first seed", "ran": 0}
     for number, seed in enumerate(seeds, start=1):
@@ -60,7 +62,7 @@ def in_order(mutant: Mutant, reach: Reach, seeds: range, before: str) -> list[in
     return [int(name) for name in sorted(names, key=lambda name: (name != first, int(name)))]
 
 
-def _runner() -> Any:
+def _runner(root: Path) -> Any:
     """Runs one seed: the name of the invariant that breaks, or "". Imports what may have a bug."""
     from importlib.resources import as_file, files
 
@@ -70,18 +72,34 @@ def _runner() -> Any:
     from arboleda.app.simulate.setting import Setting
     from arboleda.app.simulate.workers import collect_rarely
 
-    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
-        packaged = tuple(Plant(declared=each) for each in (config.load(shared), config.load()))
+    class Turns:
+        """Plants of which each turn takes the next one."""
 
-    class Both:
+        def __init__(self, *plants: Plant) -> None:
+            self._plants = plants
+
         def of(self, seed: int) -> Plant:
-            return packaged[seed // 2 % 2] if seed % 2 else Drawn().of(seed)
+            return self._plants[seed // len(settings) % len(self._plants)]
 
-    setting = Setting(plants=Both(), cycles=0, level=LEVEL, seconds=SECONDS)
+    def setting(plants: Any, level: str) -> Setting:
+        return Setting(plants=plants, cycles=0, level=level, seconds=SECONDS)
+
+    with as_file(files("arboleda").joinpath("plants", "shared.yaml")) as shared:
+        packaged = Turns(*(Plant(declared=each) for each in (config.load(shared), config.load())))
+    paths = [root / "examples" / name / "plant.yaml" for name in EXAMPLES]
+    examples = Turns(*(Plant(declared=config.load(path)) for path in paths))
+    settings = (
+        setting(packaged, MANY),
+        setting(Drawn(), MANY),
+        setting(examples, MANY),
+        setting(packaged, CRASHES),
+        setting(Drawn(), MANY),
+        setting(examples, CRASHES),
+    )
     collect_rarely()
 
     def run(seed: int) -> str:
-        broken = setting.run(seed).broken
+        broken = settings[seed % len(settings)].run(seed).broken
         return broken.invariant if broken else ""
 
     return run

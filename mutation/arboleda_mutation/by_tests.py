@@ -48,8 +48,11 @@ def judge(sources: Sources, mutant: Mutant, tests: list[tuple[str, float]], say:
 
 
 def in_order(mutant: Mutant, reach: Reach, breadth: dict[str, int], before: str) -> list[tuple[str, float]]:
-    """The tests that come by a mutant: who killed it before, then who is quick and reaches little."""
-    names = [name for name in reach.of(mutant) if name not in reach.failed]
+    """The tests that come by a mutant: who killed it before, then who is quick and reaches little.
+
+    All, where none is seen to: tables are read at import, and some tests have a process of their own.
+    """
+    names = [name for name in reach.of(mutant) or reach.names if name not in reach.failed]
     times = dict(zip(reach.names, reach.cpu_s, strict=True))
     names.sort(key=lambda name: (name != before, (times[name] + 0.01) * breadth[name]))
     return [(name, times[name]) for name in names]

@@ -17,22 +17,10 @@ from .reach import Reach
 from .sources import ENGINE, PACKAGE, Sources, fingerprint
 
 TESTS, SIMULATOR = JUDGES = ("tests", "simulator")
+SIMULATED = ("kinds", "recipes", "views", "wire", "sim", "simulator", "app", "plants")
 FOLDERS = {
     TESTS: (str(PACKAGE), "wire_vectors"),
-    SIMULATOR: tuple(
-        str(PACKAGE / each)
-        for each in (
-            *ENGINE,
-            "kinds",
-            "recipes",
-            "views",
-            "wire",
-            "sim",
-            "simulator",
-            "app",
-            "plants",
-        )
-    ),
+    SIMULATOR: ("examples", *(str(PACKAGE / each) for each in (*ENGINE, *SIMULATED))),
 }
 LIBRARIES = ("fastapi", "httpx", "PIL", "py_trees", "pydantic", "rich.progress", "typer", "yaml")
 Told = Callable[[str], None]

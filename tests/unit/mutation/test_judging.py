@@ -150,6 +150,14 @@ def test_what_is_carried_out_at_import_concerns_everybody_in_the_file(sources: S
     assert Reach(names=["a", "b", "c"], cpu_s=[0.0] * 3, lines=lines).of(mutant) == ["a", "c"]
 
 
+def test_every_test_is_asked_about_what_none_is_seen_to_come_by(sources: Sources) -> None:
+    mutant = next(each for each in sources.mutants if not each.function)
+    lines = {mutant.file: {}, f"{mutant.file}@import": {"2": "0"}}
+    reach = Reach(names=["a", "b", "c"], cpu_s=[0.3, 0.1, 0.2], failed=["c"], lines=lines)
+    asked = by_tests.in_order(mutant, reach, {"a": 1, "b": 1, "c": 1}, "")
+    assert asked == [("b", 0.1), ("a", 0.3)]
+
+
 def _verdict(**said: object) -> Verdict:
     whole = {"key": "k", "judge": "simulator", "of": "now", "killed": False, "by": "", "ran": 25, "asked": 25}
     return Verdict(**{**whole, "cpu_s": 1.0, **said})  # type: ignore[arg-type]
