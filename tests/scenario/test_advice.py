@@ -256,6 +256,16 @@ def test_a_part_that_a_failed_recovery_left_may_be_dropped_instead(stage: Stage)
     assert str(sentence((retry, release, abandon))) == "retry sis_a or release ra1, then abandon sis_a"
 
 
+def test_a_cell_is_held_by_a_part_that_its_arm_may_hold(stage: Stage) -> None:
+    rig, _ = stage()
+    at(rig, "move to station 7")
+    assert rig.operate(Verb.STOP, "sis_a") is None
+    rig.wait(2.0)
+    assert [rig.operate(verb, "sis_a") for verb in (Verb.CLEAR, Verb.RESET)] == [None, None]
+    rig.wait(2.0)
+    assert "ra1 may hold a part, its effector is on" in str(cell(rig).held_by)
+
+
 def test_an_idle_cell_that_cannot_work_says_why(stage: Stage) -> None:
     rig, _ = stage()
     assert (cell(rig).not_ready, rig.plant.advice("sis_a")) == (None, ())

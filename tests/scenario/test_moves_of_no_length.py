@@ -40,7 +40,7 @@ class Glued:
         self.now = 100.0
         self.plant = Plant(equal_neighbours(evidence, Link.ROS), epoch=7, now=self.now)
         self.late = {"state": state_s, "q": position_s}
-        self.says_moving = says_moving
+        self.pulse_s = PERIOD_S * says_moving
         self.q = self.goal = (0.0, 0.0, 0.0)
         self.moves_until = 0.0
         self.coming: list[tuple[float, Report]] = []
@@ -71,7 +71,7 @@ class Glued:
     def _obey(self, move: MoveJoints) -> None:
         self.goal = self.plant.model.cells[0].arm.quantised(move.q)
         way = max(abs(a - b) for a, b in zip(self.goal, self.q, strict=True))
-        self.moves_until = self.now + (way / SPEED_RAD_S or PERIOD_S * self.says_moving)
+        self.moves_until = self.now + (way / SPEED_RAD_S or self.pulse_s)
 
     def _pass_10_ms(self) -> None:
         self.ticks += 1
@@ -103,8 +103,16 @@ def test_at_state_a_robot_left_at_its_goal_need_not_say_moving() -> None:
     """Only for its very first move it has to."""
     arm = Glued(Evidence.STATE, state_s=0.0, position_s=0.0, says_moving=True)
     assert arm.ends(1) == [(TaskState.DONE, None)]
-    arm.says_moving = False
+    arm.pulse_s = 0.0
     assert arm.ends(TASKS) == [(TaskState.DONE, None)] * TASKS
+
+
+def test_at_state_a_move_of_no_length_takes_as_long_as_its_robot_says_that_it_moves() -> None:
+    arm = Glued(Evidence.STATE, state_s=0.0, position_s=0.0, says_moving=True)
+    assert arm.ends(1) == [(TaskState.DONE, None)]
+    arm.pulse_s, begun = 2 * arm.plant.model.timing.stop_timeout_s, arm.now
+    assert arm.ends(1) == [(TaskState.DONE, None)]
+    assert arm.now - begun > arm.pulse_s
 
 
 @pytest.mark.parametrize("evidence", list(Evidence), ids=lambda evidence: evidence.value)

@@ -62,6 +62,20 @@ def test_the_next_task_is_done(rig: Rig) -> None:
     assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
 
 
+def test_a_part_is_lost_as_ever_after_a_task_was_abandoned(rig: Rig) -> None:
+    rig.wait_for("sis_a", "main/drive path 0B")
+    assert rig.operate(Verb.HOLD, "sis_a") is None
+    rig.wait(3.0)
+    assert rig.operate(Verb.ABANDON, "sis_a") is None
+    rig.wait(60.0, until=lambda: rig.plant.at_rest)
+    task = rig.submit(f"{TASK} #again").task
+    assert rig.operate(Verb.RESUME, "sis_a") is None
+    rig.wait_for("sis_a", "main/move to station 4")
+    rig.open_effector("ra_1")
+    rig.wait(60.0, until=lambda: rig.plant.at_rest)
+    assert rig.outcomes()[task].reason is Reason.PART_LOST
+
+
 def test_an_effector_that_opens_while_the_task_is_held_leaves_nothing_to_go_on_with(rig: Rig) -> None:
     rig.wait_for("sis_a", "main/move to station 4")
     rig.operate(Verb.HOLD, "sis_a")

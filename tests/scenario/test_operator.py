@@ -679,6 +679,20 @@ def test_cancel_of_an_unknown_task_says_so_and_which_tasks_are_open() -> None:
     )
 
 
+def test_a_task_is_abandoned_by_the_operator_also_where_its_arm_was_homed_meanwhile() -> None:
+    rig = Rig(shipped("sis_a", evidence=Evidence.JOINTS))
+    rig.wait(1.0)
+    fetch(rig)
+    act(rig, Verb.HOLD)
+    assert rig.operate(Verb.HOME, "ra1", by_hand=True) is None
+    rig.wait(2.0)
+    assert rig.operate(Verb.RESUME, "sis_a") is not None
+    act(rig, Verb.ABANDON)
+    rig.wait(60.0, until=lambda: rig.plant.at_rest)
+    (end,) = rig.outcomes().values()
+    assert (end.reason, str(end.sentence)) == (Reason.CANCELLED, "abandoned by the operator")
+
+
 def test_cancel_knows_a_cell_in_any_case_as_the_other_verbs_do() -> None:
     rig = Rig(shipped("sis_a"))
     rig.wait(1.0)

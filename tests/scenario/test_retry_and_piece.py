@@ -289,6 +289,21 @@ def grips_at(rig: Rig, attempt: int) -> None:
     rig.carry = carry
 
 
+@pytest.mark.parametrize(
+    ("evidence", "reason"), [(Evidence.IDS, Reason.NOT_REACHED), (Evidence.JOINTS, Reason.STOPPED_SHORT)]
+)
+@pytest.mark.parametrize("times", [0, 1])
+def test_a_move_that_ended_before_its_goal_is_given_again(
+    stage: Stage, evidence: Evidence, reason: Reason, times: int
+) -> None:
+    rig, witness = stage(evidence, retry=Retry(times=times, backoff_s=0.5))
+    rig.submit(TASK)
+    rig.wait_for("sis_a", "move to pick-up")
+    rig.wait(0.5)
+    body(rig).stop(round(rig.now * 1e6))
+    assert ended(rig).reason is (None if times else reason) and honest(witness)
+
+
 @levels
 @pytest.mark.parametrize("attempt", [2, 3])
 def test_a_missed_grip_is_tried_again(stage: Stage, evidence: Evidence, attempt: int) -> None:

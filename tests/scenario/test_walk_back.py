@@ -167,6 +167,33 @@ def test_a_part_that_was_lost_meanwhile_is_not_delivered(stage: Stage) -> None:
     assert run(rig).context.stored == frozenset()
 
 
+def test_a_part_that_was_lost_stays_lost_though_the_effector_is_closed_again(stage: Stage) -> None:
+    rig, _ = stage()
+    at(rig, "move to station 7")
+    rig.wait(0.5)
+    rig.open_effector("ra_1")
+    restart(rig, after_s=1.0)
+    rig.wait(1.0)
+    rig.boards["ra_1"].body.switch_effector(True)
+    rig.wait(1.0)
+    restart(rig)
+    rig.wait(1.0)
+    assert ways(rig) == ["abandon"]
+
+
+def test_an_effector_that_was_closed_meanwhile_is_for_a_person_to_judge(stage: Stage) -> None:
+    rig, _ = stage()
+    at(rig, "move to pick-up")
+    rig.wait(0.5)
+    rig.boards["ra_1"].body.switch_effector(True)
+    restart(rig, after_s=1.0)
+    rig.wait(8.0)
+    assert "ra1 held nothing then, and says that it holds something" in held(rig)
+    assert rig.operate(Verb.ABANDON, CELL) is None
+    assert outcome(rig) is TaskState.FAILED
+    assert rig.outcomes()[ID].reason is Reason.INTERRUPTED
+
+
 def test_a_part_in_the_hand_is_carried_on_or_brought_back(stage: Stage) -> None:
     rig, witness = stage()
     at(rig, "move to station 7")

@@ -28,6 +28,29 @@ def test_every_default_of_a_time_is_on_the_page() -> None:
         assert re.search(rf"\| `{key}` \| s? ?\| {field.default:g} \|", PAGE)
 
 
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.__name__)
+def test_every_number_that_is_a_default_is_in_the_table_of_its_key(shape: type[shapes.Shape]) -> None:
+    for name, field in shape.model_fields.items():
+        told = _defaults().get(field.alias or name)
+        if told and type(field.default) in (int, float) and field.default != 0:  # some keys are told in prose
+            assert any(re.search(rf"\b{field.default:g}\b", each) for each in told), name
+
+
+def test_the_tables_have_the_defaults_of_plant_cell_timing_and_record() -> None:
+    assert {"history_days", "queue_limit", "stop_timeout_s", "megabytes", "timeout_s"} <= {*_defaults()}
+
+
+def _defaults() -> dict[str, list[str]]:
+    """What the tables say in their columns of defaults, by key."""
+    found: dict[str, list[str]] = {}
+    for table in re.findall(r"(?:^\|.*\n)+", PAGE, re.MULTILINE):
+        header, _, *rows = ([each.strip() for each in line.split("|")] for line in table.splitlines())
+        if "default" in header:
+            for row in rows:
+                found.setdefault(row[1].strip("`"), []).append(row[header.index("default")])
+    return found
+
+
 def test_the_smallest_plant_of_the_page_is_one(tmp_path: Path) -> None:
     file = tmp_path / "my_plant.yaml"
     file.write_text(EXAMPLE, "utf-8")

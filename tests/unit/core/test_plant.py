@@ -16,6 +16,7 @@ from arboleda.model.messages import (
     Fact,
     Heartbeat,
     Interference,
+    InternalError,
     OperatorRequest,
     Reason,
     Shutdown,
@@ -312,6 +313,29 @@ def test_shutdown_halts_what_moves_and_rests_when_the_halt_is_confirmed(
     else:
         assert task.state is TaskState.RUNNING
         assert plant.plant.dispatcher.kept(Fact.STEP, task.id), "the next start finds it at its step"
+
+
+def test_an_arm_that_goes_on_moving_is_waited_for_as_long_as_a_stop_may_take(hand: Any) -> None:
+    plant = hand(Evidence.JOINTS)
+    plant.awake()
+    plant.submit("sis_a palletizing")
+    context, failed_after = plant.plant.cells["sis_a"].context, 0.0
+    while context.failure is None and failed_after < 10.0:
+        failed_after += 0.1
+        plant.tell("ra1", after=0.1, state=MOVING, q=(0.1, 0.0, 0.0))
+    timing = plant.plant.model.timing
+    assert failed_after == pytest.approx(timing.dwell_s + timing.stop_timeout_s, abs=0.15)
+    assert str(context.failure.sentence) == "ra1 was still moving: no moving to home"
+    assert plant.commands(MoveJoints) == []
+
+
+@pytest.mark.parametrize("drops_waiting", [False, True])
+def test_a_plant_without_work_rests_at_once_when_it_ends(hand: Any, drops_waiting: bool) -> None:
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    said = plant.plant.step(plant.now, [Shutdown(at=plant.now, drops_waiting=drops_waiting)])
+    assert plant.plant.at_rest
+    assert not [message for message in said if isinstance(message, InternalError)]
 
 
 def test_a_plant_that_ends_takes_no_task_and_shows_that_it_ends(hand: Any) -> None:

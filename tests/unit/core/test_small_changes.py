@@ -7,7 +7,7 @@ from typing import Any
 
 from arboleda.kinds.arm import MoveJoints
 from arboleda.model.messages import OperatorRequest, Verb
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.views import diagnostics, view
 
 
@@ -27,6 +27,27 @@ def test_a_hold_pauses_the_queue(hand: Callable[[Evidence], Any]) -> None:
     plant.submit("sis_a palletizing")
     plant.plant.step(plant.now, [OperatorRequest(at=plant.now, verb=Verb.HOLD, scope="sis_a")])
     assert plant.plant.cells["sis_a"].queue_paused
+
+
+def test_a_cell_that_is_being_cleared_waits_for_its_robots_while_they_are_heard(
+    hand: Callable[[Evidence], Any],
+) -> None:
+    def shown() -> tuple[str, bool]:
+        cell = view.snapshot(plant.plant)["cells"][0]
+        return cell["state"], "wait until its robots have left their stop" in str(cell["waiting_for"])
+
+    plant = hand(Evidence.IDS)
+    plant.awake()
+    for _ in range(2):
+        plant.submit("sis_a palletizing")
+    for verb in (Verb.STOP, Verb.CLEAR):
+        plant.plant.step(plant.now, [OperatorRequest(at=plant.now, verb=verb, scope="sis_a")])
+        for _ in range(3):
+            plant.tell("ra1", state=MotionState.STOP_LATCHED, q=(0.0, 0.0, 0.0))
+            plant.tell("rm_sis_a", state=MotionState.STOP_LATCHED, node=0)
+    assert shown() == ("clearing", True)
+    plant.wait(2.0)
+    assert shown() == ("stopped", False)
 
 
 def test_a_cell_is_diagnosed_with_its_state_its_queue_and_its_step(hand: Callable[[Evidence], Any]) -> None:

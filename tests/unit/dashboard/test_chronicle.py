@@ -10,6 +10,8 @@ import pytest
 from arboleda.app.parts.orchestrator import act_line
 from arboleda.dashboard.faces.moment import clock
 from arboleda.model.messages import Journal, Verb
+from arboleda.testing import Rig, shipped
+from arboleda.views import view
 from arboleda.views.chronicle import EVENTS, Chronicle
 
 
@@ -93,6 +95,16 @@ def test_an_act_of_today_is_told_with_its_own_time_and_the_cell_of_its_task(told
     whole, one = [event for event in reversed(rig.story.chronicle.events) if event["kind"] == "operator"]
     assert (one["cell"], one["at"], whole["cell"]) == ("sis_b", pytest.approx(at), None)
     assert rig.face()[f"row/events/{one['number']}"]["texts"][0] == clock(at)
+
+
+def test_an_act_that_is_seen_late_is_told_with_the_time_of_when_it_was_done() -> None:
+    rig = Rig(shipped())
+    rig.operate(Verb.STOP)
+    rig.wait(3.0)
+    chronicle = Chronicle()
+    chronicle.see(view.snapshot(rig.plant), 1000.0)
+    (act,) = [event for event in chronicle.events if event["kind"] == "operator"]
+    assert act["at"] == pytest.approx(997.0, abs=0.2)
 
 
 def test_the_log_line_of_an_act_names_its_cell_once() -> None:

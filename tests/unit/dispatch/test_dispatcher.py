@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -9,9 +10,10 @@ import pytest
 from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.model.commands import Home, Stop
-from arboleda.model.messages import Reason, Report
-from arboleda.model.plant_model import MotionState
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Home, Stop, Switch
+from arboleda.model.messages import Failure, Reason, Report
+from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.testing import shipped
 
 EPOCH = 7
@@ -46,6 +48,28 @@ def test_a_halt_is_proven_only_by_what_is_said_after_it(dispatcher: Dispatcher) 
     assert states == [State.CANCELLING, State.CANCELLED]
 
 
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_what_nobody_can_judge_any_more_has_failed(dispatcher: Dispatcher, *, cancelled: bool) -> None:
+    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
+    if cancelled:
+        dispatcher.cancel(move, 100.2)
+    dispatcher.give_up("sis_a", Failure(reason=Reason.INTERNAL, sentence="it broke"), 100.3)
+    assert move.state is State.FAILED and move.failure and move.failure.reason is Reason.INTERNAL
+
+
+@pytest.mark.parametrize(
+    ("make", "settles"),
+    [(partial(SetEffector, on=True), False), (Switch, True)],
+    ids=["of a fact that is told", "of none"],
+)
+def test_at_joints_a_switch_of_a_fact_that_is_told_does_not_settle(make: type, *, settles: bool) -> None:
+    dispatcher = Dispatcher(shipped("sis_a", evidence=Evidence.JOINTS), EPOCH, {})
+    dispatcher.report(Report(at=100.0, **STILL, effector=False), 100.0)
+    entry = dispatcher.send(partial(make, robot="ra1"), "sis_a", "switching", 100.1)
+    dispatcher.expire(102.0, 102.0)
+    assert (entry.state is State.DONE) is settles
+
+
 def test_a_robot_that_is_back_is_stopped_once_and_not_by_a_word_of_only_where_it_stands(
     latched: Dispatcher,
 ) -> None:
@@ -63,6 +87,23 @@ def test_a_robot_that_is_back_is_stopped_once_and_not_by_a_word_of_only_where_it
 def test_a_stopped_robot_is_sent_nothing_by_a_task(latched: Dispatcher, make: type) -> None:
     entry = latched.send(partial(make, robot="ra1"), "sis_a", "doing", 100.1)
     assert entry.state is State.FAILED and entry.failure and entry.failure.reason is Reason.STOPPED
+
+
+@pytest.mark.parametrize(("said", "stopped"), [({}, True), ({"epoch": 1}, True), ({"epoch": 2}, False)])
+def test_what_a_bridge_refused_for_a_stop_is_stopped_until_another_start_of_the_bridge(
+    said: dict[str, int], stopped: bool
+) -> None:
+    model = shipped("sis_a", evidence=Evidence.IDS)
+    (cell,) = (each.with_robots(partial(replace, has_stop=False)) for each in model.cells)
+    dispatcher = Dispatcher(replace(model, cells=(cell,)), EPOCH, {})
+    stands = partial(Report, robot="rm_sis_a", state=MotionState.STOPPED, node=0, boot_id=3)
+    dispatcher.report(stands(at=100.0, epoch=1, plant=EPOCH), 100.0)
+    drive = dispatcher.send(partial(FollowPath, robot="rm_sis_a", nodes=(0, 1)), "sis_a", "driving", 100.1)
+    refused = stands(at=100.2, epoch=1, plant=EPOCH, rejected=drive.command.id, refusal="paro")
+    dispatcher.report(refused, 100.2)
+    assert drive.failure is not None and drive.failure.reason is Reason.STOPPED
+    dispatcher.report(stands(at=100.3, **said), 100.3)
+    assert dispatcher.beliefs["rm_sis_a"].barred is stopped
 
 
 def test_a_stopped_robot_lets_its_part_go_by_hand(latched: Dispatcher) -> None:

@@ -28,3 +28,10 @@ def test_a_count_is_news_when_it_rises_and_says_nothing_of_the_other(kind: str) 
     assert known.rise(Report(at=1.0, robot="ra1", epoch=1, **said)) == news
     assert known.rise(Report(at=2.0, robot="ra1", epoch=1, **said)) == (False, False)
     assert known.rise(Report(at=3.0, robot="ra1", epoch=2, **said)) == news
+
+
+def test_each_command_of_others_has_the_next_number_and_the_last_twenty_are_kept() -> None:
+    known = Interferences()
+    for at in range(22):
+        known.note("ra1", "ra1: effector_cmd 0 of another node was refused", float(at), obeyed=False)
+    assert [each.number for each in known.noticed] == list(range(3, 23))

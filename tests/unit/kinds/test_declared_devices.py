@@ -139,7 +139,9 @@ def test_a_recipe_waits_for_a_fact_and_checks_one() -> None:
     here.machines["oven"].facts["lid"] = "closed"
     assert here.outcome().state is TaskState.DONE
     here.submit("bench wait")
-    assert str(here.outcome().sentence) == "oven says closed of lid; open is needed"
+    refused = here.outcome()
+    assert str(refused.sentence) == "oven says closed of lid; open is needed"
+    assert refused.reason is Reason.PRECONDITION
 
 
 @pytest.mark.parametrize(

@@ -54,6 +54,12 @@ def test_screens_show_what_is_asked_and_how_long() -> None:
     assert shown["left_s"] == pytest.approx(50.0)
 
 
+def test_a_question_is_open_for_no_longer_than_is_left_of_it() -> None:
+    here = asking()
+    here.wait(60.0, lambda: question(here)["left_s"] < 0.5)
+    assert 0.0 < question(here)["left_s"] < 0.5
+
+
 def test_the_task_goes_on_with_the_answer() -> None:
     here = asking()
     assert here.operate(Verb.ANSWER, "ana Yes") is None

@@ -7,12 +7,15 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from py_trees.behaviours import Success
+from py_trees.common import Status
 
 from arboleda.core.text import parse
 from arboleda.model.commands import Command
 from arboleda.model.errors import TextError
 from arboleda.model.messages import Reason, Verb
 from arboleda.recipes import Choice, Kit, Number, RecipeError, Target, parallel, recipe, work
+from arboleda.recipes.decorators import Inverted
 
 from .lab import Bench
 from .tending import plant
@@ -163,6 +166,8 @@ def test_numbers_and_names_in_the_text_of_a_task() -> None:
     for text, sentence in (
         ("tending press 41 1 a", "'41' is no force; it is a whole number from 1 to 40"),
         ("tending press 7 fast a", "'fast' is no speed; it is a number from 0.5 to 2"),
+        ("tending press 7.5 1 a", "'7.5' is no force; it is a whole number from 1 to 40"),
+        ("tending press 7 1 colour=b", "'colour=b' is not a side of tending"),
         ("tending press force=1 force=2 a", "force is named twice"),
         ("tending press force=1 speed=1 side=c", "'c' is not a side of tending"),
     ):
@@ -246,6 +251,12 @@ def test_an_inverted_step_has_to_fail() -> None:
     assert "was to fail, and did not" in str(here.outcome().sentence)
 
 
+def test_an_inverted_step_fails_where_its_step_does_not() -> None:
+    inverted = Inverted(Success("found"), Bench(plant(load)).plant.cells["tending"].context)
+    inverted.tick_once()
+    assert inverted.status is Status.FAILURE
+
+
 def test_a_timeout_leaves_its_step() -> None:
     @recipe("slow")
     def slow(cell: Kit):  # type: ignore[no-untyped-def]
@@ -268,9 +279,14 @@ def test_a_recipe_is_a_step_of_another() -> None:
     assert moved(here).count("jaw close") == 2
 
 
-def test_a_number_needs_two_limits() -> None:
+def test_a_number_is_a_whole_one_where_both_its_limits_are() -> None:
+    assert [Number(*limits).limits.whole for limits in ((1, 2), (1, 2.0), (1.0, 2))] == [True, False, False]
+
+
+@pytest.mark.parametrize("limits", [5, (5,), (1, 2, 3), (2, 1), (1, 1)])
+def test_a_number_needs_two_limits_the_lower_one_first(limits: Any) -> None:
     with pytest.raises(RecipeError, match="two limits"):
-        Number[5]  # type: ignore[misc]
+        Number[limits]
 
 
 def test_a_held_task_of_robots_goes_on_where_it_was() -> None:

@@ -116,6 +116,20 @@ def test_a_part_from_nobody_knows_where_is_to_be_released() -> None:
     assert str(sentence(here.plant.advice("tending"))) == "release jaw, then abandon tending"
 
 
+def test_a_recovery_does_not_let_go_of_a_part_from_nobody_knows_where() -> None:
+    here = Bench(plant(load))
+    here.submit("tending load feed_2")
+    here.wait(0.5)
+    assert here.operate(Verb.HOLD, "tending") is None
+    here.wait(2.0)
+    here.set_by_hand("jaw", (("gripped", True),))
+    here.wait(1.0)
+    assert here.operate(Verb.ABANDON, "tending") is None
+    here.wait(20.0)
+    assert "left 0.0 0.0" in moved(here) and OPENS not in moved(here)
+    assert "jaw may hold a part" in str(here.plant.cells["tending"].held_by)
+
+
 def test_a_held_task_that_can_only_be_abandoned_keeps_no_zone_that_its_robot_has_left() -> None:
     here = Bench(plant(load))
     here.submit("tending load feed_2")

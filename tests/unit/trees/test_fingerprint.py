@@ -63,6 +63,14 @@ def test_what_a_step_has_taken_in_makes_another_tree(other: str) -> None:
     assert other != of(waits(1.0))
 
 
+def test_what_is_in_a_set_counts() -> None:
+    assert of(partial(later, frozenset({"a"}))) != of(partial(later, frozenset({"b"})))
+
+
+def test_a_number_that_is_written_in_a_function_counts() -> None:
+    assert of(lambda: later(1.0)) != of(lambda: later(2.0))
+
+
 def test_what_a_cell_is_made_of_counts_and_what_only_its_queue_needs_does_not() -> None:
     cell = shipped("sis_a").cells[0]
 

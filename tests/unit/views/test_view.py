@@ -148,6 +148,19 @@ def test_refused_commands_are_counted_with_the_last_reason() -> None:
     assert robot(view.snapshot(plant.plant), "ra1")["rejected"] == {"count": 0, "last": None}
 
 
+def test_a_cell_says_which_verbs_would_be_refused_now(rig: Rig) -> None:
+    def refused() -> set[str]:
+        return set(rig.snapshot()["cells"][0]["refused"])
+
+    of_nobody = {"clear", "reset", "hold", "retry", "unload", "home_by_hand"}
+    assert refused() == of_nobody | {"resume", "cancel", "abandon"}
+    rig.submit("sis_a 0B 7")
+    rig.wait(1.0)
+    rig.operate(Verb.HOLD, "sis_a")
+    rig.wait(2.0)
+    assert refused() == of_nobody
+
+
 def test_a_robot_says_that_it_stands_still_after_a_stop(rig: Rig) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "move to pick-up")

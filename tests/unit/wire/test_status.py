@@ -178,3 +178,11 @@ def test_what_a_sentence_is_made_of_counts_only_where_it_says_the_same(made_of: 
         values["foreign_said"] = made_of
     report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
     assert report.foreign == OWN(text=str(OBEYED))
+
+
+@pytest.mark.parametrize(("characters", "read"), [(2000, True), (2001, False)])
+def test_what_a_sentence_is_made_of_is_read_up_to_2000_characters(characters: int, read: bool) -> None:
+    status = to_status(ROBOTS["ra1"], Report(at=0.0, robot="ra1", foreign=OBEYED))
+    values = {**status.values, "foreign_said": json.dumps(OBEYED.data()).ljust(characters)}
+    report = from_status(0.0, ROBOTS["ra1"], replace(status, values=values))
+    assert report.foreign == (OBEYED if read else OWN(text=str(OBEYED)))

@@ -106,6 +106,18 @@ def test_a_board_that_falls_silent_is_drawn_old(watched: Watched) -> None:
     assert drawn["age"] >= 4
 
 
+def test_what_a_robot_that_need_not_tell_its_place_says_of_it_counts_until_it_is_stale() -> None:
+    plant = Plant(shipped("sis_a", evidence=Evidence.STATE), epoch=1, now=100.0)
+    plant.step(100.0, [Report(at=100.0, robot="ra1", state=MotionState.STOPPED, q=(0.0, 0.0, 0.0))])
+
+    def reports(at: float) -> bool:
+        plant.step(at, [])
+        (arm,) = (row for row in twin_view.positions(plant)["robots"] if row["name"] == "ra1")
+        return bool(arm["reports"])
+
+    assert [reports(100.0 + after_s) for after_s in (0.0, 1.4, 1.6)] == [True, True, False]
+
+
 def test_a_robot_that_only_says_whether_it_moves_is_estimated(drawings: dict[str, Body]) -> None:
     model = shipped("sis_a", evidence=Evidence.STATE)
     plant, twin = Plant(model, epoch=1, now=0.0), Twin(places(model), drawings)
