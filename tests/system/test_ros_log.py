@@ -104,7 +104,7 @@ def test_tasks_and_operators_are_lines_of_rosout_console_and_file(
     requests = observer.publisher(String, "/lab1/task_request")
     hold = observer.node.create_client(Trigger, "/lab1/plant/hold")
     observer.wait(hold.service_is_ready, "there is no service")
-    observer.wait(lambda: robots(observer, "rm_sis_a"), "nothing is said of the robots")
+    observer.wait(lambda: are_ready(observer, "ra1", "rm_sis_a"), "the robots of the cell are not ready")
     before = time.time()
     requests.publish(String(data="sis_z 0B\x1b[2J 7"))
     requests.publish(String(data=TASK))
@@ -131,18 +131,17 @@ def test_tasks_and_operators_are_lines_of_rosout_console_and_file(
     assert (level, name) == ("INFO", "lab1.orchestrator.tasks")
     assert before - 1 < float(at) < time.time() + 1
     file = tmp_path / "state" / "arboleda.log"
-    written = rf"^\d{{4}}-\d\d-\d\d [\d:,]+ INFO arboleda\."
+    written = r"^\d{4}-\d\d-\d\d [\d:,]+ INFO arboleda\."
     for line in (f"tasks: queued    {TASK}$", "operators: hold plant"):
         observer.wait(lambda line=line: re.search(written + line, file.read_text(), re.MULTILINE), line)
 
 
-def robots(observer: Any, robot: str) -> list[Any]:
-    """What `/diagnostics` says of a robot; it names the plant's namespace, as all plants share the topic."""
+def are_ready(observer: Any, *robots: str) -> bool:
+    """Whether `/diagnostics`, which all plants share, calls robots of this one ready."""
     statuses = [status for message in observer.heard["/diagnostics"] for status in message.status]
     assert all(status.name.startswith("arboleda: lab1/") for status in statuses)
-    return [
-        status for status in statuses if status.name == f"arboleda: lab1/{robot}" and status.level == b"\0"
-    ]
+    last = {status.name: status.message for status in statuses}
+    return all(last.get(f"arboleda: lab1/{robot}") == "ready" for robot in robots)
 
 
 @pytest.fixture
