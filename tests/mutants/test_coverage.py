@@ -58,8 +58,7 @@ BRANCHES = (
 def _expected() -> Iterable[str]:
     yield from BRANCHES
     yield from (f"task: {each.value}" for each in Reason if each not in REASONS_THAT_CANNOT_BE)
-    # one would change only what is drawn, the other answers people, of whom these plants have none
-    said = [verb for verb in Verb if verb not in (Verb.UNLOAD, Verb.ANSWER)]
+    said = [verb for verb in Verb if verb is not Verb.ANSWER]  # these plants have nobody to be asked
     yield from (f"verb: {verb.value} {end}" for verb in said for end in ("done", "refused"))
     yield from (f"board: {word}" for word in sorted(REFUSALS) if word not in WORDS_THAT_CANNOT_BE)
 

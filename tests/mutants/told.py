@@ -13,7 +13,7 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.recipes import storage
 from arboleda.trees import steps
 from arboleda.trees.context import Context
-from arboleda.views import view
+from arboleda.views import oee, view
 from arboleda.wire import status
 from arboleda.wire.board import Board
 from arboleda.wire.bridge import Bridge
@@ -139,6 +139,12 @@ PEOPLE = (
         seeds=SHARED,
         weather={"brown_out": 15.0, "operator_override": 40.0, "operator_stop": 5.0},
     ),
+    mutant(
+        "racks_hold_what_was_put",
+        "Of the parts in a rack only the last one is known.",
+        edit(Context.store, "self.stored | numbers", "numbers"),
+        weather="none",
+    ),
 )
 
 ADVICE = (
@@ -190,6 +196,13 @@ SCREENS = (
         "A rack is shown with a station too many.",
         edit(view._cell_layout, '"stations": len(cell.stations)', '"stations": len(cell.stations) + 1'),
         weather="none",
+    ),
+    mutant(
+        "oee_is_as_seen",
+        "A task counts that was done before the time that is asked for.",
+        edit(oee._produced, "since_s <= work.ended_s", "True"),
+        weather="none",
+        cycles=8,
     ),
 )
 

@@ -29,6 +29,7 @@ from .invariants.choices import CHOICES
 from .invariants.done import tiny_moves_succeed
 from .invariants.invariant import Invariant, Look, When, invariant
 from .invariants.memory import MEMORY
+from .invariants.oee import OEE
 from .invariants.proofs import PROOFS
 from .invariants.starts import EVERYWHERE as OVER_ALL_STARTS
 from .invariants.stop import STOP
@@ -353,6 +354,7 @@ EVERYWHERE: tuple[Invariant, ...] = (
     *MEMORY,
     *(each for each in liveness.LIVENESS if each not in OF_STORAGE),
     *BOOKS,
+    *OEE,
     *OVER_ALL_STARTS,
 )
 """What must hold where parts are stored, and anywhere else."""

@@ -38,13 +38,16 @@ from .recorded.choices import Choices
 from .recorded.commands import Commands, SentCommand
 from .recorded.courses import Courses
 from .recorded.foreign import ForeignCommands
+from .recorded.line import TimeLine
 from .recorded.proofs import Proofs
+from .recorded.racks import Racks
 from .recorded.refusals import differences
 from .recorded.robots import KnownRobot, Obstacle, Stopped
 from .recorded.scopes import Scopes
 from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
+from .recorded.times import Times
 from .recorded.verbs import Before
 from .recorded.work import Works
 from .world import BRIDGE, World
@@ -86,6 +89,7 @@ class Record:
         self.others = ForeignCommands()
         storage = {name: known for name, known in self.cells.items() if only_stores(known.cell)}
         self._storage = tuple(storage.values())
+        self.racks = Racks([known.cell for known in self._storage], self.scopes)
         self._people = [robot.name for robot in model.robots.values() if robot.link is Link.SCREEN]
         self.works = Works(storage, self.robots, model.timing.dwell_s)
         self.asked = Before()
@@ -99,6 +103,8 @@ class Record:
         self._kept: dict[Fact, dict[str, str]] = {}
         self.tasks = Tasks(self.cells)
         self.starts = Starts(model)
+        self.times = Times(world.plant.now)
+        self.line = TimeLine()
         self.lost_stops: list[str] = []
         self.boards = Boards(
             {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
@@ -202,7 +208,10 @@ class Record:
         cuts, self._cuts = self._cuts, self.world.disk.cuts
         self.works.restart(self.tasks.running, undone=cuts != self._cuts)
         self.starts.restart(undone=cuts != self._cuts)
+        self.line.begin()
         found = self.world.found.facts
+        running = [self.tasks.open[id] for id in self.tasks.running.values()]
+        self.racks.restart(found.get(Fact.STORED, {}), running)
         displaced, boots = found.get(Fact.DISPLACED, {}), found.get(Fact.BOOT, {})
         for name, robot in self.robots.items():
             robot.forget()
@@ -240,6 +249,7 @@ class Record:
         self.born = self._is_new(plant)
         if self.born:
             self._take_last_words()
+            self.times.restart(self.stepped_at, plant.now)
             self._begin(plant)
             self._expect_rest(plant)
             self._has_begun = False
@@ -380,6 +390,8 @@ class Record:
             self._follow_refusals(plant)
         if self.commands.new or self.tasks.changes:
             self.works.follow(self.tasks, self.commands.new, plant.now)
+        if self.tasks.changes or self.answers:
+            self.racks.look(self.tasks, self.answers, plant.now)
         asked = bool(self.world.moment.asked)
         if asked:
             self.differences += differences(self)
@@ -389,6 +401,7 @@ class Record:
             self._look_at_zones(plant)
         changed = self._look_at_cells()
         if changed or self.born:
+            self.times.look(self._cells, plant.now)
             idle = [cell for cell in self._cells if cell.queued and cell.state is CellState.IDLE]
             self.idle = [cell for cell in idle if not cell.paused]
         self.news = moved or asked or changed or self.born or bool(self.tasks.changes)

@@ -15,7 +15,7 @@ from ..chance import Dice
 from ..people import any_text
 from ..world import World
 from . import whom
-from .kind import Fault, Kind, kind, no_words, words
+from .kind import Fault, Kind, Words, kind, no_words, words
 
 WHOLE_PLANT, NOWHERE = "", "nowhere"
 BY_HAND = "by hand"
@@ -25,8 +25,7 @@ OF_THE_CELL = {
     "an ended task": (TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED),
 }
 SPARE = 50  # tasks beyond those that are remembered
-# one changes only what is drawn, the other answers people, of whom these plants have none
-SAID = tuple(verb for verb in Verb if verb not in (Verb.UNLOAD, Verb.ANSWER))
+SAID = tuple(verb for verb in Verb if verb is not Verb.ANSWER)  # these plants have nobody to be asked
 WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
@@ -48,11 +47,19 @@ def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:
     return ("", *OF_THE_CELL) if target in whom.cells(model) else ("",)
 
 
+def _unloadings(model: PlantModel, target: str) -> tuple[str, ...]:
+    """A whole rack, one of its stations, and one that there is not."""
+    stations = len(model.cell(target).stations) if target in whom.cells(model) else 0
+    return ("", *map(str, range(stations + 1))) if stations else ("",)
+
+
 def _operate(verb: Verb) -> Callable[[World, Fault], None]:
     def begin(world: World, fault: Fault) -> None:
         scope = _task(world, fault) if fault.word in OF_THE_CELL else fault.target
         if fault.word == BY_HAND:
             world.home_by_hand(scope)
+        elif verb is Verb.UNLOAD:
+            world.request_verb(verb, f"{scope} {fault.word}".strip())
         else:
             world.request_verb(verb, scope)
 
@@ -69,13 +76,20 @@ def _tasks_of(world: World, cell: str) -> list[Task]:
     return [task for task in world.plant.intake.tasks.values() if task.order.cell == cell]
 
 
+WORDS: dict[Verb, Words] = {
+    Verb.HOME: _homings,
+    Verb.CANCEL: _cancellings,
+    Verb.UNLOAD: _unloadings,
+}
+
+
 def _verb(verb: Verb) -> Kind:
     return Kind(
         name=f"operator_{verb.value}",
         sentence=f"An operator says {verb.value}, whether it fits or not.",
         begin=_operate(verb),
         targets=_zones if verb is Verb.OVERRIDE else _scopes,
-        words={Verb.HOME: _homings, Verb.CANCEL: _cancellings}.get(verb, no_words),
+        words=WORDS.get(verb, no_words),
         weight=WEIGHTS.get(verb, 1.0),
     )
 

@@ -13,6 +13,7 @@ from .invariant import Invariant
 from .liveness import LIVENESS
 from .memory import MEMORY
 from .motion import MOTION
+from .oee import OEE
 from .proofs import PROOFS
 from .screens import SCREENS
 from .starts import STARTS
@@ -45,6 +46,7 @@ INVARIANTS: tuple[Invariant, ...] = (
     *MEMORY,
     *LIVENESS,
     *BOOKS,
+    *OEE,
     *SCREENS,
     *STARTS,
 )

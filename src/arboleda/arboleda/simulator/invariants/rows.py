@@ -9,16 +9,18 @@ from typing import Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from arboleda.core.advice import Advice, sentence
 from arboleda.core.cell import HELD, HELD_STRANDED
 from arboleda.dispatch.belief import FAULTY, FENCED, MOVING, OFFLINE, STOPPED, UNANSWERED, UNHEARD, UNHOMED
 from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.arm import MoveJoints
 from arboleda.kinds.mobile import FollowPath
-from arboleda.model.messages import ENDED, TaskChanged
+from arboleda.model.messages import ENDED, Reason, TaskChanged, Verb
 from arboleda.model.plant_model import MotionState, Robot
 from arboleda.model.sentence import Phrase, Sentence
 from arboleda.recipes.storage_cell import StorageCell
 from arboleda.trees.tree_run import IN_RECOVERY
+from arboleda.views.verb_words import ABOUT
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
@@ -138,11 +140,45 @@ def _command(where: str, there: Any, row: Row, now: float) -> Iterator[str]:
 
 
 def command(last: SentCommand | None, now: float) -> Row | None:
-    """The last command of a robot, but for the words of what it is."""
+    """The last command of a robot."""
     if last is None:
         return None
-    state = last.state.value if last.state else None
-    return {"id": last.command.id, "state": state, "age_s": now - last.at}
+    state, what = (last.state.value, last.entry.doing) if last.state and last.entry else (None, None)
+    return {"id": last.command.id, "what": what, "state": state, "age_s": now - last.at}
+
+
+def rejected(last: SentCommand | None, row: Row) -> Iterator[str]:
+    """A robot that refused its last command is shown to have done so."""
+    failure = last.entry.failure if last is not None and last.entry is not None else None
+    if failure is not None and failure.reason is Reason.REJECTED and not row["rejected"]["count"]:
+        yield f"{row['name']} refused its last command, and is shown with {row['rejected']}"
+
+
+def ways(advised: tuple[Advice, ...], row: Row) -> Iterator[str]:
+    """What leads on, each step of it, and all of it in the sentence that people read."""
+    whole = str(sentence(advised))
+    if len(advised) != len(row["advice"]):
+        yield f"{row['name']} is shown with {len(row['advice'])} steps of advice, there are {len(advised)}"
+    for way, shown in zip(advised, row["advice"], strict=False):
+        expected = {**vars(way), "do": way.do.value, "moves": [*way.moves], "drops": [*way.drops]}
+        if {key: shown[key] for key in expected} != expected:
+            yield f"{row['name']} is shown with {shown}, it is {way}"
+        if str(shown["said"]) not in whole:
+            yield f"{row['name']}: {shown['said']} is not in {whole!r}"
+
+
+def sayable(kind: str) -> list[Verb]:
+    """The verbs that may be refused where they are said of a cell, or of a robot."""
+    allowed = {"cell": {"cell"}, "robot": {"robot", "arm"}}[kind]
+    return [verb for verb in Verb if verb is not Verb.STOP and allowed & {*ABOUT[verb].scopes}]
+
+
+def stands(row: Row) -> str:
+    """The words of a cell's state."""
+    if row["state"] != "idle" or row["not_ready"] is None:
+        return str(row["state"])
+    only_paused = [each["do"] for each in row["advice"]] == ["resume"]
+    return "idle, paused" if only_paused else "idle, blocked"
 
 
 def obstacle(known: KnownRobot, now: float, plant: int) -> tuple[Phrase, ...] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -13,11 +14,15 @@ from arboleda.dispatch.ledger import OPEN, State
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.errors import PayloadError
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.plant_model import Evidence
+from arboleda.model.sentence import OWN
 from arboleda.views import diagnostics, places, twin_view, view
 from arboleda.wire import status
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
+from ..recorded.line import UNIX_S
 from ..recorded.robots import KnownRobot, Stopped
 from . import rows
 from .invariant import Look, When, invariant
@@ -26,6 +31,7 @@ from .liveness import ready
 NOTHING: tuple[str, ...] = ()
 EVERY_S, STATUS_S, GARBLED_S = 5.0, 1.0, 10.0
 EXACT = 1e-6
+AT_FIRST = ("idle", "free", "offline")  # of which there is no event where a thing begins so
 GOING = (State.SENT, State.RUNNING)
 STALE, ERROR, WARN, OK = 3, 2, 1, 0
 Row = dict[str, Any]
@@ -54,11 +60,17 @@ def _shown(look: Look) -> Iterator[str]:
         if cell.state is CellState.IDLE and cell.paused and row["not_ready"] is None:
             yield f"{cell.name} is shown as ready, and its queue is paused"
         yield from rows.queue(cell, row)
+        yield from _words(look, row, "cell")
+        yield from rows.ways(plant.advice(cell.name), row)
+        if view.standing_said(row) != rows.stands(row):
+            yield f"{cell.name} is said to be {view.standing_said(row)}, it is {rows.stands(row)}"
         yield from _tree(cell, row["tree"], record.stepped_at)
     for row in shown["robots"]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
         yield from _obstacle(look, known, row)
+        yield from _words(look, row, "robot")
+        yield from rows.rejected(record.commands.last.get(row["name"]), row)
     yield from _lines(look)
     yield from _tasks(look, shown)
     open_tasks = {row["id"]: row["state"] for row in shown["tasks"] if row["ended_at"] is None}
@@ -66,6 +78,43 @@ def _shown(look: Look) -> Iterator[str]:
         yield f"tasks {open_tasks} are shown as open"
     yield from _diagnoses(shown)
     yield from _drawn(look, twin_view.positions(plant))
+    yield from _line(look, shown)
+
+
+def _words(look: Look, row: Row, kind: str) -> Iterator[str]:
+    """Which verbs are shown as refused where they are said of a cell or of a robot."""
+    plant, found = look.world.plant, []
+    for verb in rows.sayable(kind):
+        if plant.refusal(OperatorRequest(at=plant.now, verb=verb, scope=row["name"])) is not None:
+            found.append(verb.value)
+    shown = [name for name in row["refused"] if name != "home_by_hand"]
+    if sorted(shown) != sorted(found):
+        yield f"{row['name']}: {shown} are shown as refused, {found} would be"
+
+
+def _line(look: Look, shown: Row) -> Iterator[str]:
+    """The last event about each thing is how it is now, and there is one for all that anybody did."""
+    line = look.record.line
+    line.see(shown)
+    if line.told != shown:
+        yield "who hears only what is new of the plant knows something else than who is shown all of it"
+    now = {("cell", row["name"]): row["state"] for row in shown["cells"]}
+    now |= {("robot", row["name"]): "online" if row["online"] else "offline" for row in shown["robots"]}
+    now |= {("zone", row["zone"]): row["state"] for row in shown["zones"]}
+    now |= {("task", row["id"]): row["state"] for row in shown["tasks"]}
+    for (kind, subject), state in now.items():
+        event = line.last(kind, subject)
+        known = event["what"] if event is not None else None
+        if known != state and not (event is None and state in AT_FIRST):
+            yield f"the last event of {kind} {subject} is {known}, it is {state}"
+    events = [*line.chronicle.events]
+    for act in shown["acts"]:
+        times = [each["at"] for each in events if each["sentence"] == act["sentence"]]
+        if not any(abs(at - UNIX_S - act["at"]) <= EXACT for at in times):
+            yield f"there is no event of {act['sentence']!r} at {act['at']}, but at {times}"
+    heard = sum(each["kind"] == "foreign" for each in events)
+    if heard < len(shown["interference"]):
+        yield f"there are {heard} events of others that commanded, shown are {shown['interference']}"
 
 
 def _unlike(whose: str, shown: Row, expected: Row) -> Iterator[str]:
@@ -125,9 +174,9 @@ def _cell(look: Look, cell: KnownCell) -> Row:
     if run.tree is None:
         expected |= {"tree": [], "step": None, "progress": None}
     shown = view.task_by_id(look.world.plant, running.id) if running else None
-    if running is not None and shown is not None:
+    if running is not None:
         began = {"started_at": running.since, "elapsed_s": now - running.since, "ended_at": None}
-        expected["task"] = {**shown, **began, "id": running.id, "cell": cell.name, "state": "running"}
+        expected["task"] = {**(shown or {}), **began, "id": running.id, "cell": cell.name, "state": "running"}
     return expected
 
 
@@ -166,6 +215,8 @@ def _tree(cell: KnownCell, rows_: list[Row], now: float) -> Iterator[str]:
         yield f"{cell.name}: {len(rows_)} nodes are shown of a tree with more or less"
     for row in rows_:
         node = _node(tree, row["path"])
+        if row["name"].phrase is OWN:
+            yield f"{cell.name}: {row['path']} is shown as {row['name']} in every language"
         if (str(row["name"]), row["status"]) != (node.name, node.status.value):
             yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
         entry = getattr(node, "entry", None)
@@ -279,6 +330,10 @@ def _ends(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     known_place = known.q if known.robot.has_joints else known.node
     if (row["position_at"] is None) is not (known_place is None):
         yield f"{name} is drawn as of {row['position_at']}, it has said {known_place}"
+    age_s = math.inf if row["position_at"] is None else look.record.stepped_at - row["position_at"]
+    speaks = known.robot.evidence is not Evidence.STATE  # where it may be silent, by what it said lately
+    if row["reports"] is not (speaks or age_s <= look.world.model.timing.stale_after_s):
+        yield f"{name} is drawn as {'' if row['reports'] else 'not '}reporting, it did {age_s} s ago"
 
 
 @invariant(When.NEWS)

@@ -158,6 +158,9 @@ def _unkept(look: Look) -> Iterator[str]:
         told = tasks.known(change.said.task)
         if known is not None and told is not None and known.state is not told.state:
             yield f"task {known.id} is {known.state.value}, and was told to be {told.state.value}"
+        retried = look.world.starts > 1 or look.record.cells[change.said.cell or ""].retries
+        if known is not None and not retried and known.attempts != (known.started_at is not None):
+            yield f"task {known.id} began at {known.started_at}, and that was attempt {known.attempts}"
 
 
 @invariant(When.NEWS)

@@ -56,6 +56,11 @@ def verbs_are_refused_rightly(look: Look) -> Iterator[str]:
             what = f"{request.verb.value} {request.scope!r}"
             states = {cell.name: cell.state.value for cell in _found(look)}
             yield f"{what} was {'not ' if expected else ''}refused ({answer.refusal}); before it {states}"
+        zones = look.world.model.zones
+        if request.verb is Verb.OVERRIDE and request.scope not in zones:
+            unsaid = [zone for zone in zones if zone not in str(answer.refusal)]
+            if unsaid:
+                yield f"{request.scope!r} is no zone, and nobody says that there are {unsaid}"
 
 
 def _alone(look: Look) -> Iterator[tuple[OperatorRequest, OperatorAnswer]]:
@@ -87,8 +92,11 @@ def _held_after_absence(cell: Asked) -> Asked:
 def _refused(look: Look, request: OperatorRequest) -> bool | None:
     """None where it cannot be said by what the record has."""
     record, verb, scope = look.record, request.verb, request.scope
-    if verb in (Verb.UNLOAD, Verb.ANSWER):
+    if verb is Verb.ANSWER:
         return None
+    if verb is Verb.UNLOAD:
+        named = record.racks.named(scope)
+        return not any(cell.stored & named.get(cell.name, set()) for cell in record.asked.cells)
     if verb is Verb.OVERRIDE:
         quarantined = record.asked.quarantined.get(scope.strip().lower())
         return True if quarantined is None else None
@@ -246,6 +254,15 @@ def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
         yield f"{[each.robot for each in sent]} move by themselves"
 
 
+def _unloaded(look: Look, request: OperatorRequest) -> Iterator[str]:
+    named = look.record.racks.named(request.scope)
+    for before in look.record.asked.cells:
+        left = before.stored - named.get(before.name, set())
+        stored = look.record.cells[before.name].context.stored
+        if stored != left:
+            yield f"{before.name} has parts in {sorted(stored)}, left were those in {sorted(left)}"
+
+
 def _outside(look: Look, request: OperatorRequest, sent: Iterable[Command]) -> Iterator[str]:
     scope = look.record.scopes.robots(request.scope)
     for each in sent:
@@ -263,6 +280,7 @@ EFFECTS: dict[Verb, Effect] = {
     Verb.ABANDON: _given_up,
     Verb.RELEASE: _released,
     Verb.HOME: _homed,
+    Verb.UNLOAD: _unloaded,
 }
 
 VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say)

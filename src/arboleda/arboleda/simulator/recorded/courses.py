@@ -13,6 +13,8 @@ from arboleda.model.messages import Course
 from arboleda.trees.leaves import Act, Await, Dwell
 from arboleda.trees.steps import RECOVERY
 
+from .starts import turns_of
+
 TAKES_TIME = (Act, Await, Dwell)
 ROUNDING_S = 2e-3  # times are kept in ms
 
@@ -31,6 +33,7 @@ class Seen:
         self.begun: dict[Behaviour, float] = {}
         self._steps = [node for node in nodes if isinstance(node, TAKES_TIME)]
         self._was = {} if whole else {step: step.status for step in self._steps if not _waits(step)}
+        self._turns = {step: turns for step in self._steps if (turns := turns_of(step))}
         self._rested: object = None
         self._repeats = False  # whether a step began more than once
         self._rests: list[float] = []  # when it came to rest
@@ -48,9 +51,17 @@ class Seen:
             else:
                 self._over.pop(step, None)
             was, self._was[step] = self._was.get(step, Status.INVALID), step.status
-            if was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING):
+            begins = was is not step.status and (was is Status.INVALID or step.status is Status.RUNNING)
+            if self._is_in_another_turn(step) or begins:
                 self._repeats = self._repeats or step in self.begun
                 self.begun[step] = now
+
+    def _is_in_another_turn(self, step: Behaviour) -> bool:
+        """Whether a step that runs, as it did before, is done again."""
+        if step not in self._turns or step.status is not Status.RUNNING:
+            return False
+        before, self._turns[step] = self._turns[step], turns_of(step)
+        return step in self.begun and self._turns[step] != before
 
     @property
     def steps(self) -> Mapping[str, float]:

@@ -134,6 +134,12 @@ class Starts:
 
 def turn_of(leaf: Behaviour) -> str:
     """Where a step stands in its tree, and in which turn of each step around it that repeats it."""
+    turns = turns_of(leaf)
+    return f"{path_of(leaf)} in turn {turns}" if turns else path_of(leaf)
+
+
+def turns_of(leaf: Behaviour) -> list[int]:
+    """In which turn each step around it is that repeats it, the outermost first."""
     turns, node = [], leaf.parent
     while node is not None:
         if isinstance(node, StepOfFile):
@@ -141,7 +147,7 @@ def turn_of(leaf: Behaviour) -> str:
         elif isinstance(node, Times | Again):
             turns.append(node.done if isinstance(node, Times) else node.tries)
         node = node.parent
-    return f"{path_of(leaf)} in turn {turns[::-1]}" if turns else path_of(leaf)
+    return turns[::-1]
 
 
 def _may_be_repeated(done: list[Step], before: Step, again: Step) -> bool:

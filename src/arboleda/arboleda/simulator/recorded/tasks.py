@@ -20,7 +20,8 @@ class KnownTask:
     """A task that was accepted; `number` counts the accepted ones, `cancelled` is an operator's word,
     None where it may have been for this one.
 
-    `said` is what was told of it last, `began` when it was told to run.
+    `said` is what was told of it last; `accepted` is when it was first heard of, `began` when it was told
+    to run.
     """
 
     id: str
@@ -29,6 +30,7 @@ class KnownTask:
     state: TaskState
     since: float
     said: TaskChanged
+    accepted: float
     cancelled: bool | None = False
     began: float | None = None
 
@@ -73,7 +75,7 @@ class Tasks:
     def _take_back(self, row: KeptTask, task: KnownTask | None, now: float) -> None:
         if task is None:
             self._accepted += 1
-            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _said(row))
+            task = KnownTask(row.id, row.cell, self._accepted, row.state, now, _said(row), now)
         if task.state is not row.state:
             task.said = _said(row)
         task.state, task.began = row.state, row.started_at
@@ -98,6 +100,11 @@ class Tasks:
         task = self.open.get(id) or self.ended.get(id)
         return task if task is not None and task.number > self._accepted - SURE else self.open.get(id)
 
+    def of_cell(self, cell: str) -> list[KnownTask]:
+        """Ended and open tasks of a cell, the oldest first."""
+        known = (*self.ended.values(), *self.open.values())
+        return sorted((task for task in known if task.cell == cell), key=lambda task: task.number)
+
     def take(self, said: TaskChanged, now: float, *, asked_again: bool) -> None:
         """The plant says what became of a task; `asked_again`: it may only answer a request."""
         if said.state is TaskState.REFUSED or said.cell is None:
@@ -119,7 +126,7 @@ class Tasks:
     def _follow(self, said: TaskChanged, task: KnownTask | None, now: float) -> None:
         if task is None or said.state is TaskState.QUEUED:
             self._accepted += 1
-            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now, said)
+            task = KnownTask(said.task, said.cell or "", self._accepted, said.state, now, said, now)
         task.state, task.since, task.said = said.state, now, said
         task.began = now if said.state is TaskState.RUNNING else task.began
         queue = self.queues[task.cell]

@@ -16,7 +16,7 @@ from .tasks import Tasks
 @dataclass(slots=True)
 class Asked:
     """A cell after the last step: what may speak for or against a verb; `waits`: nobody can tell yet what
-    became of the step at which an earlier start ended.
+    became of the step at which an earlier start ended; `stored`: its stations with a part.
     """
 
     name: str
@@ -28,6 +28,7 @@ class Asked:
     stranded: bool
     waits: bool
     holding: bool
+    stored: frozenset[int]
 
 
 class Before:
@@ -59,6 +60,7 @@ class Before:
                 run.stranded is not None,
                 run.awaits is not None,
                 bool(cell.context.holding),
+                cell.context.stored,
             )
             for cell in cells
             for run in (cell.run,)

@@ -1,0 +1,147 @@
+"""How much of its time each cell did good work is as it was seen, span by span."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+from arboleda.model.messages import ENDED, TaskState
+from arboleda.views.oee import ENOUGH, LATE_S, TIMES, Kept, Oee, Run, Shortest, Work, oee
+
+from ..recorded.tasks import KnownTask
+from .invariant import Look, When, invariant
+
+LAST = 50  # tasks of a cell; more take long
+EXACT = 1e-6
+ITEMS = (TaskState.DONE, TaskState.FAILED)
+
+
+@invariant(When.END)
+def oee_is_as_seen(look: Look) -> Iterator[str]:
+    """The figures of a cell are what its tasks, its states and the starts of the plant add up to: in all of
+    the time and in a part of it, while the plant runs, once it was ended, and long after it was killed.
+    """
+    record, now = look.record, look.record.stepped_at
+    for cell in record.cells:
+        works = [_work(task) for task in record.tasks.of_cell(cell)[-LAST:]]
+        for ended, until_s in ((False, now), (True, now + 1.0), (False, now + LATE_S + 1.0)):
+            runs = record.times.runs(now, ended=ended)
+            begin = runs[0].since_s
+            kept = Kept(works=works, runs=runs, downs=record.times.downs, shortest=_shortest(works))
+            for since_s in (begin - 1.0, begin + (now - begin) / 3.0):
+                yield from _unlike(oee(cell, kept, since_s, until_s), _Seen(kept, cell, until_s))
+
+
+def _work(task: KnownTask) -> Work:
+    return Work(
+        cell=task.cell,
+        order=task.said.text.partition(" #")[0],
+        state=task.state.value,
+        accepted_s=task.accepted,
+        started_s=task.began,
+        ended_s=task.since if task.state in ENDED else None,
+    )
+
+
+def _shortest(works: list[Work]) -> dict[tuple[str, str], Shortest]:
+    took: dict[tuple[str, str], list[float]] = {}
+    for work in works:
+        if work.state == TaskState.DONE and work.started_s is not None and work.ended_s is not None:
+            took.setdefault((work.cell, work.order), []).append(work.ended_s - work.started_s)
+    return {key: Shortest(times=len(times), seconds=min(times)) for key, times in took.items()}
+
+
+class _Seen:
+    """What was so at an instant, and for how long in all."""
+
+    def __init__(self, kept: Kept, cell: str, until_s: float) -> None:
+        self._runs, self._until_s = kept.runs, until_s
+        self._downs = [each for each in kept.downs if each.cell == cell]
+        self._works = kept.works
+        self._best = {key: short.seconds for key, short in kept.shortest.items() if short.times >= TIMES}
+        spans = [(each.since_s, each.until_s) for each in self._downs]
+        spans += [(each.since_s, each.seen_s) for each in self._runs]
+        spans += [(each.accepted_s, each.ended_s) for each in self._works]
+        edges = {edge for span in spans for edge in span if edge is not None}
+        edges |= {work.started_s for work in self._works if work.started_s is not None}
+        self._edges = sorted(edges | {until_s})
+
+    @property
+    def since_s(self) -> float:
+        return self._runs[0].since_s
+
+    def items(self, since_s: float) -> list[Work]:
+        """The tasks that were begun, and were done or failed, since then."""
+        over = [each for each in self._works if each.state in ITEMS and each.started_s is not None]
+        return [each for each in over if since_s <= (each.ended_s or 0.0) < self._until_s]
+
+    def best_s(self, work: Work) -> float | None:
+        return self._best.get((work.cell, work.order))
+
+    def took_s(self, work: Work) -> float:
+        return self.total(self.is_up, work.started_s or 0.0, work.ended_s or 0.0)
+
+    def total(self, is_so: Callable[[float], bool], since_s: float, until_s: float) -> float:
+        """For how many seconds something was so, which changes at edges only."""
+        edges = [since_s, *(edge for edge in self._edges if since_s < edge < until_s), until_s]
+        return sum(b - a for a, b in pairwise(edges) if b > a and is_so((a + b) / 2))
+
+    def is_up(self, at: float) -> bool:
+        """Whether the plant ran, and the cell did not stand."""
+        stood = any(each.since_s < at and (each.until_s is None or at < each.until_s) for each in self._downs)
+        return not stood and self._run_at(at)[1]
+
+    def is_planned(self, at: float) -> bool:
+        """Whether a task waited or was at work, and the plant was not ended."""
+        wanted = any(
+            each.accepted_s < at and (each.ended_s is None or at < each.ended_s) for each in self._works
+        )
+        run, runs = self._run_at(at)
+        return wanted and (runs or not run.ended)
+
+    def is_at_work(self, at: float) -> bool:
+        begun = [each for each in self._works if each.started_s is not None and each.started_s < at]
+        return any(each.ended_s is None or at < each.ended_s for each in begun) and self.is_up(at)
+
+    def _run_at(self, at: float) -> tuple[Run, bool]:
+        """The start of the plant that was the last one then, and whether it still ran."""
+        run = max((each for each in self._runs if each.since_s < at), key=lambda each: each.since_s)
+        lasts = run is self._runs[-1] and not run.ended and self._until_s - run.seen_s <= LATE_S
+        return run, lasts or at < run.seen_s
+
+
+def _unlike(told: Oee, seen: _Seen) -> Iterator[str]:
+    begin, until_s = max(told.since_s, seen.since_s), told.until_s
+    items = seen.items(begin)
+    states = Counter(work.state for work in items)
+    timed = [(best_s, work) for work in items if (best_s := seen.best_s(work)) is not None]
+    took_s = sum(seen.took_s(work) for _, work in timed)
+    compared = items and len(timed) >= ENOUGH * len(items) and took_s > 0
+    planned_s = seen.total(seen.is_planned, begin, until_s)
+    worked_s = seen.total(lambda at: seen.is_planned(at) and seen.is_at_work(at), begin, until_s)
+    availability = worked_s / planned_s if planned_s else None
+    performance = sum(best_s for best_s, _ in timed) / took_s if compared else None
+    quality = states[TaskState.DONE] / len(items) if items else None
+    known = availability is not None and performance is not None and quality is not None
+    expected = {
+        "since_s": begin,
+        "planned_s": planned_s,
+        "worked_s": worked_s,
+        "done": states[TaskState.DONE],
+        "failed": states[TaskState.FAILED],
+        "timed": len(timed),
+        "availability": availability,
+        "performance": performance,
+        "quality": quality,
+        "oee": (availability or 0.0) * (performance or 0.0) * (quality or 0.0) if known else None,
+    }
+    for key, value in expected.items():
+        shown = getattr(told, key)
+        if (shown is None) is not (value is None) or abs((shown or 0.0) - (value or 0.0)) > EXACT:
+            yield f"{told.cell}: {key} is told as {shown}, it was {value}"
+    if (told.missing is None) is not known:
+        yield f"{told.cell}: {told.missing!r} is told to be missing of {expected}"
+
+
+OEE = (oee_is_as_seen,)

@@ -1,0 +1,89 @@
+"""Which stations have a part, by the tasks that put one there and by what operators have taken out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from arboleda.model.messages import OperatorAnswer, TaskState, Verb
+from arboleda.recipes.storage_cell import StorageCell
+
+from .scopes import Scopes
+from .tasks import KnownTask, Tasks
+
+Stations = set[int]
+
+
+class Racks:
+    """The stations of each cell that are `full`, and those that may be, as a task began to fill them."""
+
+    def __init__(self, cells: Iterable[StorageCell], scopes: Scopes) -> None:
+        self.cells = {cell.name: cell for cell in cells}
+        self.full: dict[str, Stations] = {name: set() for name in self.cells}
+        self._begun: dict[str, Stations] = {name: set() for name in self.cells}
+        self._scopes = scopes
+        self._emptied: dict[tuple[str, int], float] = {}
+
+    def restart(self, kept: Mapping[str, str], running: Iterable[KnownTask]) -> None:
+        """A plant starts with what is kept of its racks."""
+        for name in self.cells:
+            self.full[name] = {int(number) for number in kept.get(name, "").split()}
+            self._begun[name].clear()
+        for task in running:
+            if task.cell in self.cells:
+                self._begin(task)
+
+    def may_be_full(self, cell: str) -> Stations:
+        return self.full[cell] | self._begun[cell]
+
+    def look(self, tasks: Tasks, answers: Iterable[OperatorAnswer], now: float) -> None:
+        """Take in what was done in a step."""
+        for answer in answers:
+            if answer.verb is Verb.UNLOAD and answer.refusal is None:
+                self._empty(answer.scope, tasks, now)
+        for change in tasks.changes:
+            task = None if change.answer else tasks.known(change.said.task)
+            if task is None or task.cell not in self.cells:
+                continue
+            if change.said.state is TaskState.RUNNING:
+                self._begin(task)
+            elif change.said.state is TaskState.DONE:
+                self._end(task)
+
+    def named(self, scope: str) -> dict[str, Stations]:
+        """The stations of a scope by their cells, as `sis_a 7` or `sis_a`; the scope may be anything."""
+        name, _, station = scope.partition(" ")
+        robots = self._scopes.robots(name)
+        cells = [cell for cell in self.cells.values() if not {*cell.holders}.isdisjoint(robots)]
+        return {
+            cell.name: {n for n in range(len(cell.stations)) if station in ("", str(n))} for cell in cells
+        }
+
+    def _begin(self, task: KnownTask) -> None:
+        """A part may come to where it is put, or back to where it was."""
+        cell, filled = self.cells[task.cell], self._filled_by(task)
+        pick = {n for n, station in enumerate(cell.stations) if station.name == cell.palletizing.pick.name}
+        self._begun[task.cell] |= filled | pick
+
+    def _end(self, task: KnownTask) -> None:
+        """A task is done: its part is where it was to be put, unless somebody took it out since it began."""
+        for number in self._filled_by(task):
+            if self._emptied.get((task.cell, number), -1.0) < (task.began or 0.0):
+                self.full[task.cell].add(number)
+                self._begun[task.cell].discard(number)
+
+    def _empty(self, scope: str, tasks: Tasks, now: float) -> None:
+        for cell, numbers in self.named(scope).items():
+            self.full[cell] -= numbers
+            self._begun[cell] -= numbers
+            for number in numbers:
+                self._emptied[cell, number] = now
+            if cell in tasks.running:
+                self._begin(tasks.open[tasks.running[cell]])
+
+    def _filled_by(self, task: KnownTask) -> Stations:
+        """The stations into which a task puts a part: one, or none."""
+        cell, last = self.cells[task.cell], task.said.text.split()[-1]
+        if last != "palletizing":
+            return {int(last)}
+        place = cell.palletizing.place.name
+        return {number for number, station in enumerate(cell.stations) if station.name == place}

@@ -1,0 +1,52 @@
+"""When cells stood, and when the plant ran, over all starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from arboleda.core.cell_states import CellState
+from arboleda.views.oee import Down, Run
+
+from .cells import KnownCell
+
+AT_WORK = frozenset({CellState.IDLE, CellState.EXECUTE})
+
+
+class Times:
+    """What a plant's memory would have of its cells and of itself; times in s of the world."""
+
+    def __init__(self, now: float) -> None:
+        self._starts = [now]
+        self._ends: list[float] = []  # of all starts but the last
+        self._stands: dict[str, float] = {}  # cells that stand, since when
+        self._downs: list[Down] = []
+
+    def restart(self, last: float, now: float) -> None:
+        """The plant was seen `last` before it died, and starts anew."""
+        self._ends.append(last)
+        self._starts.append(now)
+        for name in list(self._stands):
+            self._stand_no_more(name, last)
+
+    def look(self, cells: Iterable[KnownCell], now: float) -> None:
+        """Take in which cells stand after a step."""
+        for cell in cells:
+            if cell.state not in AT_WORK:
+                self._stands.setdefault(cell.name, now)
+            elif cell.name in self._stands:
+                self._stand_no_more(cell.name, now)
+
+    def runs(self, now: float, *, ended: bool) -> list[Run]:
+        """All starts; `ended`: the last one is ended now, and was not killed."""
+        known = zip(self._starts, [*self._ends, now], strict=True)
+        runs = [Run(since_s=since, seen_s=seen, ended=False) for since, seen in known]
+        return [*runs[:-1], Run(since_s=runs[-1].since_s, seen_s=now, ended=ended)]
+
+    @property
+    def downs(self) -> list[Down]:
+        """When cells stood, the lasting ones last."""
+        lasting = [Down(cell=name, since_s=since, until_s=None) for name, since in self._stands.items()]
+        return [*self._downs, *lasting]
+
+    def _stand_no_more(self, name: str, now: float) -> None:
+        self._downs.append(Down(cell=name, since_s=self._stands.pop(name), until_s=now))
