@@ -64,7 +64,7 @@ def _shown(look: Look) -> Iterator[str]:
         yield from rows.ways(plant.advice(cell.name), row)
         if view.standing_said(row) != rows.stands(row):
             yield f"{cell.name} is said to be {view.standing_said(row)}, it is {rows.stands(row)}"
-        yield from _tree(cell, row["tree"], record.stepped_at)
+        yield from _tree(cell, row["tree"], record.stepped_at, own=bool(look.world.recipes))
     for row in shown["robots"]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
@@ -206,8 +206,8 @@ def _obstacle(look: Look, known: KnownRobot, row: Row) -> Iterator[str]:
     yield from _unlike(known.robot.name, row["command"] or {}, expected)
 
 
-def _tree(cell: KnownCell, rows_: list[Row], now: float) -> Iterator[str]:
-    """Each node in its place, with what it is doing."""
+def _tree(cell: KnownCell, rows_: list[Row], now: float, *, own: bool) -> Iterator[str]:
+    """Each node in its place, with what it is doing; `own`: trees may be of nodes that nobody translates."""
     tree = cell.run.tree
     if tree is None:
         return
@@ -215,7 +215,7 @@ def _tree(cell: KnownCell, rows_: list[Row], now: float) -> Iterator[str]:
         yield f"{cell.name}: {len(rows_)} nodes are shown of a tree with more or less"
     for row in rows_:
         node = _node(tree, row["path"])
-        if row["name"].phrase is OWN:
+        if row["name"].phrase is OWN and not own:
             yield f"{cell.name}: {row['path']} is shown as {row['name']} in every language"
         if (str(row["name"]), row["status"]) != (node.name, node.status.value):
             yield f"{cell.name}: {row['path']} is shown as {row['name']} {row['status']}"
