@@ -68,11 +68,11 @@ def _zones(look: Look) -> Iterator[str]:
 @invariant(When.TOLD)
 def racks_hold_what_was_put(look: Look) -> Iterator[str]:
     """A station of whose task the plant has said that it is done has a part until somebody takes it out, and
-    none has one that no task was to fill.
+    none has one that no task of a shipped recipe was to fill.
     """
     racks, kept = look.record.racks, look.world.memory.get(Fact.STORED, {})
     for name, cell in look.record.cells.items():
-        if name not in racks.cells:
+        if name not in racks.cells or look.world.recipes:
             continue
         stored, full, may_be_full = cell.context.stored, racks.full[name], racks.may_be_full(name)
         if not full <= stored <= may_be_full:
