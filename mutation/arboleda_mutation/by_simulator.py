@@ -1,7 +1,8 @@
 """The second judge: the simulator alone, seed by seed, until an invariant breaks.
 
 Seeds take turns: every kind of fault on both packaged plants, on plants that they draw, and on the examples
-of cells of devices, which have recipes of their own; and plants that die again and again.
+of cells of devices, which have recipes of their own; and plants that die again and again. In some turns about
+half of the tasks are for several cells.
 """
 
 from __future__ import annotations
