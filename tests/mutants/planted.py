@@ -8,9 +8,13 @@ from arboleda.core.leaving import leaves_unkept
 from arboleda.core.operator import _not_yet
 from arboleda.dispatch import evidence
 from arboleda.model.messages import Course
+from arboleda.trees.context import Context
 from arboleda.trees.trail import Known, put_back
 from arboleda.trees.tree_run import TreeRun
 from arboleda.trees.walk_back import WalkBack, fate
+from arboleda.views import view
+from arboleda.views.changes import changed
+from arboleda.views.chronicle import Chronicle
 
 from .leaders import PLANTED_LEADERS
 from .mutant import SHARED, edit, mutant
@@ -88,6 +92,42 @@ PLANTED = (
         edit(fate, "return Fate.UNTAKEN", "return Fate.DONE"),
         weather={**DIES, "loss": 20.0},
         likely=5,
+    ),
+    mutant(
+        "verbs_do_what_they_say",
+        "A station keeps its part though somebody takes it out.",
+        edit(Context.unload, "self.stored - {station}", "self.stored"),
+        weather={"operator_unload": 60.0},
+    ),
+    mutant(
+        "screens_show_what_is",
+        "The time line says when an act was seen, not when it was done.",
+        edit(Chronicle.see, 'unix_s - (snapshot["at"] - act["at"])', "unix_s"),
+        weather={"operator_hold": 10.0},
+    ),
+    mutant(
+        "screens_show_what_is",
+        "Who hears only what is new hears nothing of what changes.",
+        edit(changed, "before.get(key, missing) != value", "before.get(key, missing) is missing"),
+        weather="none",
+    ),
+    mutant(
+        "screens_show_what_is",
+        "To resume is not shown as refused.",
+        edit(view._refused, "for verb in verbs", "for verb in verbs if verb is not Verb.RESUME"),
+        weather="none",
+    ),
+    mutant(
+        "screens_show_what_is",
+        "Advice is shown without whom it is for.",
+        edit(view._advice, '"scope": advice.scope', '"scope": ""'),
+        weather={"operator_hold": 10.0},
+    ),
+    mutant(
+        "screens_show_what_is",
+        "A cell whose queue is paused is said to be blocked.",
+        edit(view.standing, '"paused" if only_paused else "blocked"', '"blocked"'),
+        weather={"operator_stop": 5.0},
     ),
     mutant(
         "verbs_are_refused_rightly",

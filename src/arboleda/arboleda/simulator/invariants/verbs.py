@@ -140,7 +140,7 @@ def verbs_do_what_they_say(look: Look) -> Iterator[str]:
 
 
 def _is_task(look: Look, request: OperatorRequest) -> bool:
-    return request.scope not in look.record.scopes
+    return request.scope.partition(" ")[0] not in look.record.scopes  # a station has its number behind it
 
 
 def _cells(look: Look, request: OperatorRequest, can: Can) -> list[tuple[Asked, KnownCell]]:
