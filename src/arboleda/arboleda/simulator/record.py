@@ -38,7 +38,6 @@ from .recorded.choices import Choices
 from .recorded.commands import Commands, SentCommand
 from .recorded.courses import Courses
 from .recorded.foreign import ForeignCommands
-from .recorded.line import TimeLine
 from .recorded.proofs import Proofs
 from .recorded.racks import Racks
 from .recorded.refusals import differences
@@ -47,6 +46,7 @@ from .recorded.scopes import Scopes
 from .recorded.starts import Starts, Step, turn_of
 from .recorded.stops import EarlyStops
 from .recorded.tasks import Tasks
+from .recorded.time_line import TimeLine
 from .recorded.times import Times
 from .recorded.verbs import Before
 from .recorded.work import Works
@@ -104,7 +104,7 @@ class Record:
         self.tasks = Tasks(self.cells)
         self.starts = Starts(model)
         self.times = Times(world.plant.now)
-        self.line = TimeLine()
+        self.time_line = TimeLine()
         self.lost_stops: list[str] = []
         self.boards = Boards(
             {name: KnownBoard(_robot(world, name), board) for name, board in world.boards.items()}
@@ -208,7 +208,7 @@ class Record:
         cuts, self._cuts = self._cuts, self.world.disk.cuts
         self.works.restart(self.tasks.running, undone=cuts != self._cuts)
         self.starts.restart(undone=cuts != self._cuts)
-        self.line.begin()
+        self.time_line.begin()
         found = self.world.found.facts
         running = [self.tasks.open[id] for id in self.tasks.running.values()]
         self.racks.restart(found.get(Fact.STORED, {}), running)

@@ -22,8 +22,8 @@ from arboleda.wire import status
 
 from ..recorded.cells import KnownCell
 from ..recorded.commands import SentCommand
-from ..recorded.line import UNIX_S
 from ..recorded.robots import KnownRobot, Stopped
+from ..recorded.time_line import UNIX_S
 from . import rows
 from .invariant import Look, When, invariant
 from .liveness import ready
@@ -60,7 +60,7 @@ def _shown(look: Look) -> Iterator[str]:
         if cell.state is CellState.IDLE and cell.paused and row["not_ready"] is None:
             yield f"{cell.name} is shown as ready, and its queue is paused"
         yield from rows.queue(cell, row)
-        yield from _words(look, row, "cell")
+        yield from _refused(look, row, "cell")
         yield from rows.ways(plant.advice(cell.name), row)
         if view.standing_said(row) != rows.stands(row):
             yield f"{cell.name} is said to be {view.standing_said(row)}, it is {rows.stands(row)}"
@@ -69,7 +69,7 @@ def _shown(look: Look) -> Iterator[str]:
         known = record.robots[row["name"]]
         yield from _unlike(known.robot.name, row, _robot(look, known))
         yield from _obstacle(look, known, row)
-        yield from _words(look, row, "robot")
+        yield from _refused(look, row, "robot")
         yield from rows.rejected(record.commands.last.get(row["name"]), row)
     yield from _lines(look)
     yield from _tasks(look, shown)
@@ -78,10 +78,10 @@ def _shown(look: Look) -> Iterator[str]:
         yield f"tasks {open_tasks} are shown as open"
     yield from _diagnoses(shown)
     yield from _drawn(look, twin_view.positions(plant))
-    yield from _line(look, shown)
+    yield from _time_line(look, shown)
 
 
-def _words(look: Look, row: Row, kind: str) -> Iterator[str]:
+def _refused(look: Look, row: Row, kind: str) -> Iterator[str]:
     """Which verbs are shown as refused where they are said of a cell or of a robot."""
     plant, found = look.world.plant, []
     for verb in rows.sayable(kind):
@@ -92,29 +92,29 @@ def _words(look: Look, row: Row, kind: str) -> Iterator[str]:
         yield f"{row['name']}: {shown} are shown as refused, {found} would be"
 
 
-def _line(look: Look, shown: Row) -> Iterator[str]:
+def _time_line(look: Look, shown: Row) -> Iterator[str]:
     """The last event about each thing is how it is now, and there is one for all that anybody did."""
-    line = look.record.line
+    line = look.record.time_line
     line.see(shown)
     if line.told != shown:
         yield "who hears only what is new of the plant knows something else than who is shown all of it"
+    if not line.whole:
+        return
     now = {("cell", row["name"]): row["state"] for row in shown["cells"]}
     now |= {("robot", row["name"]): "online" if row["online"] else "offline" for row in shown["robots"]}
     now |= {("zone", row["zone"]): row["state"] for row in shown["zones"]}
     now |= {("task", row["id"]): row["state"] for row in shown["tasks"]}
     for (kind, subject), state in now.items():
-        event = line.last(kind, subject)
+        event = line.last.get((kind, subject))
         known = event["what"] if event is not None else None
         if known != state and not (event is None and state in AT_FIRST):
             yield f"the last event of {kind} {subject} is {known}, it is {state}"
-    events = [*line.chronicle.events]
     for act in shown["acts"]:
-        times = [each["at"] for each in events if each["sentence"] == act["sentence"]]
+        times = [each["at"] for each in line.acts if each["sentence"] == act["sentence"]]
         if not any(abs(at - UNIX_S - act["at"]) <= EXACT for at in times):
             yield f"there is no event of {act['sentence']!r} at {act['at']}, but at {times}"
-    heard = sum(each["kind"] == "foreign" for each in events)
-    if heard < len(shown["interference"]):
-        yield f"there are {heard} events of others that commanded, shown are {shown['interference']}"
+    if line.foreign < len(shown["interference"]):
+        yield f"there are {line.foreign} events of others that commanded, shown are {shown['interference']}"
 
 
 def _unlike(whose: str, shown: Row, expected: Row) -> Iterator[str]:

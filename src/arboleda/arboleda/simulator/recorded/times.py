@@ -38,9 +38,10 @@ class Times:
 
     def runs(self, now: float, *, ended: bool) -> list[Run]:
         """All starts; `ended`: the last one is ended now, and was not killed."""
-        known = zip(self._starts, [*self._ends, now], strict=True)
-        runs = [Run(since_s=since, seen_s=seen, ended=False) for since, seen in known]
-        return [*runs[:-1], Run(since_s=runs[-1].since_s, seen_s=now, ended=ended)]
+        return [
+            Run(since_s=since, seen_s=seen, ended=ended and number == len(self._ends))
+            for number, (since, seen) in enumerate(zip(self._starts, [*self._ends, now], strict=True))
+        ]
 
     @property
     def downs(self) -> list[Down]:
