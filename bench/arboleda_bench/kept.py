@@ -27,6 +27,7 @@ from typing import Any
 
 import httpx
 
+from arboleda.adapters import row_sums
 from arboleda.adapters.store import Store
 from arboleda.app.config import load
 from arboleda.app.parts.orchestrator import Orchestrator
@@ -212,6 +213,8 @@ def fill(file: Path, *, ended: int, queued: int) -> None:
         pass
     now = time.time()
     db = sqlite3.connect(file)
+    row_sums.know(db)
+    row_sums.watch(db)
     with db:
         db.executemany(
             "INSERT INTO task (id, text, cell, recipe, state, accepted_s, started_s, ended_s)"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import shutil
 import signal
 import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.rights import modes_count
 
+from arboleda.adapters import row_sums
 from arboleda.adapters.memory_file import VERSION
 from arboleda.adapters.store import Store
 from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of, course_of
@@ -234,9 +237,11 @@ def test_what_makes_the_plant_careful_is_forced_to_the_disk(path, on_connect, fa
 
 @pytest.mark.parametrize(("version", "later"), [(1, ("cell", "said")), (2, ("said",)), (3, ())])
 def test_a_file_of_an_older_format_is_brought_up_and_keeps_what_it_has(path, version, later):
-    with changed(path, "DROP TABLE task") as store:
-        store.close()
+    with Store(path) as store:
+        store.keep(LATCH)
+        store.journal(ACT, 5.0)
     db = of_before_times(path)
+    db.execute("DROP TABLE task")
     for column in later:
         db.execute(f"ALTER TABLE journal DROP COLUMN {column}")
     db.execute(f"PRAGMA user_version = {version}")
@@ -323,10 +328,19 @@ def of_before_choices(path):
 
 def of_before_courses(path):
     """The file as a format had it in which no task said how it went."""
-    db = sqlite3.connect(path)
+    db = of_before_sums(path)
     if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
         db.execute("ALTER TABLE task DROP COLUMN course")
     db.execute("PRAGMA user_version = 8")
+    return db
+
+
+def of_before_sums(path):
+    """The file as a format had it in which no row had a checksum."""
+    db = sqlite3.connect(path)
+    for (table,) in db.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall():
+        db.execute(f"ALTER TABLE {table} DROP COLUMN crc")
+    db.execute("PRAGMA user_version = 9")
     return db
 
 
@@ -383,6 +397,8 @@ def test_what_is_asked_all_day_does_not_read_the_whole_history(path, on_connect,
     with store:
         pass
     db = sqlite3.connect(path)
+    row_sums.know(db)
+    row_sums.watch(db)
     columns = "id, text, cell, recipe, state, accepted_s, ended_s"
     rows = ((f"n{n}", "sis_a 0B 1", "sis_a", "storage", "done", float(n), float(n)) for n in range(2, 20_000))
     db.executemany(f"INSERT INTO task ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?)", rows)
@@ -402,6 +418,8 @@ def test_a_task_that_means_nothing_is_one_sentence(path, column, value):
     with Store(path) as store:
         store.task(queued("a"), "storage", 1.0)
     db = sqlite3.connect(path)
+    row_sums.know(db)
+    row_sums.watch(db)
     db.execute(f"UPDATE task SET {column} = ?", (value,))
     db.commit()
     db.close()
@@ -485,8 +503,8 @@ def changed(path: Path, statement: str, *values: object) -> Store:
 @pytest.mark.parametrize("value", ["CAST(x'ff' AS TEXT)", "x'6f6e'"])
 def test_a_fact_that_is_no_text_is_one_sentence(path, value):
     why = r"\((not UTF-8 text|a row is not as it was written)\): move it away"
-    with changed(path, f"UPDATE fact SET value = {value}") as store, pytest.raises(ArboledaError, match=why):
-        store.facts(Fact.LATCH)
+    with pytest.raises(StartError, match=why):
+        changed(path, f"UPDATE fact SET value = {value}").open()
 
 
 @pytest.mark.parametrize(
@@ -494,9 +512,101 @@ def test_a_fact_that_is_no_text_is_one_sentence(path, value):
     ["sentence = CAST(x'ff' AS TEXT)", "sentence = x'00'", "unix_s = 'noon'", "cell = x'00'", "said = x'00'"],
 )
 def test_an_entry_that_is_no_entry_is_one_sentence(path, change):
-    gone = "move it away"
-    with changed(path, f"UPDATE journal SET {change}") as store, pytest.raises(ArboledaError, match=gone):
-        store.entries()
+    with pytest.raises(StartError, match="move it away"):
+        changed(path, f"UPDATE journal SET {change}").open()
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The file of a plant that has kept something of everything."""
+    path = tmp_path_factory.mktemp("written") / "plant.sqlite"
+    with Store(path, "arboleda") as store:
+        for fact in Fact:
+            store.keep(*(Remember(fact=fact, name=name, value="on") for name in ("ra1", "ra2", "mesa ñ")))
+        for number in range(60):
+            store.journal(ACT, float(number))
+            store.task(queued(f"t{number}", f"sis_a 0B {number % 9}"), "storage", number + 0.5, "page")
+        for number in range(50):
+            store.task(ended(f"t{number}"), "storage", number + 30.25)
+        for number in range(20):
+            store.began(float(number), 0.0)
+            store.stands("sis_a", "held", number + 0.5)
+    return path
+
+
+def rows_of(path):
+    """All that a plant wrote into the file."""
+    with closing(sqlite3.connect(path)) as db:
+        tables = {table: db.execute(f"SELECT * FROM {table}").fetchall() for table in row_sums.KEYS}
+    return {table: [row[:-1] for row in rows] for table, rows in tables.items()}
+
+
+def with_bit_flipped(good, path, bit):
+    spoilt = bytearray(good)
+    spoilt[bit // 8] ^= 1 << bit % 8
+    path.write_bytes(spoilt)
+    for end in ("-wal", "-shm"):
+        Path(f"{path}{end}").unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_flipped_bit_changes_nothing_that_is_read_or_the_file_is_refused(written, path, seed):
+    good, before = written.read_bytes(), rows_of(written)
+    bits = random.Random(seed).sample(range(len(good) * 8), 100)
+    if seed == 0:
+        bits += range(300)  # the header, which says how all the rest is read
+    refused = 0
+    for bit in bits:
+        with_bit_flipped(good, path, bit)
+        try:
+            with closing(TaskHistory(path, "arboleda")) as history:
+                history.select(TaskQuery(limit=None))
+            with Store(path, "arboleda"):
+                pass
+        except ArboledaError as error:
+            assert f"memory {path} " in str(error) and "\n" not in str(error)
+            refused += 1
+        else:
+            assert rows_of(path) == before, f"bit {bit}"
+    assert refused > 10
+
+
+@pytest.mark.parametrize("words", ["CREATE TABLE fact", "CREATE INDEX task_open"])
+def test_a_schema_that_is_no_text_is_one_sentence(written, path, words):
+    """SQLite quotes what it cannot understand, in bytes that are no UTF-8."""
+    good = written.read_bytes()
+    for letter in range(len(words)):
+        with_bit_flipped(good, path, 8 * (good.index(words.encode()) + letter) + 7)
+        refusal(path)
+        with pytest.raises(ArboledaError, match="cannot be read"):
+            TaskHistory(path).select(TaskQuery())
+
+
+def test_rows_of_an_older_format_get_their_sums_and_keep_what_they_have(written, path):
+    shutil.copy(written, path)
+    of_before_sums(path).close()
+    with Store(path) as store:
+        store.task(ended("t55"), "storage", 99.5)
+    changes = rows_of(path)["task"]
+    assert [row for row in changes if row[1] != "t55"] == [
+        row for row in rows_of(written)["task"] if row[1] != "t55"
+    ]
+    with Store(path) as store:
+        assert len(store.entries()) == 60
+
+
+@pytest.mark.parametrize("table", row_sums.KEYS)
+def test_a_row_that_another_program_changed_is_refused(written, path, table):
+    shutil.copy(written, path)
+    column = columns_of(path, table)[-2]
+    with closing(sqlite3.connect(path)) as db, db:
+        db.execute(f"UPDATE {table} SET {column} = '7'")
+    assert "(a row is not as it was written): move it away" in refusal(path)
+
+
+def columns_of(path, table):
+    with closing(sqlite3.connect(path)) as db:
+        return [name for (name,) in db.execute("SELECT name FROM pragma_table_info(?)", (table,))]
 
 
 def test_a_directory_that_is_missing_is_named(tmp_path):

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from tests.rights import modes_count
 
+from arboleda.adapters import row_sums
 from arboleda.adapters.memory_file import VERSION
 from arboleda.adapters.store import Store
 from arboleda.app import build, cli, session
@@ -269,8 +270,21 @@ def test_a_memory_without_a_name_becomes_that_of_its_plant(
         Store(memory, "bakery").open()
 
 
+@pytest.mark.parametrize("command", ["up", "tasks", "backup"])
+def test_a_row_that_is_not_as_it_was_written_is_one_sentence(
+    command: str, memory: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spoil(lambda db: db.execute("UPDATE task SET text = 'sis_a 0B 5' WHERE number = 3"))(memory)
+    assert "(a row is not as it was written): move it away" in refusal(command, memory, capsys)
+
+
 def test_a_row_of_another_type_is_one_sentence(memory: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    spoil(lambda db: db.execute("UPDATE task SET accepted_s = 'noon' WHERE number = 3"))(memory)
+    def change(db: sqlite3.Connection) -> None:
+        row_sums.know(db)
+        row_sums.watch(db)
+        db.execute("UPDATE task SET accepted_s = 'noon' WHERE number = 3")
+
+    spoil(change)(memory)
     assert "'t2' what is of another type than it wrote" in refusal("tasks", memory, capsys)
 
 

@@ -102,7 +102,7 @@ def test_the_default_place(monkeypatch, base, expected):
     assert default_state("demo") == Path(expected.replace("~", "/home/ana/.local/state/arboleda/demo"))
 
 
-@pytest.mark.parametrize("said", [b"", b"soon", b"\xff", b"-5", b"1e9", b"4294967295", b"9" * 80, b"1\n2"])
+@pytest.mark.parametrize("said", [b"", b"soon", b"\xff", b"-5", b"1e9", b"9" * 80, b"1\n2"])
 def test_an_epoch_that_nobody_can_read_is_one_sentence(tmp_path, said):
     (tmp_path / "epoch").write_bytes(said)
     with StateDir(tmp_path) as owner, pytest.raises(StartError) as refused:
@@ -111,6 +111,29 @@ def test_an_epoch_that_nobody_can_read_is_one_sentence(tmp_path, said):
         f"{tmp_path / 'epoch'} does not say the number of the last start: delete"
     )
     assert (tmp_path / "epoch").read_bytes() == said
+
+
+@pytest.mark.parametrize("said", [4294967294, 4294967295, 9999999999, 3795472781])
+def test_an_epoch_that_no_robot_would_obey_is_refused_and_stays(tmp_path, said):
+    (tmp_path / "epoch").write_text(str(said))
+    with StateDir(tmp_path) as owner, pytest.raises(StartError) as refused:
+        owner.next_epoch(1_795_472_781)
+    sentence = str(refused.value)
+    assert str(said) in sentence and "clock says 1795472781" in sentence
+    assert "delete it and restart the boards" in sentence
+    assert (tmp_path / "epoch").read_text() == str(said)
+
+
+def test_a_clock_that_has_forgotten_the_time_is_no_obstacle(tmp_path):
+    (tmp_path / "epoch").write_text("1795472781")
+    with StateDir(tmp_path) as owner:
+        assert owner.next_epoch(37) == 1795472782
+
+
+def test_a_clock_that_is_far_too_late_is_refused(tmp_path):
+    with StateDir(tmp_path) as owner, pytest.raises(StartError, match="Set the clock if it is wrong"):
+        owner.next_epoch(4_200_000_000)
+    assert not (tmp_path / "epoch").exists()
 
 
 def test_an_epoch_that_is_a_pipe_is_not_waited_for(tmp_path):

@@ -15,6 +15,7 @@ from arboleda.model.outside import quoted
 from .memory_file import (
     BUSY_S,
     MOVE_AWAY,
+    SPOILT,
     advice,
     explained,
     in_words,
@@ -55,7 +56,7 @@ def opened(copy: Path) -> Iterator[sqlite3.Connection]:
         with closing(read_only(copy)) as source:
             _begin(source, copy)
             yield source
-    except sqlite3.Error as error:
+    except SPOILT as error:
         raise StartError(f"{copy} is no backup of a plant's memory ({in_words(error)}).") from error
     except StartError as error:
         raise StartError(str(error).replace(f", or {MOVE_AWAY}", "")) from error
@@ -138,7 +139,7 @@ def _fold(memory: Path) -> str | None:
             db.execute("COMMIT")
             db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
             return owner(db)
-    except sqlite3.Error as error:
+    except SPOILT as error:
         if "locked" in str(error):
             why = f"({error}): {advice(str(error))}"
             raise StartError(f"The plant's memory {memory} cannot be replaced {why}.") from error

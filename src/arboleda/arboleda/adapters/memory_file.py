@@ -8,9 +8,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.outside import quoted
+from arboleda.model.outside import plain, quoted
 
-VERSION = 9
+from . import row_sums
+
+VERSION = 10
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
 MOVE_AWAY = (
@@ -28,6 +30,7 @@ ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
 }
 
 
+SPOILT = (sqlite3.Error, UnicodeDecodeError)  # the second where SQLite names what is no UTF-8
 UNMADE = ("unable to open", "I/O error", "readonly")  # what SQLite says where it can make no log
 
 
@@ -36,7 +39,7 @@ def explained(path: Path, kind: type[ArboledaError], cannot: str = "cannot be us
     """Turn what SQLite or the system raises into one sentence on the plant's memory."""
     try:
         yield
-    except sqlite3.Error as error:
+    except SPOILT as error:
         what = in_words(error)
         raise kind(f"The plant's memory {path} {cannot} ({what}): {advice(what)}.") from error
     except OSError as error:
@@ -44,9 +47,11 @@ def explained(path: Path, kind: type[ArboledaError], cannot: str = "cannot be us
         raise kind(f"The plant's memory {path} {cannot} ({what}).") from error
 
 
-def in_words(error: sqlite3.Error) -> str:
+def in_words(error: sqlite3.Error | UnicodeDecodeError) -> str:
     """What SQLite says, on one line: it quotes what it could not decode."""
-    return "not UTF-8 text" if "decode to UTF-8" in str(error) else str(error)
+    if isinstance(error, UnicodeDecodeError) or "decode to UTF-8" in str(error):
+        return "not UTF-8 text"
+    return plain(str(error))
 
 
 def advice(what: str) -> str:
@@ -60,7 +65,7 @@ def read_only(path: Path) -> sqlite3.Connection:
     db = _connected(address)
     try:
         version(db)
-    except sqlite3.Error as error:
+    except SPOILT as error:
         db.close()
         log, unmade = Path(f"{path}-wal"), any(words in str(error) for words in UNMADE)
         if not unmade or not path.exists() or (log.exists() and log.stat().st_size):
@@ -96,8 +101,10 @@ def refuse_version(db: sqlite3.Connection, path: Path) -> None:
 
 def refuse_damage(db: sqlite3.Connection) -> None:
     """sqlite3.DatabaseError where the file is not as it was written."""
-    if db.execute("PRAGMA quick_check(1)").fetchone() != ("ok",):
+    if db.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
         raise sqlite3.DatabaseError("database disk image is malformed")
+    if version(db) == VERSION and not row_sums.are_right(db):
+        raise sqlite3.DatabaseError("a row is not as it was written")
 
 
 def owner(db: sqlite3.Connection) -> str | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 from arboleda.model.errors import ArboledaError, StartError
 
+from . import row_sums
 from .memory_file import (
     BUSY_S,
     MOVE_AWAY,
@@ -58,7 +59,7 @@ SCHEMA = (
     *TIMES_OF_CELLS,
     *CHOICE,
     *COURSE,
-    f"PRAGMA user_version = {VERSION}",
+    *row_sums.COLUMNS,
 )
 SINCE = {
     1: ("ALTER TABLE journal ADD COLUMN cell TEXT",),
@@ -69,6 +70,7 @@ SINCE = {
     6: TIMES_OF_CELLS,
     7: CHOICE,
     8: COURSE,
+    9: row_sums.COLUMNS,
 }
 IN_MEMORY = Path(":memory:")
 
@@ -133,18 +135,20 @@ class Store(PlantMemory):
 
     def _prepare(self, db: sqlite3.Connection) -> None:
         """Refuse what cannot be used now, rather than at the first fact."""
+        row_sums.know(db)
         found = version(db)
         if found or self.path != IN_MEMORY:
             refuse_version(db, self.path)
         else:
-            _carry_out(db, SCHEMA)
+            _carry_out(db, _made(db, SCHEMA))
         db.execute("PRAGMA journal_mode = WAL")
         with db:
             db.execute("BEGIN IMMEDIATE")  # refused where another program writes, or nobody may
         refuse_damage(db)
         if 0 < found < VERSION:
             news = [each for since, statements in SINCE.items() if since >= found for each in statements]
-            _carry_out(db, (*news, f"PRAGMA user_version = {VERSION}"))
+            _carry_out(db, _made(db, news))
+        row_sums.watch(db)
         if self._plant:
             self._claim(db)
 
@@ -152,7 +156,7 @@ class Store(PlantMemory):
         """Say whose memory it is where nothing does; StartError where it is another plant's."""
         refuse_other(db, self.path, self._plant)
         if owner(db) is None:
-            db.execute("INSERT INTO fact VALUES (?, ?, ?)", (*OWNER, self._plant))
+            db.execute("INSERT INTO fact (fact, name, value) VALUES (?, ?, ?)", (*OWNER, self._plant))
 
     def _damaged(self) -> ArboledaError:
         return ArboledaError(
@@ -176,7 +180,8 @@ class Store(PlantMemory):
         fresh.unlink(missing_ok=True)
         db = sqlite3.connect(fresh, isolation_level=None)
         try:
-            _carry_out(db, SCHEMA)
+            row_sums.know(db)
+            _carry_out(db, _made(db, SCHEMA))
             db.close()
             fresh.replace(self.path)
         finally:
@@ -185,6 +190,13 @@ class Store(PlantMemory):
 
     def _explained(self, kind: type[ArboledaError]) -> AbstractContextManager[None]:
         return explained(self.path, kind)
+
+
+def _made(db: sqlite3.Connection, statements: Iterable[str]) -> Iterator[str]:
+    """What brings a file to the format of today, with the sums of what is there then."""
+    yield from statements
+    yield from row_sums.fill(db)
+    yield f"PRAGMA user_version = {VERSION}"
 
 
 def _carry_out(db: sqlite3.Connection, statements: Iterable[str | Statement]) -> None:

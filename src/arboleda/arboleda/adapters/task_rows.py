@@ -21,7 +21,7 @@ from arboleda.model.outside import quoted
 from arboleda.model.sentence import OWN, Sentence, retold
 from arboleda.views.oee import Kept, Oee, oee
 
-from .memory_file import VERSION, explained, read_only, refuse_other, refuse_version, version
+from .memory_file import VERSION, explained, read_only, refuse_damage, refuse_other, refuse_version, version
 from .oee_rows import Database, OeeQuery, kept
 
 COMMAND, PAGE, HTTP, ROS = "command", "page", "http", "ros2"  # the ways by which a task comes
@@ -217,11 +217,12 @@ class History(ABC):
 
 class TaskHistory(History):
     """That of a SQLite file. `plant` is its name, where that is known: then the memory of another one is
-    refused."""
+    refused. A damaged one is, too; `is_checked`: whoever writes it looked when it was opened."""
 
-    def __init__(self, path: Path, plant: str = "") -> None:
+    def __init__(self, path: Path, plant: str = "", *, is_checked: bool = False) -> None:
         self._path = path
         self._plant = plant
+        self._is_checked = is_checked
         self._lock = threading.Lock()
         self._opened: sqlite3.Connection | None = None
 
@@ -251,6 +252,8 @@ class TaskHistory(History):
                         f"The plant's memory {self._path} is of an older Arboleda:"
                         " start the plant once, which brings it up to date."
                     )
+                if not self._is_checked:
+                    refuse_damage(db)
             except BaseException:  # whatever it is, the file is not left open
                 db.close()
                 raise

@@ -102,7 +102,9 @@ class App:
         state = options.state_dir or default_state(model.name)
         self._state = StateDir(state, plant=model.name, store=store)
         self._store = memory_of(store, state, model.name)
-        self._history, self._recalled = (history_of(store, state, model.name) for _ in range(2))
+        self._history, self._recalled = (
+            history_of(store, state, model.name, is_checked=True) for _ in range(2)
+        )
         self._reporting: ReportsPart | None = None
         self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))

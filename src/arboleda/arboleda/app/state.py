@@ -15,6 +15,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from arboleda.model.errors import ConfigError, StartError
+from arboleda.wire import epochs
 
 from .user_file import read_bytes
 
@@ -23,7 +24,7 @@ LOCK = "plant.lock"
 FACTS = "plant.json"
 EPOCH = "epoch"
 EPOCH_SAID, EPOCH_BYTES = re.compile(rb"[0-9]{1,10}\s*"), 64
-UINT32 = 2**32 - 1  # the highest epoch that a board takes
+KNOWN_TIME_S = 1_577_836_800  # 2020: a clock that says less has forgotten the time
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 LOCK_TRIES, LOCK_PAUSE_S = 5, 0.05  # a `status` looks at the lock for a moment; that is no owner
 
@@ -111,8 +112,15 @@ class StateDir:
 
     def next_epoch(self, unix_s: int) -> int:
         """A number for this start, higher than that of any start before, though the clock was set back;
-        StartError where nobody knows what the last one was."""
-        epoch = max(unix_s, self._last_epoch() + 1)
+        StartError where nobody knows what the last one was, or no robot would obey the next."""
+        last = self._last_epoch()
+        epoch = max(unix_s, last + 1)
+        if epochs.objection(epoch, unix_s if unix_s >= KNOWN_TIME_S else None) is not None:
+            raise StartError(
+                f"Robots would not obey this start: {self.path / EPOCH} says that the last one was number"
+                f" {last}, and this machine's clock says {unix_s}. Set the clock if it is wrong; if the file"
+                " is wrong, delete it and restart the boards that were told that number."
+            )
         with self._explained():
             replace_file(self.path / EPOCH, str(epoch))
         return epoch
@@ -123,7 +131,7 @@ class StateDir:
             said = read_bytes(file, EPOCH_BYTES) if os.path.lexists(file) else b"0"
         except ConfigError:
             said = b""
-        if not EPOCH_SAID.fullmatch(said) or int(said) >= UINT32:
+        if not EPOCH_SAID.fullmatch(said):
             raise StartError(
                 f"{file} does not say the number of the last start: delete it if this machine's clock is "
                 "right, or write a number into it that is higher than any before; robots obey no lower one."

@@ -27,10 +27,11 @@ def memory_of(store: str, state: Path, plant: str) -> PlantMemory:
     return PostgresMemory(store, plant)
 
 
-def history_of(store: str, state: Path, plant: str) -> History:
-    """What only reads the tasks there; a file is not asked whose it is where `plant` is ""."""
+def history_of(store: str, state: Path, plant: str, *, is_checked: bool = False) -> History:
+    """What only reads the tasks there; a file is not asked whose it is where `plant` is "", nor whether it is
+    whole where it `is_checked`."""
     if not store:
-        return TaskHistory(state / STORE, plant)
+        return TaskHistory(state / STORE, plant, is_checked=is_checked)
     refuse_without_library()
     from arboleda.adapters.postgres.history import PostgresHistory
 
