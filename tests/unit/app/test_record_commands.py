@@ -18,6 +18,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.recorder import copying, files, reader
 from arboleda.recorder.beginning import PlantFiles
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.steps import TOPIC
 
 SHIPPED = config.load_recorded()[1]
 TASK = "sis_a 0B 7 #lot-1"
@@ -78,11 +79,40 @@ def test_a_replay_tells_what_became_of_tasks_and_that_all_is_equal(state: Path) 
 
 def test_a_replay_ends_where_it_is_told_to(state: Path) -> None:
     assert "1 steps" not in said("replay", "--state", str(state), "--task", "lot-1")
-    assert said("replay", "--state", str(state), "--until", "2001-01-01T00:00:00") == "0 steps, all equal\n"
+    with pytest.raises(NoRecord, match="has no step up to the time that --until names, so that nothing"):
+        said("replay", "--state", str(state), "--until", "2001-01-01T00:00:00")
     with pytest.raises(ConfigError, match="--until yesterday: is no time"):
         said("replay", "--state", str(state), "--until", "yesterday")
     with pytest.raises(ConfigError, match="--task lot-2: there is no such task"):
         said("replay", "--state", str(state), "--task", "lot-2")
+
+
+def in_small_chunks(source: Path, target: Path) -> int:
+    """The same steps, each of them in a chunk of its own; how many there are."""
+    record = reader.opened(source)
+    part = files.PartFile(target, record.first.beginning, 1, record.first.began_ns)
+    for count, (unix_ns, data) in enumerate(record.raw(), start=1):  # noqa: B007
+        part.put(TOPIC, unix_ns, data)
+        part.flush()
+    part.close()
+    return count
+
+
+def test_a_replay_of_a_damaged_record_says_how_much_of_it_is_read(state: Path, tmp_path: Path) -> None:
+    file = tmp_path / "spoilt.mcap"
+    count = in_small_chunks(files.parts_in(state / files.FOLDER)[0].path, file)
+    content = file.read_bytes()
+    chunks = [at for at in range(len(content)) if content[at : at + 8] == b"\x04\0\0\0zstd"]
+    for number, at in enumerate(chunks[:count]):  # what comes after them is their index at the end
+        file.write_bytes(content[: at + 40] + bytes([content[at + 40] ^ 1]) + content[at + 41 :])
+        read = sum(1 for _ in reader.opened(file).raw())
+        sentence = f"{count} steps, {read} read, then spoilt.mcap is damaged"
+        if read:
+            assert said("replay", str(file), status=1).splitlines()[-1].startswith(sentence), number
+        else:
+            with pytest.raises(NoRecord, match=f"{sentence}, so that nothing was compared"):
+                said("replay", str(file))
+    assert len(chunks) > 2 and 0 < read < count
 
 
 def test_a_replay_at_a_speed_waits(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,8 +16,10 @@ from arboleda.recorder import files, reader, recorder, writing
 from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
+from arboleda.recorder.state import state_of
+from arboleda.recorder.steps import Step
 from arboleda.recorder.writing import Writing
-from arboleda.testing import shipped
+from arboleda.testing import Rig, shipped
 
 from .recorded import DEFAULT, PATIENCE_S, Site, beginning_of
 
@@ -133,6 +135,33 @@ def test_what_was_written_reaches_the_disk_also_where_the_clock_was_set_back(
     writing.drop()
 
 
+def test_what_was_written_survives_a_power_cut_once_a_second_has_passed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a file only what was synced is left then."""
+    now_ns, synced = [10_000_000_000_000], dict[str, bytes]()
+
+    def sync(number: int) -> None:
+        path = Path(os.readlink(f"/proc/self/fd/{number}"))
+        if path.is_file():
+            synced[path.name] = path.read_bytes()
+
+    monkeypatch.setattr(os, "fdatasync", sync)
+    writing = Writing(tmp_path, beginning_of(shipped()), DEFAULT, unix_ns=lambda: now_ns[0])
+    writing.open()
+    plant = Rig(shipped()).plant
+    for second in range(1, 4):
+        step = Step(now_ns[0], float(second), (), (), state_of(plant, second))
+        assert list(writing.put(step)) != []
+        now_ns[0] += 1_000_000_000
+        writing.tend()
+        left = tmp_path / "left.mcap"
+        left.write_bytes(synced["7-0001.mcap"])
+        record = reader.opened(left)
+        assert [at for at, _ in record.raw()][-1] == step.unix_ns and not record.broken
+    writing.drop()
+
+
 def test_old_files_go_whoever_made_them(tmp_path: Path) -> None:
     for name in ("900-0001.mcap", "1000-0001.mcap", "notes.txt"):
         (tmp_path / name).write_bytes(b"x" * 100)
@@ -193,8 +222,10 @@ def test_a_damaged_byte_ends_the_record_there(tmp_path: Path, monkeypatch: pytes
     for eighth in range(2, 8):
         at = len(content) * eighth // 8
         broken.write_bytes(content[:at] + bytes([content[at] ^ 0xFF]) + content[at + 1 :])
-        left = [step.hash for step in reader.opened(broken).steps()]
+        record = reader.opened(broken)
+        left = [step.hash for step in record.steps()]
         assert left == whole[: len(left)]
+        assert len(left) == len(whole) or record.broken == "broken.mcap is damaged"
         counts.append(len(left))
     assert 0 < min(counts) < len(whole)
 
@@ -209,8 +240,10 @@ def test_a_damaged_length_ends_the_record_there(tmp_path: Path, monkeypatch: pyt
     packed = content.index(b"\x04\0\0\0zstd")
     for at in (packed + 3, packed + 15):
         broken.write_bytes(content[:at] + b"\xff" + content[at + 1 :])
-        left = [step.hash for step in reader.opened(broken).steps()]
+        record = reader.opened(broken)
+        left = [step.hash for step in record.steps()]
         assert len(left) < len(whole) and left == whole[: len(left)]
+        assert record.broken == "broken.mcap is damaged"
 
 
 def test_a_file_that_grows_is_read_on_where_its_reader_was(

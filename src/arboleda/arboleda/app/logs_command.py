@@ -21,7 +21,7 @@ from .where import PlantFile, StateFolder, folder
 LOOK_S = 0.5
 LONGEST = 500  # characters of a line
 WHAT = "Show what became of tasks and what operators did, out of a flight record."
-HOW = "Times are local, with date. What a plant that runs did last is in its record after 5 s at most."
+HOW = "Times are local, with date. What a plant that runs did last is in its record after 2 s at most."
 EXIT = "Exit status: 0 shown, 2 no record, or one that cannot be read."
 
 

@@ -42,8 +42,8 @@ HOW = (
     "records that you trust."
 )
 EXIT = (
-    "Exit status: 0 all steps are equal, or all of a fork happens as recorded; 1 something does not; "
-    "2 no record, or one that cannot be replayed."
+    "Exit status: 0 all steps are equal, or all of a fork happens as recorded; 1 something does not, or is "
+    "damaged; 2 no record, or one that cannot be replayed."
 )
 
 
@@ -140,7 +140,26 @@ def _refuse_part(record: Record) -> None:
 
 def _compare(record: Record, plant: Path | None, chosen: Chosen) -> None:
     """Say whether every step is what it was."""
-    _finish(record, _run(record, model_of(record.first.beginning, plant), chosen))
+    last = _run(record, model_of(record.first.beginning, plant), chosen)
+    if last is None:
+        raise NoRecord(f"{_nothing(record, chosen)}, so that nothing was compared.")
+    _finish(record, last)
+
+
+def _nothing(record: Record, chosen: Chosen) -> str:
+    if record.broken:
+        return _extent(record, 0)
+    until = " up to the time that --until names" if chosen.until_ns is not None else ""
+    return f"{record.paths[0]} has no step{until}"
+
+
+def _extent(record: Record, number: int) -> str:
+    """How many of its steps were read, where it is damaged."""
+    from arboleda.recorder.reader import steps_there
+
+    there = steps_there(record.paths)
+    known = f"{there} steps, " if there is not None and there >= number else ""
+    return f"{known}{number} read, then {record.broken}"
 
 
 def _fork(record: Record, options: Options) -> None:
@@ -169,14 +188,16 @@ def _show(record: Record, until: str | None, task: str | None, port: int | None)
     replay_page.show(record, model_of(record.first.beginning, None), query | of_task, port)
 
 
-def _finish(record: Record, last: Replayed | None) -> None:
+def _finish(record: Record, last: Replayed) -> None:
     """Say what came of it."""
-    if last is not None and last.difference is not None:
+    if last.difference is not None:
         for line in _difference(last):
             _say(line)
         raise typer.Exit(DIFFERS)
-    number = 0 if last is None else last.number
-    _say(f"{number} steps, all equal" + (f"; it ends early: {record.broken}" if record.broken else ""))
+    if record.broken:
+        _say(f"{_extent(record, last.number)}; those that were read are equal")
+        raise typer.Exit(DIFFERS)
+    _say(f"{last.number} steps, all equal")
 
 
 def _notes(beginning: Beginning, plant: Path | None) -> Iterator[str]:

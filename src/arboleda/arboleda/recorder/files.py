@@ -89,7 +89,7 @@ def _deleted_if_old(part: Part, before_unix_s: float) -> bool:
 
 
 class PartFile:
-    """One file that is being written; what was put in is on the disk after `flush`, but for a power cut.
+    """One file that is being written; what was put in survives a power cut after `flush`.
 
     OSError where it cannot be written.
     """
@@ -102,7 +102,8 @@ class PartFile:
         try:
             write_beginning(self._writer, beginning, (number,), unix_ns)
             self._channels = register(self._writer, channels)
-            self._file.flush()
+            self._sync()
+            _sync_folder(path.parent)
         except BaseException:  # whatever it is, no file is left open
             self._file.close()
             raise
@@ -116,21 +117,36 @@ class PartFile:
         attach(self._writer, name, "application/zstd", data, unix_ns)
 
     def flush(self) -> int:
-        """How large it is then."""
+        """Have it on the disk; how large it is then."""
         self._writer.flush()  # type: ignore[no-untyped-call]
+        self._sync()
         return self._file.tell()
 
     def close(self) -> None:
         """Write what other tools look for at the end of a file, and give it back."""
         try:
             self._writer.finish()  # type: ignore[no-untyped-call]
+            self._sync()
         finally:
             self.drop()
+
+    def _sync(self) -> None:
+        self._file.flush()
+        os.fdatasync(self._file.fileno())
 
     def drop(self) -> None:
         """Give it back as it is."""
         with suppress(OSError):  # of what could not be written, and was told before
             self._file.close()
+
+
+def _sync_folder(folder: Path) -> None:
+    """Have a new file found there after a power cut."""
+    opened = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
 
 
 def write_beginning(writer: Writer, beginning: Beginning, numbers: Iterable[int], unix_ns: int) -> None:

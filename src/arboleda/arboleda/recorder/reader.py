@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
-from io import BytesIO
+from io import SEEK_END, BytesIO
 from pathlib import Path
 from typing import IO
 
@@ -39,6 +39,8 @@ from .steps import TOPIC, Recorded, from_json
 LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller
 HEAD = struct.Struct("<BQ")  # what a piece begins with: what it is, and its length
 KNOWN = frozenset(Opcode)
+STEPS_CHANNEL = 1  # the first one that a file opens
+INDEX, INDEXED_BYTES = struct.Struct("<HI"), 16  # its channel and its length; bytes of each message in it
 READ: dict[int, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.HEADER: Header.read,
     Opcode.METADATA: Metadata.read,
@@ -62,7 +64,8 @@ Raw = tuple[int, bytes]  # nanoseconds of Unix time, and a message
 class PartRead:
     """What one file is: which steps it has of which start, and how it ends.
 
-    `whole`: it was closed as it should be; else it is being written, or its plant was killed.
+    `whole`: it was closed as it should be; else it is being written, or its plant was killed. `damaged`:
+    something in it, up to which it was read, is not as it was written.
     """
 
     path: Path
@@ -70,6 +73,7 @@ class PartRead:
     numbers: tuple[int, ...]
     began_ns: int
     whole: bool = False
+    damaged: bool = False
 
 
 class PartReader:
@@ -83,6 +87,7 @@ class PartReader:
         self.channels: dict[int, Channel] = {}
         self.schemas: dict[int, Schema] = {}
         self._file = _opened(path)
+        self._is_torn = False
         try:
             self._records = self._pieces()
             self.read = self._begin()
@@ -115,10 +120,20 @@ class PartReader:
             elif isinstance(record, Chunk):
                 messages = self._messages(record)
                 if messages is None:
+                    self.read.damaged = True
                     return
                 yield from messages
             self.read.whole = isinstance(record, Footer)
+        self.read.damaged |= self._is_torn or (not self.read.whole and self._is_closed())
         self._records = self._rest()
+
+    def _is_closed(self) -> bool:
+        """Whether it ends as a file does that was closed."""
+        at, size = self._file.tell(), self._file.seek(0, SEEK_END)
+        self._file.seek(max(0, size - len(MAGIC)))
+        end = self._file.read(len(MAGIC))
+        self._file.seek(at)
+        return size > len(MAGIC) and end == MAGIC
 
     def _messages(self, chunk: Chunk) -> list[Message] | None:
         """Those of a chunk; None where it is damaged, or larger than a plant writes them."""
@@ -178,6 +193,7 @@ class PartReader:
         while len(head := self._file.read(HEAD.size)) == HEAD.size:
             opcode, length = HEAD.unpack(head)
             if opcode not in KNOWN or length > LARGEST:
+                self._is_torn = True
                 return
             body = self._file.read(length)
             if len(body) < length:
@@ -186,6 +202,7 @@ class PartReader:
                 try:
                     yield READ[opcode](ReadDataStream(BytesIO(body)))
                 except TORN:
+                    self._is_torn = True
                     return
             begins = self._file.tell()
         self._file.seek(begins)
@@ -262,7 +279,7 @@ class Record:
                     return
                 after, self.last = reader.read.numbers, reader.read
                 yield reader
-            if not self.last.whole and path != self.paths[-1]:
+            if self.last.damaged or (not self.last.whole and path != self.paths[-1]):
                 self.broken = f"{path.name} is damaged"
                 return
 
@@ -270,6 +287,33 @@ class Record:
         """All steps, in order."""
         for unix_ns, data in self.raw():
             yield from_json(unix_ns, data)
+
+
+def steps_there(paths: Iterable[Path]) -> int | None:
+    """How many steps files have, also behind what is damaged; None where nothing in them can tell.
+
+    They are counted by the indexes that stand behind the chunks.
+    """
+    counts = [_steps_there(path) for path in paths]
+    return None if None in counts else sum(filter(None, counts))
+
+
+def _steps_there(path: Path) -> int | None:
+    count, size = 0, path.stat().st_size
+    with path.open("rb") as file:
+        file.seek(len(MAGIC))
+        while len(head := file.read(HEAD.size)) == HEAD.size:
+            opcode, length = HEAD.unpack(head)
+            if opcode not in KNOWN or file.tell() + length > size:
+                return None
+            begins = file.tell()
+            if opcode == Opcode.MESSAGE_INDEX and length >= INDEX.size:
+                channel, indexed_bytes = INDEX.unpack(file.read(INDEX.size))
+                count += indexed_bytes // INDEXED_BYTES if channel == STEPS_CHANNEL else 0
+            elif opcode == Opcode.FOOTER:
+                return count
+            file.seek(begins + length)
+    return count
 
 
 def channels_of(path: Path) -> dict[str, int]:

@@ -14,7 +14,7 @@ from .files import DIGEST, PartFile, part_bytes, part_path, prune
 from .steps import TOPIC, Step, as_json
 from .view_log import Message, Seen, ViewLog
 
-FLUSH_S = 5.0  # what a killed process loses at most
+FLUSH_S = 1.0  # what a killed process or a power cut loses at most
 LEAST_FREE = 200_000_000  # bytes that the disk keeps for the plant's memory and for whatever else is on it
 
 
