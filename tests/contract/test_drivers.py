@@ -5,20 +5,28 @@ A driver takes part with a bench in tests/contract/drivers, which plays its devi
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partialmethod
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.model.messages import Reason, TaskState, Verb
 
+from ..patience import PATIENCE_S
 from .drivers.bench import ASK, HALT, LATCH, OTHER, WORK, Shop
 from .drivers.benches import BENCHES
 
 pytestmark = pytest.mark.system
 
 ASKING = [name for name, bench in BENCHES.items() if bench.asks]
+UNWATCHED = [name for name, bench in BENCHES.items() if not bench.watches]
 ASKED = pytest.mark.parametrize("shop", ASKING, indirect=True)
+SUPERVISED = pytest.mark.parametrize("shop", UNWATCHED, indirect=True)
 
 
 @pytest.fixture(params=BENCHES)
@@ -166,3 +174,44 @@ def test_reconnect(shop: Shop) -> None:
         after.append(shop.device.told()[0])
     assert set(after) <= {HALT, LATCH}
     shop.device.latches()
+
+
+@SUPERVISED
+def test_a_plant_that_freezes(shop: Shop) -> None:
+    """What moves is halted without it, and nothing moves again by itself."""
+    shop.submit(WORK)
+    shop.device.accepts(shop.told(WORK))
+    with shop.frozen():
+        shop.told(HALT)
+        shop.device.rests()
+    assert shop.outcome().reason is not None
+
+
+@SUPERVISED
+def test_a_disk_that_hangs(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What moves is halted while the plant waits for its memory."""
+    shop.submit(WORK)
+    shop.device.accepts(shop.told(WORK))
+    with hung_disk(monkeypatch):
+        stop = shop.app.operate(Verb.STOP, "shop")
+        assert shop.device.told()[0] in {HALT, LATCH}
+        shop.device.latches()
+    assert stop.result(PATIENCE_S).refusal is None
+
+
+@contextmanager
+def hung_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing that is written to the plant's memory comes back."""
+    goes_on = threading.Event()
+    for name in ("keep", "journal", "task"):
+        write = getattr(PlantMemory, name)
+        monkeypatch.setattr(PlantMemory, name, partialmethod(late, goes_on, write))
+    try:
+        yield
+    finally:
+        goes_on.set()
+
+
+def late(memory: PlantMemory, goes_on: threading.Event, write: Any, *values: Any, **named: Any) -> None:
+    goes_on.wait(PATIENCE_S)
+    write(memory, *values, **named)

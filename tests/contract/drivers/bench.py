@@ -7,7 +7,9 @@
 from __future__ import annotations
 
 import queue
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -72,6 +74,7 @@ class Bench:
 
     open: Callable[[Path, Path], tuple[App, Callable[[App], Device]]]
     asks: bool = False  # whether its device can be asked
+    watches: bool = False  # whether the device, or a driver of others, watches for the plant itself
 
 
 class Shop:
@@ -82,8 +85,10 @@ class Shop:
         self.device: Device
         self._changes: queue.Queue[TaskChanged] = queue.Queue()
         self._online: queue.Queue[bool] = queue.Queue()
+        self._frozen, self._goes_on = threading.Event(), threading.Event()
         app.listen(self._changes.put)
         app.watch(lambda snapshot: self._online.put(snapshot["robots"][0]["online"]))
+        app.watch(self._linger)
 
     def submit(self, recipe: str, id: str = "t1") -> None:
         self.app.submit(f"shop {recipe} #{id}").result(PATIENCE_S)
@@ -107,3 +112,19 @@ class Shop:
         """Wait until screens show that the device is heard, or that it is not."""
         while self._online.get(timeout=PATIENCE_S) is not online:
             pass
+
+    @contextmanager
+    def frozen(self) -> Iterator[None]:
+        """The plant's thread does nothing, as in a process that swaps."""
+        self._goes_on.clear()
+        self._frozen.set()
+        try:
+            yield
+        finally:
+            self._frozen.clear()
+            self._goes_on.set()
+
+    def _linger(self, snapshot: object) -> None:
+        """Called in the plant's thread, once a second at least."""
+        if self._frozen.is_set():
+            self._goes_on.wait(PATIENCE_S)

@@ -91,4 +91,4 @@ class MqttWire:
             self._client.publish(message)
 
 
-BENCH = Bench(open=_open, asks=True)
+BENCH = Bench(open=_open, asks=True, watches=True)

@@ -74,4 +74,4 @@ class RosWire:
         self._told(Order(ref=None, word=STOPS[message.data]))
 
 
-BENCH = Bench(open=_open, asks=True)
+BENCH = Bench(open=_open, asks=True, watches=True)

@@ -12,7 +12,7 @@ import pytest
 
 from arboleda.app.parts.drivers import DriversPart
 from arboleda.drivers import Clock, Command, Hear, NotSent, Stop, StopMode
-from arboleda.model.messages import Report, Undelivered
+from arboleda.model.messages import Heartbeat, Report, Undelivered
 from arboleda.model.plant_model import DriverUse, Link, MotionState, PlantModel, Robot, Timing
 
 from ..kinds.station import STATION, plant
@@ -331,3 +331,24 @@ class Noting(Tame):
 
     def start(self, devices: Sequence[Robot], hear: Hear, clock: Clock) -> None:
         self.starts.put(tuple(device.name for device in devices))
+
+
+def test_whoever_works_is_halted_when_the_plant_is_not_heard(running: Callable[..., Plant]) -> None:
+    driver = Tame()
+    there = running(driver)
+    there.is_up()
+    there.part.send(Heartbeat(epoch=EPOCH))
+    there.part.send(GO)
+    sent = [driver.sent.get(timeout=WAIT_S) for _ in range(2)]
+    assert sent == [GO, Stop(id="", robot="station", mode=StopMode.HALT)]
+
+
+def test_whoever_another_process_leads_is_not_halted(running: Callable[..., Plant]) -> None:
+    driver = Tame()
+    there = running(driver)
+    there.is_up()
+    there.part.send(Heartbeat(epoch=EPOCH))
+    there.part.send(GO)
+    there.part.leave_robots()
+    there.part.stop()
+    assert [driver.sent.get_nowait(), driver.sent.empty()] == [GO, True]

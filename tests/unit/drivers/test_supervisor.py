@@ -10,12 +10,15 @@ import pytest
 from arboleda.drivers import lost
 from arboleda.drivers.supervisor import (
     FIRST_RETRY_S,
+    PLANT_GONE_S,
     Asked,
+    Beaten,
     Begin,
     Broken,
     End,
     Event,
     Give,
+    Halted,
     Leaving,
     Life,
     Message,
@@ -28,12 +31,14 @@ from arboleda.model.commands import Command, Stop, StopMode
 from arboleda.model.messages import Report, Undelivered
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.model.sentence import OWN
+from arboleda.sim.board import SILENCE, SILENCE_US
 
 from ..kinds.station import STATION, plant
 
 STALE_S, EPOCH = 1.5, 9
 GO = STATION.command(id="9-1", robot="station", verb="go", values={})
 LIGHT = STATION.command(id="9-2", robot="station", verb="light", values={"on": True})
+WARM = STATION.command(id="9-5", robot="station", verb="warm", values={"celsius": 60.0})
 LATCH, CLEAR = (
     Stop(id=f"9-{n}", robot="station", mode=mode) for n, mode in ((3, StopMode.LATCH), (4, StopMode.CLEAR))
 )
@@ -57,6 +62,10 @@ class Driven:
         at = self.now + after
         report = Report(at=at - late, robot="station", **{"state": MotionState.STOPPED, **said})  # type: ignore[arg-type]
         return self.step(Said(at=at, life=self.life, report=report), after=after)
+
+    def beats(self, *, after: float = 0.0) -> list[Message]:
+        """The plant is there."""
+        return self.step(Beaten(at=self.now + after), after=after)
 
     def asks(self, command: Command) -> list[Message]:
         return self.step(Asked(at=self.now, command=command))
@@ -289,3 +298,59 @@ def test_whose_work_has_ended_is_not_halted(driven: Driven) -> None:
     driven.gives(GO)
     driven.says(accepted="9-1", done="9-1")
     assert driven.step(Leaving(at=driven.now)) == [End(life=driven.life)]
+
+
+HALT = Stop(id="", robot="station", mode=StopMode.HALT)
+
+
+def test_whoever_works_is_halted_once_when_the_plant_is_not_heard_for_as_long_as_a_board_waits(
+    driven: Driven,
+) -> None:
+    driven.beats()
+    driven.gives(GO)
+    driven.says(after=0.9, state=MotionState.MOVING, accepted="9-1")
+    assert driven.machine.next_deadline == pytest.approx(driven.now + 0.1)
+    give, failed, told = driven.step(after=0.1)
+    assert give == driven.given(HALT)
+    assert isinstance(failed, Report) and (failed.failed, failed.failure) == ("9-1", SILENCE)
+    assert isinstance(told, Halted)
+    said = "the plant was not heard for 1 s; station is halted, whose driver is plc"
+    assert str(told.sentence) == said
+    driven.step(Taken(at=driven.now, life=driven.life, command=HALT))
+    assert not any(isinstance(each, Give) for each in driven.says(after=1.0))
+    assert PLANT_GONE_S == SILENCE_US / 1e6
+
+
+def test_beats_and_commands_keep_work_going(driven: Driven) -> None:
+    driven.beats()
+    driven.gives(GO)
+    driven.beats(after=0.8)
+    driven.says(after=0.7, state=MotionState.MOVING)
+    driven.gives(LIGHT)
+    assert len(driven.says(after=0.9, state=MotionState.MOVING)) == 1
+
+
+def test_a_plant_that_was_gone_for_long_gives_work_anew_and_is_watched_again(driven: Driven) -> None:
+    driven.beats()
+    driven.says(after=5.0)
+    driven.gives(GO)
+    driven.says(after=0.5, state=MotionState.MOVING)
+    assert driven.step(after=0.5)[0] == driven.given(HALT)
+
+
+def test_what_finishes_goes_on_when_the_plant_is_not_heard(driven: Driven) -> None:
+    driven.beats()
+    driven.gives(WARM)
+    assert len(driven.says(after=1.2, state=MotionState.MOVING)) == 1
+
+
+def test_who_rests_is_not_halted_when_the_plant_is_not_heard(driven: Driven) -> None:
+    driven.beats()
+    driven.gives(GO)
+    driven.says(done="9-1")
+    assert len(driven.says(after=1.2)) == 1
+
+
+def test_a_plant_that_never_beat_is_not_watched_for(driven: Driven) -> None:
+    driven.gives(GO)
+    assert len(driven.says(after=1.2, state=MotionState.MOVING)) == 1

@@ -6,13 +6,14 @@ import math
 from collections import OrderedDict
 from dataclasses import replace
 
-from arboleda.model.commands import Command, Stop, StopMode, Work, needs_clear
+from arboleda.model.commands import Command, OnStop, Stop, StopMode, Work, needs_clear
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Evidence, MotionState, Robot
 from arboleda.model.sentence import Sentence
 
 REMEMBERED = 256  # commands; an open one is never that old
 IDS = ("accepted", "done", "rejected", "failed", "answered")
+SILENCE = "silencio"  # what a board gives its work up with that hears no plant
 WORDS = {"rejected": "refusal", "failed": "failure", "answered": "answer"}  # what goes with an id
 
 
@@ -29,7 +30,8 @@ class DrivenDevice:
         self._said_at = -math.inf
         self._boot_id: int | None = None
         self._known: OrderedDict[str, None] = OrderedDict()  # the ids of the commands that it was given
-        self._work: str | None = None  # what may still move it
+        self._work: Work | None = None  # what may still move it
+        self._unwatched = False  # it was halted for want of a plant
         self._latched = False
         self._why: Sentence | None = None  # why there is no link
 
@@ -56,7 +58,7 @@ class DrivenDevice:
     def leaves(self, command: Command) -> None:
         """A command is handed to the driver."""
         if isinstance(command, Work):
-            self._work = command.id
+            self._work, self._unwatched = command, False
 
     def refuse(self, at: float, command: Command, word: str) -> Report:
         state, why = (None, None) if self.up else (MotionState.NO_LINK, self._why)
@@ -65,9 +67,23 @@ class DrivenDevice:
 
     def halt(self) -> Stop | None:
         """What ends the work that may still go on."""
-        if self._work is None or not self.up or not self.robot.has_stop:
+        if self._work is None or not self._can_stop:
             return None
         return Stop(id="", robot=self.robot.name, mode=StopMode.HALT)
+
+    @property
+    def needs_plant(self) -> bool:
+        """Whether it does what must not go on once the plant is not heard."""
+        work = self._work
+        return work is not None and work.on_stop is OnStop.HALT and not self._unwatched and self._can_stop
+
+    def give_up(self, at: float) -> tuple[Report, Stop]:
+        """What a board does by itself that hears no plant: its work has failed, and what moves is halted."""
+        assert self._work is not None
+        self._unwatched = True
+        name = self.robot.name
+        failed = Report(at=at, robot=name, failed=self._work.id, failure=SILENCE)
+        return self._stamped(failed), Stop(id="", robot=name, mode=StopMode.HALT)
 
     def lose(self, at: float, why: Sentence) -> list[Report]:
         """There is no link any more, and whatever was open is nobody's; nothing is sent again."""
@@ -95,11 +111,16 @@ class DrivenDevice:
         returned = booted or not self.up
         self.up, self._said_at, self.stale_at = True, report.at, report.at + self._silence_s
         self._boot_id = self._boot_id if report.boot_id is None else report.boot_id
-        if booted or self._work in (report.done, report.rejected, report.failed):
+        ended = (report.done, report.rejected, report.failed)
+        if booted or (self._work is not None and self._work.id in ended):
             self._work = None
         again = returned and self._latched and self.robot.has_stop
         stop = Stop(id="", robot=self.robot.name, mode=StopMode.LATCH) if again else None
         return self._stamped(self._of_ours(report)), stop
+
+    @property
+    def _can_stop(self) -> bool:
+        return self.up and self.robot.has_stop
 
     def _of_ours(self, report: Report) -> Report:
         """Without what it says of commands that it was not given: they are of another start, or of others."""

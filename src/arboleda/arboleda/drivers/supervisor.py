@@ -2,6 +2,8 @@
 
 Drivers are other people's code. Whatever one of them does, its devices lose their link, with a sentence that
 says why; it is ended and made anew, and nothing that was open is sent again.
+
+A device at work is halted where its plant is not heard, as a board halts itself.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from .device import DrivenDevice
 from .reports import objection
 
 FIRST_RETRY_S, LAST_RETRY_S = 0.5, 30.0
+PLANT_GONE_S = 1.0  # without beat or command: as long as a board waits
 STARTING = Phrase("driver.starting", "its driver {driver} was started and has said nothing yet")
 SILENT = Phrase("driver.silent", "its driver {driver} has said nothing for {seconds:g} s")
 STUCK = Phrase("driver.stuck", "its driver {driver} has not come back from send for {seconds:g} s")
@@ -28,6 +31,10 @@ NOT_STARTED = Phrase("driver.not_started", "its driver {driver} cannot start ({e
 LATE = Phrase("driver.late", "it waited for too long and must not leave any more")
 NOT_SENT = Phrase("driver.not_sent", "its driver {driver} could not send a command ({error})")
 UNSAID = Phrase("driver.unsaid", "its driver {driver} says that there is no link")
+UNWATCHED = Phrase(
+    "driver.unwatched",
+    "the plant was not heard for {seconds:g} s; {robot} is halted, whose driver is {driver}",
+)
 NONSENSE = Phrase("driver.nonsense", "the driver {driver} reported nonsense: {why}")
 
 
@@ -45,6 +52,13 @@ class Asked:
 
     at: float
     command: Command
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beaten:
+    """The plant is there."""
+
+    at: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,8 +133,16 @@ class Refused:
     sentence: Sentence
 
 
-Event = Asked | Said | Broken | Taken | Leaving
-Message = Begin | Give | End | Refused | Report | Undelivered
+@dataclass(frozen=True, kw_only=True)
+class Halted:
+    """A device was halted since the plant was not heard; `sentence` is for the log."""
+
+    at: float
+    sentence: Sentence
+
+
+Event = Asked | Beaten | Said | Broken | Taken | Leaving
+Message = Begin | Give | End | Refused | Halted | Report | Undelivered
 
 
 class SupervisedDriver:
@@ -211,6 +233,21 @@ class SupervisedDriver:
         why = SILENT(driver=self.name, seconds=self._stuck_after_s)
         return [message for device in silent for message in device.lose(now, why)]
 
+    @property
+    def needs_plant(self) -> bool:
+        """Whether a device of it does what must not go on once the plant is not heard."""
+        return any(device.needs_plant for device in self.devices.values())
+
+    def give_up(self, now: float) -> list[Message]:
+        """Halt what only a plant that is there may have moving; once, another plant may lead it by then."""
+        halted = [device for device in self.devices.values() if device.needs_plant]
+        return [message for device in halted for message in self._unwatched(now, device)]
+
+    def _unwatched(self, now: float, device: DrivenDevice) -> list[Message]:
+        failed, stop = device.give_up(now)
+        said = UNWATCHED(seconds=PLANT_GONE_S, robot=device.robot.name, driver=self.name)
+        return [self._give(now, device, stop), failed, Halted(at=now, sentence=said)]
+
     def leave(self, leaving: Leaving) -> list[Message]:
         """Whatever may still move is halted before the driver ends."""
         halts = [(device, device.halt()) for device in self.devices.values()] if leaving.halts else []
@@ -245,11 +282,14 @@ class Supervisor:
         ]
         self._of_device = {name: driver for driver in self._drivers for name in driver.devices}
         self._leaving = False
+        self._plant_gone_at = math.inf  # until it has beaten once
 
     @property
     def next_deadline(self) -> float | None:
         """When `step` must be called even without events; None: never."""
         due = min((driver.next_deadline for driver in self._drivers), default=math.inf)
+        if any(driver.needs_plant for driver in self._drivers):
+            due = min(due, self._plant_gone_at)
         return due if due < math.inf and not self._leaving else None
 
     def step(self, now: float, events: Sequence[Event]) -> list[Message]:
@@ -260,6 +300,8 @@ class Supervisor:
         for driver in self._drivers:
             if driver.next_deadline <= now:
                 out += driver.pass_time(now)
+            if self._plant_gone_at <= now and driver.needs_plant:
+                out += driver.give_up(now)
         return out
 
     def _take(self, event: Event) -> list[Message]:
@@ -268,11 +310,19 @@ class Supervisor:
         if isinstance(event, Leaving):
             self._leaving = True
             return [message for driver in self._drivers for message in driver.leave(event)]
-        if isinstance(event, Asked):
-            return self._of_device[event.command.robot].command(event.at, event.command)
+        if isinstance(event, Beaten | Asked):
+            return self._hear_plant(event)
         driver = self._drivers[event.life.driver]
         if event.life != driver.life:
             return []
         if isinstance(event, Said):
             return driver.said(event)
         return driver.taken(event) if isinstance(event, Taken) else driver.broken(event)
+
+    def _hear_plant(self, event: Beaten | Asked) -> list[Message]:
+        """Its silence counts from its first beat on."""
+        if isinstance(event, Beaten) or self._plant_gone_at < math.inf:
+            self._plant_gone_at = event.at + PLANT_GONE_S
+        if isinstance(event, Beaten):
+            return []
+        return self._of_device[event.command.robot].command(event.at, event.command)

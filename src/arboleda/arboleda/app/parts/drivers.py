@@ -20,6 +20,7 @@ from arboleda.drivers.supervisor import (
     Broken,
     End,
     Give,
+    Halted,
     Leaving,
     Life,
     Refused,
@@ -28,7 +29,7 @@ from arboleda.drivers.supervisor import (
     Taken,
 )
 from arboleda.model.commands import Command
-from arboleda.model.messages import Notice, Report, Undelivered
+from arboleda.model.messages import Heartbeat, Notice, Report, Undelivered
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import DriverUse, PlantModel, Robot
 from arboleda.model.sentence import OWN
@@ -52,16 +53,17 @@ class DriversPart:
         machine = Supervisor(named, epoch=epoch, stale_after_s=model.timing.stale_after_s)
         self.loop: Loop[Any, Any] = Loop("drivers", machine, self._send, on_crash=crash)
         self._threads = DeadThreads(self._died)
-        self._halts = True
 
     def connect(self, hear: Callable[[Report | Undelivered], None]) -> None:
         """Who gets the reports, and is told of what could not leave."""
         self._hear = hear
 
     def send(self, message: Command | Notice) -> None:
-        """The plant's port to the devices behind drivers; notices are not for them."""
+        """The plant's port to the devices behind drivers; of notices only its heartbeat is for them."""
         if isinstance(message, Command):
             self.loop.post(supervisor.Asked(at=clock.seconds(), command=message))
+        elif isinstance(message, Heartbeat):
+            self.loop.post(supervisor.Beaten(at=clock.seconds()))
 
     def start(self) -> None:
         self._threads.watch()
@@ -70,12 +72,12 @@ class DriversPart:
         self.loop.start()
 
     def leave_robots(self) -> None:
-        """Another process leads them now: `stop` halts none of them."""
-        self._halts = False
+        """Another process leads them now: drivers end, and none of them is halted any more."""
+        self.loop.post(Leaving(at=clock.seconds(), halts=False))
 
     def stop(self) -> None:
         """Halt what may still move, then end every driver; one that does not end is left behind."""
-        self.loop.post(Leaving(at=clock.seconds(), halts=self._halts))
+        self.loop.post(Leaving(at=clock.seconds()))
         self.loop.stop()
         until = time.monotonic() + PATIENCE_S
         for worker in self._workers:
@@ -88,7 +90,7 @@ class DriversPart:
     def _send(self, message: supervisor.Message) -> None:
         if isinstance(message, Report | Undelivered):
             self._hear(message)
-        elif isinstance(message, Refused):
+        elif isinstance(message, Refused | Halted):
             if self._seldom.is_due(message.sentence, message.at):
                 LOG.warning("%s", message.sentence)
         else:
