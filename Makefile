@@ -23,8 +23,8 @@ KILLS ?= --kills 1000
 HOSTS ?= --faults 1000
 MUTANTS ?= --sample 400
 
-run: install  ## start the simulated plant with three tasks, and keep it up until Ctrl-C
-	@$(BIN)/arboleda up "sis_a 0B 7" "sis_b 1C 3" "sis_c 2A 5"
+run: install  ## start the simulated plant as a demonstration: tasks without end, now and then a fault, until Ctrl-C
+	@$(BIN)/arboleda up --demo
 
 test:  ## run the tests that move time by hand, and those of the repository itself; TESTS=tests/unit/core for others
 	@scripts/install test

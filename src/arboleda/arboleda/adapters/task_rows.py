@@ -24,7 +24,7 @@ from arboleda.views.oee import Kept, Oee, oee
 from .memory_file import VERSION, explained, read_only, refuse_damage, refuse_other, refuse_version, version
 from .oee_rows import Database, OeeQuery, kept
 
-COMMAND, PAGE, HTTP, ROS = "command", "page", "http", "ros2"  # the ways by which a task comes
+COMMAND, PAGE, HTTP, ROS, DEMO = "command", "page", "http", "ros2", "demo"  # the ways by which a task comes
 STATES, REASONS = {state.value for state in TaskState}, {None, *(reason.value for reason in Reason)}
 
 

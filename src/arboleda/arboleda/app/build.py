@@ -32,12 +32,14 @@ from arboleda.recorder.beginning import Beginning, Recording
 from arboleda.views.oee import Oee
 
 from .alarm_options import AlarmOptions
+from .demo import Demo
 from .led import way_to
 from .log_queue import Output
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart
 from .parts.broker import OtherBroker, OwnBroker
 from .parts.cell_times import CellTimes
+from .parts.demo import DemoPart
 from .parts.devices import DevicesPart
 from .parts.drivers import DriversPart
 from .parts.groot2 import Groot2Options, Groot2Part
@@ -86,6 +88,7 @@ class Options:
     keeps_waiting: bool = True  # for the next start; else what waits at the end is cancelled
     page: bool = True  # the API needs none, and a page takes a second to load
     recording: Recording | None = None  # None: no record is written
+    demo: bool = False  # tasks that never end, and faults, of a plant on virtual boards
     groot2: bool | None = None  # whether trees are shown to Groot2; None: where the plant file says so
     notes: tuple[str, ...] = ()  # what else a person should know of this start
 
@@ -115,6 +118,8 @@ class App:
         self._groot2 = _groot2(model, options) if "orchestrator" in parts else None
         self._bridge: BridgePart | None = None
         self._drivers: DriversPart | None = None
+        self._devices: DevicesPart | None = None
+        self._demo: DemoPart | None = None
         self._past_acts: list[dict[str, Any]] = []
         self._link = options.link
         self._web_options = options.web
@@ -149,6 +154,8 @@ class App:
             notes += self._groot2.notes
         if self._alarms is not None and self.orchestrator is not None:
             notes += self._alarms.notes
+        if self._demo is not None:
+            notes += self._demo.notes
         return notes
 
     @property
@@ -244,7 +251,13 @@ class App:
         broker = {"address": str(self._broker.address), "connected": connected} if self._bridge else None
         ros = {"notes": list(self._link.notes)} if self._link else None
         waiting = [{"host": each.host, "url": way_to(each.host, each.url)} for each in self._store.standbys]
-        return {"broker": broker, "ros": ros, "refused": refused, "standbys": waiting}
+        demo = self._demo is not None and self._demo.is_on
+        return {"broker": broker, "ros": ros, "refused": refused, "standbys": waiting, "demo": demo}
+
+    def end_demo(self) -> None:
+        """Give no more tasks of the demonstration; from any thread."""
+        if self._demo is not None:
+            self._demo.end()
 
     def _web_part(self, options: Options) -> WebPart:
         from .parts import page  # its libraries take half a second, and nodes do without them
@@ -256,6 +269,7 @@ class App:
             links=self.links,
             positions=self.positions,
             past_acts=lambda: self._past_acts,
+            end_demo=self.end_demo if options.demo else None,
             recorded=None if options.recording is None else self._state.path,
             report=self.report,
         )
@@ -365,6 +379,11 @@ class App:
         if self._groot2 is not None:
             self.watch(self._groot2.saw)
             self._parts.append(self._groot2)
+        if options.demo and self._devices is not None and self.orchestrator is not None:
+            befall = self._devices.befall
+            self._demo = DemoPart(Demo(self.model), self.submit, befall, self._crash)
+            self.watch(self._demo.saw)
+            self._parts.append(self._demo)
         if self.orchestrator is not None and self._store.renew_s is not None:
             self._parts.append(GoingOn(self, self._store.going, epoch))
         self._join(bridge, drivers, self._link)
@@ -419,7 +438,7 @@ class App:
         compiled = [LinuxBoards(self.model, robots, self._broker, self._crash, scout=scout)] if robots else []
         joined = bridge.join if bridge is not None and scout else _nothing
         elsewhere = [robot.name for robot in robots]
-        virtual = DevicesPart(
+        virtual = self._devices = DevicesPart(
             self.model, first_boot, self._broker, self._crash, scout=scout, joined=joined, elsewhere=elsewhere
         )
         return [virtual, *compiled]

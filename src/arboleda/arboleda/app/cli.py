@@ -234,6 +234,10 @@ Standby = Annotated[
         help="Wait until nobody leads this plant, and lead it then; needs a store that both hosts reach.",
     ),
 ]
+DemoOption = Annotated[
+    bool,
+    typer.Option("--demo", help="Give tasks without end, and have a virtual board fail now and then."),
+]
 Tasks = Annotated[list[str] | None, typer.Argument(help="Tasks to begin with, e.g. 'sis_a 0B 7'.")]
 
 
@@ -259,13 +263,14 @@ def up(
     state: StateFolder = None,
     store: StoreAddress = "",
     standby: Standby = False,
+    demo: DemoOption = False,
 ) -> None:
     """Run the plant until Ctrl-C; tasks come from here, `arboleda submit` or ROS 2 (/task_request)."""
     model, recording = _model(plant, tasks or [])
     shown = _Shown(tls_cert, tls_key, broker_tls=broker_tls, broker_ca=broker_ca)
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
-    options = replace(options, groot2=groot2)
+    options = replace(options, groot2=groot2, demo=demo)
     _run(model, tasks or [], options, boards=boards, ros=ros, lan=ros_lan, stay=True, standby=standby)
 
 
@@ -587,6 +592,8 @@ def _run(
     boards = boards or (Boards.REAL if options.broker_users else Boards.VIRTUAL)
     if boards is not Boards.VIRTUAL and options.rate != 1.0:
         raise typer.BadParameter("--rate is for virtual boards; the others have the speed they have")
+    if boards is not Boards.VIRTUAL and options.demo:
+        raise typer.BadParameter("--demo has boards fail, so it is for virtual ones alone")
     if boards in (Boards.VIRTUAL, Boards.LINUX):
         recording = options.recording and replace(options.recording, virtual=True)
         options = replace(options, notes=(*options.notes, *_virtual(model)), recording=recording)

@@ -16,6 +16,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import in_json
 
+from . import demo
 from .feed import Feed
 from .open_page import OpenPage
 from .plant_side import PlantSide
@@ -39,14 +40,20 @@ class Desk(OpenPage):
         """An act of the page; `more` is True where a robot was homed by hand."""
         if act == DOWNLOAD:
             self._download()
-        elif act != SUBMIT and act not in VERBS:
+        elif act not in {SUBMIT, demo.END} and act not in VERBS:
             return
         elif not allowed(self.role, act):
-            self.say(self._words("page.not_allowed", act=self._words.of("verb", act)), good=False)
+            self.say(self._words("page.not_allowed", act=self._name(act)), good=False)
         elif act == SUBMIT:
             await self._submit(of)
+        elif act == demo.END:
+            self._plant.end_demo()
+            self.say(self._words("demo.ended"), good=True)
         elif act != Verb.STOP or not self._is_stopped(of):
             await self._operate(Verb(act), of, by_hand=more is True)
+
+    def _name(self, act: str) -> str:
+        return self._words("demo.end") if act == demo.END else self._words.of("verb", act)
 
     async def _submit(self, text: str) -> None:
         task = await self._answered(self._plant.submit(text, PAGE))

@@ -15,7 +15,7 @@ from nicegui import Client, app, ui
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery
 
-from . import header, links, panel, reports, shell, tasks, timeline, trees
+from . import demo, header, links, panel, reports, shell, tasks, timeline, trees
 from .desk import Desk
 from .faces import history, oee
 from .feed import Feed
@@ -91,9 +91,13 @@ def open_page(client: Client, desk: Desk, feed: Feed, layout: Layout, said: Word
     ui.on("arboleda", desk.hear)
     client.on_connect(lambda: feed.add(desk))
     client.on_delete(lambda: feed.remove(desk))
-    shell.fill(
-        layout, said, PARTS, script="page.js", header=lambda parts: header.build(layout, said, parts, role)
-    )
+
+    def top(parts: list[str]) -> None:
+        header.build(layout, said, parts, role)
+        if layout.get("demo"):
+            demo.build(said)
+
+    shell.fill(layout, said, PARTS, script="page.js", header=top)
 
 
 def _keep_running(feed: Feed, show: Show) -> None:

@@ -28,7 +28,8 @@ class PlantSide(Protocol):
         """`views.view.snapshot` as of now."""
 
     def layout(self) -> Layout:
-        """`views.view.layout`: what never changes. With `recorded` there is a `past`."""
+        """`views.view.layout`: what never changes. With `recorded` there is a `past`, with `demo` a
+        demonstration."""
 
     def positions(self) -> dict[str, Any]:
         """`views.twin_view.positions` as of now, and `now` on the plant's clock."""
@@ -49,7 +50,11 @@ class PlantSide(Protocol):
 
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
-        `standbys` [{host, url}], whose url is "" where it leads there from no other host."""
+        `standbys` [{host, url}], whose url is "" where it leads there from no other host, `demo`: whether a
+        demonstration gives tasks now."""
+
+    def end_demo(self) -> None:
+        """Have the demonstration give no more tasks, of a plant whose layout has `demo`."""
 
     def past_acts(self) -> list[dict[str, Any]]:
         """What operators did before this start, oldest first: {at (unix s), scope, sentence}."""

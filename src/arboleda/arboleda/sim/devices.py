@@ -38,6 +38,15 @@ class Reboot:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Alarm:
+    """A motor driver of a board reports an alarm, or that it is over."""
+
+    at: float
+    board: str
+    is_on: bool
+
+
+@dataclass(frozen=True, kw_only=True)
 class FromBoard:
     """What a board publishes with its own MQTT client."""
 
@@ -78,7 +87,7 @@ class Devices:
         due_us = min(self._due_us.values(), default=math.inf)
         return due_us / 1e6 if due_us < math.inf else None
 
-    def step(self, now: float, events: Sequence[ToBoard | Reboot]) -> list[FromBoard]:
+    def step(self, now: float, events: Sequence[ToBoard | Reboot | Alarm]) -> list[FromBoard]:
         """Feed the events in order, let the time pass, and collect what the boards publish."""
         now_us, out = _us(now), []
         for event in events:
@@ -95,10 +104,12 @@ class Devices:
         due_us = self.boards[name].next_deadline_us
         self._due_us[name] = math.inf if due_us is None else due_us
 
-    def _feed(self, event: ToBoard | Reboot) -> None:
+    def _feed(self, event: ToBoard | Reboot | Alarm) -> None:
         board = self.boards[event.board]
         if isinstance(event, Reboot):
             board.reboot(_us(event.at), self._boot_ids())
+        elif isinstance(event, Alarm):
+            (board.fail if event.is_on else board.repair)(_us(event.at))
         elif isinstance(event.event, Connection):
             board.connect(_us(event.event.at), event.event.up)
         else:

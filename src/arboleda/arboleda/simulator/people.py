@@ -138,7 +138,7 @@ class Customers:
             self._world.request_task(text, token)
 
     def _text(self, cell: Cell) -> str:
-        text = self._own_text(cell)
+        text = text_of(cell, self._dice)
         if self._groups is None or not self._groups.chance(0.5):
             return text
         words = text.partition(" ")[2]
@@ -153,13 +153,15 @@ class Customers:
             return False
         return True
 
-    def _own_text(self, cell: Cell) -> str:
-        if not only_stores(cell):
-            return any_text(cell, self._dice)
-        if self._dice.chance(0.2):
-            return f"{cell.name} palletizing"
-        path, station = self._dice.pick(cell.paths), self._dice.below(len(cell.stations))
-        return f"{cell.name} {path.code} {station}"
+
+def text_of(cell: Cell, dice: Dice) -> str:
+    """A task of a cell; that of a storage cell as people type it."""
+    if not only_stores(cell):
+        return any_text(cell, dice)
+    if dice.chance(0.2):
+        return f"{cell.name} palletizing"
+    path, station = dice.pick(cell.paths), dice.below(len(cell.stations))
+    return f"{cell.name} {path.code} {station}"
 
 
 def any_text(cell: Cell, dice: Dice) -> str:

@@ -177,7 +177,8 @@ class KeptTask(_Told):
     started_s: float | None = None
     ended_s: float | None = None
     asked_by: str | None = Field(
-        default=None, description="The way by which it came: command, page, http or ros2; null: not known."
+        default=None,
+        description="The way by which it came: command, page, http, ros2, demo; null: not known.",
     )
     attempts: int = Field(default=0, description="How often it was begun, or tried again by `retry`.")
     answers: list[TaskAnswer] = Field(default=[], description="Of one that has ended, in their order.")

@@ -12,7 +12,7 @@ from typing import Any
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.model.plant_model import PlantModel
-from arboleda.sim.devices import Devices, FromBoard, ToBoard
+from arboleda.sim.devices import Alarm, Devices, FromBoard, Reboot, ToBoard
 from arboleda.wire.payloads import Presence, encode
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
@@ -70,6 +70,10 @@ class DevicesPart:
         for board, client in clients.items():
             self._leave(board, client)
         self.loop.stop()
+
+    def befall(self, fault: Reboot | Alarm) -> None:
+        """Have something go wrong with a board; from any thread."""
+        self.loop.post(fault)
 
     def _join(self) -> None:
         with self._lock:

@@ -37,6 +37,7 @@ class Sources:
     past_acts: Callable[[], list[dict[str, Any]]]
     recorded: Path | None  # the state directory of a plant that writes a record
     report: Callable[[str], str | None]
+    end_demo: Callable[[], None] | None = None  # None: this start is no demonstration
 
 
 class PageSide:
@@ -44,7 +45,10 @@ class PageSide:
 
     def __init__(self, side: Side, sources: Sources) -> None:
         self._model = sources.model
-        self._layout = view.layout(sources.model) | {"recorded": sources.recorded is not None}
+        self._layout = view.layout(sources.model) | {
+            "recorded": sources.recorded is not None,
+            "demo": sources.end_demo is not None,
+        }
         self._sources = sources
         self.snapshot = side.snapshot
         self.submit = side.submit
@@ -59,6 +63,10 @@ class PageSide:
 
     def layout(self) -> dict[str, Any]:
         return self._layout
+
+    def end_demo(self) -> None:
+        if self._sources.end_demo is not None:
+            self._sources.end_demo()
 
     def past(self, epoch: int | None = None) -> Past:
         return self._recorded.past(epoch)

@@ -1,6 +1,7 @@
 // The behaviour of a running plant's page: where one may be, scopes, and whether news still comes.
 
 import * as acts from "./acts.js";
+import * as demo from "./demo.js";
 import * as form from "./form.js";
 import * as history from "./history.js";
 import * as frames from "./frames.js";
@@ -77,6 +78,7 @@ function begin() {
   begun = true;
   shell.start();
   acts.start();
+  demo.start();
   form.start();
   task.start();
   history.start();
