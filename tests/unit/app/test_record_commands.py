@@ -246,14 +246,43 @@ def test_without_its_library_the_plant_goes_on_without_a_record(
 
 def test_logs_are_lines_with_date_of_all_cells_or_of_one(state: Path) -> None:
     lines = said("logs", "--state", str(state)).splitlines()
-    assert [line[20:].split("  ")[0].split()[0] for line in lines[:2]] == ["queued", "refused"]
+    assert [line[20:].split()[0] for line in lines[:3]] == ["started", "queued", "refused"]
     assert all(re.match(r"20\d\d-\d\d-\d\d \d\d:\d\d:\d\d ", line) for line in lines)
-    assert "there is no cell" in lines[1] or "sis_z" in lines[1]
+    assert "there is no cell" in lines[2] or "sis_z" in lines[2]
     assert [line for line in lines if "queued" in line] == said(
         "logs", "--state", str(state), "--cell", "sis_a"
     ).splitlines()
     assert said("logs", "--state", str(state), "--cell", "sis_b") == ""
     assert said("logs", "--state", str(state), "--follow").splitlines() == lines  # it does not run any more
+
+
+def test_logs_of_a_cell_that_is_not_there_are_refused(state: Path) -> None:
+    with pytest.raises(ConfigError, match="no record has a cell 'sis_d'; there are sis_a, sis_b, sis_c"):
+        said("logs", "--state", str(state), "--cell", "sis_d")
+
+
+def test_logs_have_all_starts_in_order(state: Path, tmp_path: Path) -> None:
+    (part,) = files.parts_in(state / files.FOLDER)
+    folder = tmp_path / files.FOLDER
+    folder.mkdir()
+    for epoch in (part.epoch - 7, part.epoch):
+        (folder / f"{epoch}-0001.mcap").write_bytes(part.path.read_bytes())
+    once = said("logs", "--state", str(state)).splitlines()
+    assert said("logs", "--state", str(tmp_path)).splitlines() == once * 2
+    assert said("logs", "--state", str(tmp_path), "--follow").splitlines() == once * 2
+    assert said("logs", str(part.path)).splitlines() == once
+    (folder / f"{part.epoch - 9}-0001.mcap").write_bytes(b"no record")
+    lines = said("logs", "--state", str(tmp_path)).splitlines()
+    assert lines[0].startswith("left out: ") and lines[1:] == once * 2
+
+
+def test_logs_say_why_a_cell_was_held() -> None:
+    why = {"key": "own", "english": "{text}", "values": {"text": "ra1 must be homed first"}}
+    told = {"kind": "cell", "cell": "sis_a", "subject": "sis_a", "what": "held", "sentence": why}
+    lines = list(logs_command._lines(logs_command.EVENTS, told))
+    assert lines == [("sis_a", "held      sis_a  ra1 must be homed first")]
+    assert not list(logs_command._lines(logs_command.EVENTS, told | {"what": "execute"}))
+    assert not list(logs_command._lines(logs_command.EVENTS, told | {"kind": "robot", "what": "offline"}))
 
 
 def test_what_a_step_has_to_say_for_people() -> None:
@@ -266,7 +295,7 @@ def test_what_a_step_has_to_say_for_people() -> None:
         {"type": "InternalError", "cell": "sis_b", "error": "KeyError: 'x'"},
         {"type": "Heartbeat", "epoch": 1},
     ]
-    assert list(logs_command._lines({"messages": rows})) == [
+    assert list(logs_command._lines(logs_command.STEPS, {"messages": rows})) == [
         (None, "all stopped"),
         (None, "resume sis_a was refused: all stopped"),
         (None, "the plant was away for 2.0 s"),

@@ -54,6 +54,21 @@ def ids(*args: str, state: Path) -> list[str]:
     return [json.loads(line)["id"] for line in said(*args, "--json", state=state).splitlines()]
 
 
+def test_an_id_is_whole_in_one_line_of_a_narrow_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    id, why = (
+        "t-1795485914-1043",
+        OWN(text="ra2: did not finish within 5.0 s while switching the effector on"),
+    )
+    with Store(tmp_path / "plant.sqlite") as store:
+        queued = TaskChanged(task=id, text="sis_b 0B 2", cell="sis_b", state=TaskState.QUEUED)
+        store.task(queued, "storage", NOW)
+        store.task(told(id, TaskState.FAILED, reason=Reason.DEADLINE, sentence=why), "", NOW)
+    assert id in said(state=tmp_path)
+
+
 def test_all_tasks_are_shown_with_why_they_failed(state: Path) -> None:
     shown = said(state=state)
     assert "ra2: too late" in " ".join(shown.split()) and "10.0 s" in shown

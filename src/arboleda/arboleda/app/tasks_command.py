@@ -122,7 +122,8 @@ def _table(rows: Sequence[TaskRow], *, first: bool) -> None:
     drawn = Table(box=None, pad_edge=False)
     answered = [ANSWERS] if any(row.answers for row in rows) else []
     for heading in (*HEADINGS, *answered):
-        drawn.add_column(heading, overflow="fold")
+        whole = max(len(plain(row.id)) for row in rows) if heading == "id" else None  # it is copied
+        drawn.add_column(heading, overflow="fold", min_width=whole)
     for row in rows:
         at, by, id, text, _, took, why, answers = _said(row)
         state = Text(row.state, style=STYLES[TaskState(row.state)])

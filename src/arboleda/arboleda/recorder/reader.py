@@ -103,9 +103,14 @@ class PartReader:
 
         Asked again, those that were written since.
         """
+        for _, unix_ns, data in self.told(TOPIC):
+            yield unix_ns, data
+
+    def told(self, *topics: str) -> Iterator[tuple[str, int, bytes]]:
+        """The same of these topics, each message with its own."""
         for piece in self.everything():
-            if isinstance(piece, Message) and self.topic_of(piece) == TOPIC:
-                yield piece.log_time, piece.data
+            if isinstance(piece, Message) and (topic := self.topic_of(piece)) in topics:
+                yield topic, piece.log_time, piece.data
 
     def topic_of(self, message: Message) -> str:
         """The topic of a message; empty where none was opened for it."""
