@@ -68,6 +68,19 @@ def test_the_task_goes_on_with_the_answer() -> None:
     assert str(here.plant.acts[-1].sentence) == "answer ana yes"
 
 
+@pytest.mark.parametrize("word", ["sí", "SÍ", "si\u0301"])
+def test_an_answer_may_have_any_letters(word: str) -> None:
+    @recipe("full")
+    def full(cell: Kit):  # type: ignore[no-untyped-def]
+        return cell.device("ana").ask("¿Está lleno?", ["sí", "no"], at_most_s=60.0)
+
+    here = Bench(attended(full))
+    here.submit("tending full")
+    assert here.wait(10.0, lambda: question(here) is not None)
+    assert here.operate(Verb.ANSWER, f"ana {word}") is None
+    assert here.outcome().state.value == "done"
+
+
 def test_what_was_answered_is_kept_with_the_task() -> None:
     here = asking()
     assert view.task_by_id(here.plant, "t-1000-1")["answers"] == []  # type: ignore[index]

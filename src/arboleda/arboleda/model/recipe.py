@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from unicodedata import normalize
 
 from py_trees.behaviour import Behaviour
 
@@ -24,8 +25,18 @@ Builders = Mapping[str, Build]
 
 
 def known(word: str, names: Iterable[str]) -> str | None:
-    """The name that `word` spells, whatever its case; only ASCII words spell names."""
-    return next((name for name in names if word.isascii() and name.lower() == word.lower()), None)
+    """The name that `word` spells, in any language; None where it spells none.
+
+    Letters outside ASCII spell no ASCII name: some have an ASCII letter as their other case.
+    """
+    wanted = spelling(word)
+    alike = (name for name in names if spelling(name) == wanted)
+    return next((name for name in alike if word.isascii() or not name.isascii()), None)
+
+
+def spelling(word: str) -> str:
+    """The letters of a word, for which neither case nor the way in which Unicode writes an accent counts."""
+    return normalize("NFC", normalize("NFC", word).casefold())
 
 
 def same_word(cell: Cell, word: str) -> object:

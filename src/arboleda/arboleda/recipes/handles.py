@@ -16,6 +16,7 @@ from arboleda.model.facts import Value, shown
 from arboleda.model.messages import Failure, Reason, TaskAnswer
 from arboleda.model.outside import among, quoted
 from arboleda.model.plant_model import Pose, Robot
+from arboleda.model.recipe import spelling
 from arboleda.model.sentence import Phrase
 from arboleda.trees import steps
 from arboleda.trees.context import Context
@@ -172,7 +173,7 @@ class PersonHandle(Handle):
             for each in answers
             if each != " ".join(each.split()) or "/" in each or not 0 < len(each) <= LONGEST_ANSWER
         ]
-        if not answers or wrong or len(set(map(str.lower, answers))) < len(answers):
+        if not answers or wrong or len(set(map(spelling, answers))) < len(answers):
             allowed = f"different words, each 1 to {LONGEST_ANSWER} characters without /"
             raise RecipeError(f"the answers to {quoted(question)} must be {allowed}")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations as pairs
@@ -18,7 +17,7 @@ from arboleda.model.commands import Work
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
-from arboleda.model.recipe import Recipe
+from arboleda.model.recipe import Recipe, spelling
 from arboleda.model.task import Order
 from arboleda.recipes.errors import RoleError
 from arboleda.trees.context import Context
@@ -29,7 +28,6 @@ from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
 from .used import LONGEST, Used, Watch, said
 
-SPELLABLE = re.compile(r"(?!#)[!-~]+", re.ASCII)
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"
 WAIT = "cell.wait(seconds)"
@@ -230,9 +228,14 @@ def _unspellable(cell: Cell, recipe: Recipe) -> str | None:
     for each in recipe.parameters:
         words = each.words(cell)
         for word in words:
-            if not SPELLABLE.fullmatch(word):
-                rule = "one word of ASCII letters, digits and signs, not beginning with #"
+            if not _is_spellable(word):
+                rule = "one word of letters, digits and signs, not beginning with #"
                 return f"{each.name} of {recipe.name} can be {shown(word)}; in a task it must be {rule}"
-        if len({word.lower() for word in words}) < len(words):
+        if len({spelling(word) for word in words}) < len(words):
             return f"{each.name} of {recipe.name} has two values that differ in nothing but their case"
     return None
+
+
+def _is_spellable(word: str) -> bool:
+    """Whether a task text can have it as one of its words, and not as an id."""
+    return word.split() == [word] and word.isprintable() and not word.startswith("#")
