@@ -22,6 +22,9 @@ from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import alarms as view
 
+from ..kinds.lab import Bench
+from ..kinds.test_people import attended, question, refill
+
 
 class Told:
     """Outboxes that keep what is put into them, in the place of those that deliver it."""
@@ -43,9 +46,12 @@ def told() -> Told:
 @pytest.fixture
 def rig(told: Told) -> Rig:
     """A plant at work whose every step is looked at as the orchestrator has it looked at."""
+    return heard(Rig(shipped("sis_a")), told)
+
+
+def heard(rig: Rig, told: Told) -> Any:
     part = AlarmsPart([], lambda cell, task: f"page of {cell} {task}")
     part._outboxes = [told]  # type: ignore[list-item]
-    rig = Rig(shipped("sis_a"))
 
     def look() -> None:
         for message in rig.moment.sent:
@@ -78,6 +84,50 @@ def test_a_held_cell_is_told_once_with_what_to_do_and_again_when_it_is_over(rig:
     assert told.kinds == ["cell_held", "cell_cleared"]
     assert told.alarms[1]["alarm"] == held["id"] != told.alarms[1]["id"]
     assert told.alarms[1]["sentence"] == "sis_a needs nobody any more: it is in execute"
+
+
+def test_a_task_that_waits_for_boards_that_are_gone_is_told_after_a_while_and_once(
+    rig: Rig, told: Told
+) -> None:
+    rig.wait(2.0)
+    rig.power_off("ra_1")
+    rig.wait(30.0)
+    assert told.alarms == [], "no task waits"
+    rig.submit("sis_a 0B 7 #t1")
+    rig.wait(view.BLOCKED_S - 1.0)
+    assert told.alarms == []
+    rig.wait(30.0)
+    (blocked,) = told.alarms
+    assert (blocked["kind"], blocked["state"], blocked["task"]["id"]) == ("cell_blocked", "idle", "t1")
+    assert "ra1" in blocked["sentence"] and blocked["reason"] is None
+    assert view.needs_in(rig.snapshot()) == {"sis_a": "blocked"}
+    rig.power_on("ra_1")
+    rig.wait(5.0)
+    rig.operate(Verb.HOME, "ra1")
+    assert rig.wait(120.0, lambda: rig.plant.cells["sis_a"].state is CellState.EXECUTE)
+    assert told.kinds == ["cell_blocked", "cell_cleared"]
+    assert told.alarms[1]["alarm"] == blocked["id"]
+    assert view.needs_in(rig.snapshot()) == {}
+
+
+def test_a_board_that_is_back_at_once_is_no_alarm(rig: Rig, told: Told) -> None:
+    rig.submit("sis_a 0B 7 #t1")  # before any board was heard
+    assert rig.wait(300.0, lambda: rig.outcomes()["t1"].state is TaskState.DONE)
+    assert told.alarms == []
+
+
+def test_a_person_who_is_asked_is_told_with_the_question(told: Told) -> None:
+    rig = heard(Bench(attended(refill)), told)
+    rig.submit("tending refill")
+    assert rig.wait(10.0, lambda: question(rig) is not None)
+    (asked,) = told.alarms
+    assert (asked["kind"], asked["state"]) == ("person_asked", "execute")
+    assert asked["task"]["text"] == "tending refill"
+    assert asked["sentence"] == "ana is asked in tending: Is the pallet full again?"
+    assert view.needs_in(rig.snapshot()) == {"tending": "asked"}
+    assert rig.operate(Verb.ANSWER, f"ana #{question(rig)['id']} yes") is None
+    rig.wait(1.0)
+    assert told.kinds == ["person_asked", "cell_cleared"]
 
 
 def test_a_stop_is_one_hold_from_its_first_state_to_its_last(rig: Rig, told: Told) -> None:

@@ -49,6 +49,16 @@ def task(state: TaskState, reason: Reason | None = None) -> TaskChanged:
     return TaskChanged(task="t1", text="sis_a 0B 7", cell="sis_a", state=state, reason=reason)
 
 
+def test_a_cell_that_needs_somebody_says_why(snapshot: dict[str, Any], metrics: Metrics, read: Read) -> None:
+    cell = snapshot["cells"][0]
+    needs = "arboleda_cell_needs_somebody"
+    assert read(needs, cell="sis_a", why="blocked") is None, "no task waits"
+    cell["queue"] = ["t1"]
+    assert read(needs, cell="sis_a", why="blocked") == 1
+    cell |= {"state": "held"}
+    assert read(needs, cell="sis_a", why="held") == 1 and read(needs, cell="sis_a", why="blocked") is None
+
+
 def test_tasks_are_counted_by_cell_outcome_and_reason(metrics: Metrics, read: Read) -> None:
     for change in (task(TaskState.QUEUED), task(TaskState.FAILED, Reason.LINK_LOST), task(TaskState.DONE)):
         metrics.changed(change)
@@ -151,6 +161,7 @@ def told(metrics: Metrics, snapshot: dict[str, Any]) -> dict[str, set[str]]:
     for state in (TaskState.QUEUED, TaskState.RUNNING, TaskState.DONE):
         metrics.changed(task(state))
     metrics.reacted(0.001)
+    snapshot["cells"][0]["queue"] = ["t1"]
     robot = snapshot["robots"][0]
     for boot, online in ((1, True), (2, True), (2, False)):
         metrics.saw(snapshot | {"robots": [robot | {"boot_id": boot, "online": online}]})

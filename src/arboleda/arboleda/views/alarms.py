@@ -2,22 +2,59 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from arboleda.core.advice import in_words
+from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
+from arboleda.model.commands import Question
 from arboleda.model.messages import TaskChanged
 from arboleda.model.outside import plain
-from arboleda.model.sentence import NOTHING, Phrase, Sentence
+from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence
+
+from .view import standing, waited_for
 
 Alarm = dict[str, Any]
 TASK_FAILED, CELL_HELD, CELL_CLEARED = "task_failed", "cell_held", "cell_cleared"
+CELL_BLOCKED, PERSON_ASKED = "cell_blocked", "person_asked"
+BLOCKED_S = 10.0  # a cell is blocked for so long before anybody is told: a board that boots is back by then
 NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED})
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
+ASKED = Phrase("alarm.asked", "{person} is asked in {cell}: {question}")
 CLEARED = Phrase("alarm.cleared", "{cell} needs nobody any more: it is {state}")
 # The longest packet of the plant's own broker has 4096 bytes, and a letter has up to four.
 LONGEST, MOST = 300, 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Need:
+    """Why a cell needs somebody: the kind of its alarm, and what tells it from another one of that kind."""
+
+    kind: str
+    of: str
+
+
+def need_of(run: CellRun) -> Need | None:
+    """Why a cell needs somebody now; None where it does not."""
+    if run.state in NEEDS_SOMEBODY:
+        return Need(kind=CELL_HELD, of=run.state.value)
+    if (question := _question(run)) is not None:
+        return Need(kind=PERSON_ASKED, of=question.id)
+    if run.queue and run.not_ready is not None and not run.context.open_commands():
+        return Need(kind=CELL_BLOCKED, of="")
+    return None
+
+
+def needs_in(snapshot: dict[str, Any]) -> dict[str, str]:
+    """By its name each cell of a snapshot that needs somebody, and in one word why."""
+    found = {}
+    for cell in snapshot["cells"]:
+        stands = standing(cell)
+        if cell["state"] in NEEDS_SOMEBODY or (cell["queue"] and stands in ("blocked", "paused")):
+            found[cell["name"]] = stands
+    return found | dict.fromkeys(waited_for(snapshot), "asked")
 
 
 def of_task(plant: Plant, failed: TaskChanged) -> Alarm:
@@ -30,11 +67,24 @@ def of_task(plant: Plant, failed: TaskChanged) -> Alarm:
 def of_cell(plant: Plant, cell: str) -> Alarm:
     """A cell that stands and needs somebody, or needs nobody any more."""
     run = plant.cells[cell]
-    task = _task(run.task.id, run.task.order.text) if run.task else None
-    if run.state not in NEEDS_SOMEBODY:
+    need, first = need_of(run), run.task or next(iter(run.queue), None)
+    task = _task(first.id, first.order.text) if first else None
+    if need is None:
         return _alarm(plant, cell, CELL_CLEARED, task, None, CLEARED(cell=cell, state=run.state.said))
-    reason = run.trouble.reason.value if run.trouble else None
-    return _alarm(plant, cell, CELL_HELD, task, reason, run.waiting_for() or NOTHING)
+    reason = run.trouble.reason.value if run.trouble and need.kind == CELL_HELD else None
+    return _alarm(plant, cell, need.kind, task, reason, _why(run))
+
+
+def _why(run: CellRun) -> Sentence:
+    if (question := _question(run)) is None:
+        return run.waiting_for() or NOTHING
+    return ASKED(person=question.robot, cell=run.cell.name, question=OWN(text=question.text))
+
+
+def _question(run: CellRun) -> Question | None:
+    """What a person of the cell is being asked."""
+    open_ = (entry.command for entry in run.context.open_commands())
+    return next((each for each in open_ if isinstance(each, Question)), None)
 
 
 def _alarm(

@@ -264,6 +264,17 @@ def standing_said(cell: dict[str, Any]) -> str:
     return state if stands == state else f"{state}, {stands}"
 
 
+def waited_for(snapshot: dict[str, Any]) -> dict[str, list[str]]:
+    """By its name each cell of a snapshot that waits for people, and for whom."""
+    asked = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
+    cells = {cell["name"]: [device["name"] for device in cell["devices"]] for cell in snapshot["cells"]}
+    waits = {
+        cell: [name for name in names if name in asked and asked[name] in (None, cell)]
+        for cell, names in cells.items()
+    }
+    return {cell: names for cell, names in waits.items() if names}
+
+
 def _task(task: Task, now: float) -> dict[str, Any]:
     started = task.started_at
     ended = task.ended_at if task.ended_at is not None else now

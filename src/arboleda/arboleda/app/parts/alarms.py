@@ -12,7 +12,6 @@ from uuid import uuid4
 
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.adapters.webhook import NotTaken, Webhook
-from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.model.messages import TaskChanged, TaskState
 from arboleda.model.plant_model import PlantModel
@@ -36,7 +35,8 @@ class AlarmsPart:
         self._number = 0
         self._failed: list[TaskChanged] = []
         self._seen = -1
-        self._open: dict[str, tuple[str, CellState]] = {}  # by cell: the alarm that stands, and its state
+        self._open: dict[str, tuple[str, alarms.Need]] = {}  # by cell: the alarm that stands, and its cause
+        self._blocked: dict[str, float] = {}  # by cell: since when, as long as nobody was told
         self.notes = [f"Alarms: to {each}" for each in receivers]
 
     def start(self) -> None:
@@ -59,17 +59,32 @@ class AlarmsPart:
         failed, self._failed = self._failed, []
         for task in failed:
             self._tell(plant, alarms.of_task(plant, task), None)
-        if plant.version == self._seen or plant.intake.closed:  # who ends a plant knows that it stands
-            return
+        if plant.intake.closed or (plant.version == self._seen and not self._blocked):
+            return  # who ends a plant knows that it stands
         self._seen = plant.version
-        for name, run in plant.cells.items():
-            known = self._open.get(name)
-            if run.state in alarms.NEEDS_SOMEBODY and (known is None or known[1] is not run.state):
-                told = self._tell(plant, alarms.of_cell(plant, name), known and known[0])
-                self._open[name] = (told, run.state)
-            elif known is not None and run.state in alarms.AT_WORK_AGAIN:
-                del self._open[name]
-                self._tell(plant, alarms.of_cell(plant, name), known[0])
+        for name in plant.cells:
+            self._look(plant, name)
+
+    def _look(self, plant: Plant, name: str) -> None:
+        run, known = plant.cells[name], self._open.get(name)
+        need = alarms.need_of(run)
+        if known is None and self._may_pass(plant, name, need):
+            return
+        if need is not None and (known is None or known[1] != need):
+            self._open[name] = (self._tell(plant, alarms.of_cell(plant, name), known and known[0]), need)
+        elif need is None and known is not None and run.state in alarms.AT_WORK_AGAIN:
+            del self._open[name]
+            self._tell(plant, alarms.of_cell(plant, name), known[0])
+
+    def _may_pass(self, plant: Plant, name: str, need: alarms.Need | None) -> bool:
+        """Whether a cell is blocked, but not for long yet."""
+        if need is None or need.kind != alarms.CELL_BLOCKED:
+            self._blocked.pop(name, None)
+            return False
+        if plant.now - self._blocked.setdefault(name, plant.now) < alarms.BLOCKED_S:
+            return True
+        del self._blocked[name]
+        return False
 
     def _tell(self, plant: Plant, alarm: alarms.Alarm, first: str | None) -> str:
         """Have it delivered; the id of what stands with it: its own, or that of the `first` of a hold."""

@@ -11,6 +11,7 @@ from prometheus_client.core import GaugeMetricFamily, InfoMetricFamily, Metric
 from arboleda import __version__
 from arboleda.adapters import clock
 from arboleda.model.messages import ENDED, TaskChanged, TaskState
+from arboleda.views.alarms import needs_in
 
 WORK_S = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1800, 3600)
 REACTION_S = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
@@ -115,6 +116,12 @@ class Metrics:
             "1 for the state that a cell is in.",
             ("cell", "state"),
             {(cell["name"], cell["state"]): 1 for cell in cells},
+        )
+        yield _rows(
+            "arboleda_cell_needs_somebody",
+            "1 for why a cell needs somebody: held, aborted, stopped, blocked or paused with tasks, asked.",
+            ("cell", "why"),
+            dict.fromkeys(needs_in(snapshot).items(), 1),
         )
         yield _rows(
             "arboleda_cell_queue",

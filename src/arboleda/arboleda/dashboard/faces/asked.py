@@ -24,17 +24,6 @@ def face(moment: Moment) -> Face:
     return found
 
 
-def waited_for(snapshot: Row) -> dict[str, list[str]]:
-    """By its name each cell that waits for people, and for whom."""
-    asked = {robot["name"]: robot["holder"] for robot in snapshot["robots"] if robot["question"] is not None}
-    cells = {cell["name"]: [device["name"] for device in cell["devices"]] for cell in snapshot["cells"]}
-    waits = {
-        cell: [name for name in names if name in asked and asked[name] in (None, cell)]
-        for cell, names in cells.items()
-    }
-    return {cell: names for cell, names in waits.items() if names}
-
-
 def _of(words: Words, person: str, question: Row | None) -> Face:
     if question is None:
         return {

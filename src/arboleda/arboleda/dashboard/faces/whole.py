@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from arboleda.views.view import standing
+from arboleda.views.view import standing, waited_for
 
 from . import Face, asked, cells, links, panel, stop, tasks, timeline
 from .moment import Moment
@@ -37,7 +37,7 @@ def _sum(moment: Moment) -> list[str]:
     there = [state for state in WORST if state in states]
     counts = [f"{moment.words.of('cell_state', state)}: {states.count(state)}" for state in there[::-1]]
     ending = [moment.words("page.ending")] if moment.snapshot["ending"] else []
-    people = [name for names in asked.waited_for(moment.snapshot).values() for name in names]
+    people = [name for names in waited_for(moment.snapshot).values() for name in names]
     waits = [_waits(moment, people)] if people else []
     return [" · ".join([*counts, *waits, *ending]), there[0] if there else ""]
 
@@ -49,14 +49,14 @@ def _waits(moment: Moment, people: list[str]) -> str:
 def _needs(moment: Moment) -> list[str]:
     """The names of the cells that wait for somebody, for the sound."""
     bad = {cell["name"] for cell in moment.snapshot["cells"] if standing(cell) not in WELL}
-    return [" ".join(sorted(bad | asked.waited_for(moment.snapshot).keys())), ""]
+    return [" ".join(sorted(bad | waited_for(moment.snapshot).keys())), ""]
 
 
 def _title(moment: Moment) -> list[str]:
     """What a browser's tab says: the plant, and before it the cells that wait for somebody."""
     states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
     bad = {name: moment.words.of("cell_state", state) for name, state in states.items() if state not in WELL}
-    waits = {name: _waits(moment, people) for name, people in asked.waited_for(moment.snapshot).items()}
+    waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}
     said = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
     plant = moment.snapshot["plant"]
     if bad:
