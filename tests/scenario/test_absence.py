@@ -104,17 +104,24 @@ def test_a_recovery_is_held_too_and_goes_on_only_when_told(rig: Rig) -> None:
     assert rig.plant.cells["sis_a"].state is CellState.HELD and motions(rig) == []
 
 
-def test_a_task_that_waits_in_an_idle_cell_does_not_start_by_itself(rig: Rig) -> None:
-    rig.power_off("ra_1")
-    rig.wait(2.0)
-    rig.submit("sis_a 0B 4")
-    rig.stall(PLANT, 20.0)
+def test_a_task_that_waits_in_a_cell_with_nothing_under_way_begins_by_itself(rig: Rig) -> None:
+    rig.stop_broker()
     rig.wait(5.0)
-    rig.power_on("ra_1")
-    del rig.sent[:]
-    rig.wait(60.0)
-    assert motions(rig) == []
-    assert rig.plant.cells["sis_a"].queue_paused
+    task = rig.submit("sis_a 0B 4").task
+    away(rig, 20.0, PLANT)
+    cell = rig.plant.cells["sis_a"]
+    assert (cell.state, len(cell.queue), cell.queue_paused) == (CellState.IDLE, 1, False)
+    rig.start_broker()
+    assert rig.wait(120.0, until=lambda: rig.outcomes()[task].state.value == "done")
+
+
+def test_a_cell_at_work_holds_while_another_one_goes_on(rig: Rig) -> None:
+    rig.submit("sis_b 0B 4")
+    rig.wait_for("sis_b", "main/drive path 0B")
+    away(rig, 20.0, PLANT)
+    task = rig.submit("sis_a 0B 4").task
+    assert rig.wait(90.0, until=lambda: rig.outcomes()[task].state.value == "done")
+    assert rig.plant.cells["sis_b"].state is CellState.HELD
 
 
 def test_a_cell_with_nothing_to_do_takes_a_task_at_once(rig: Rig) -> None:

@@ -18,6 +18,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
+from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 from arboleda.views import alarms as view
@@ -128,6 +129,23 @@ def test_a_person_who_is_asked_is_told_with_the_question(told: Told) -> None:
     assert rig.operate(Verb.ANSWER, f"ana #{question(rig)['id']} yes") is None
     rig.wait(1.0)
     assert told.kinds == ["person_asked", "cell_cleared"]
+
+
+@pytest.mark.parametrize("at_work", [True, False])
+def test_that_the_plant_was_away_is_told_whether_it_held_a_cell_or_not(
+    rig: Rig, told: Told, at_work: bool
+) -> None:
+    rig.wait(2.0)
+    if at_work:
+        rig.submit("sis_a 0B 7 #t1")
+        rig.wait_for("sis_a", "main/drive path 0B")
+    rig.stall(PLANT, 1.8)
+    rig.wait(5.0)
+    away = next(alarm for alarm in told.alarms if alarm["kind"] == "plant_away")
+    what = "what was at work is held: sis_a" if at_work else "no cell was at work, so that all go on"
+    assert "the plant was away for 1." in away["sentence"] and away["sentence"].endswith(what)
+    assert (away["cell"], away["state"], away["advice"]) == ("", None, [])
+    assert told.kinds == ["plant_away", *(["cell_held"] if at_work else [])]
 
 
 def test_a_stop_is_one_hold_from_its_first_state_to_its_last(rig: Rig, told: Told) -> None:

@@ -356,12 +356,11 @@ def test_what_an_operator_does_is_shown_anew(hand: Any) -> None:
     assert plant.plant.version != before
 
 
-def test_a_queue_that_is_paused_after_an_absence_is_shown_anew(hand: Any) -> None:
-    plant = hand(Evidence.IDS)
-    plant.submit("sis_a 0B 7")  # waits: nothing was heard yet
+def test_a_cell_that_is_held_after_an_absence_is_shown_anew(hand: Any) -> None:
+    plant, _ = driven_to_the_arm(hand, Evidence.IDS)
     before = plant.plant.version
     plant.plant.step(plant.now + 60.0, [])
-    assert view.snapshot(plant.plant)["cells"][0]["paused"]
+    assert view.snapshot(plant.plant)["cells"][0]["state"] == "held"
     assert plant.plant.version != before
 
 

@@ -239,10 +239,9 @@ class CellRun:
         self._hold(Cause.HOLD)
 
     def hold_after_absence(self, failure: Failure) -> None:
-        """The plant was away: what was at work is held, and nothing that waits starts by itself."""
+        """The plant was away: what was at work is held; a cell with nothing under way goes on."""
         if self.state is CellState.EXECUTE:
             self._hold(Cause.AWAY, failure)
-        self.queue_paused = self.queue_paused or bool(self.queue)
         self.context.cancel_motions()
 
     def _hold(self, cause: Cause, trouble: Failure | None = None) -> None:

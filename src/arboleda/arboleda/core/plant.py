@@ -347,8 +347,8 @@ class Plant:
     def _come_back(self, away_s: float) -> None:
         """Hold what was at work when the plant fell silent.
 
-        Robots have stopped themselves meanwhile, and people may have gone near them. So nothing moves
-        before an operator says so, and the time away does not pass for the trees.
+        Robots have stopped themselves meanwhile, and people may have gone near them. So nothing that was
+        under way moves before an operator says so, and the time away does not pass for the trees.
         """
         left, self.now = self.now, self.now + away_s
         failure = Failure(reason=Reason.LINK_LOST, sentence=AWAY(seconds=away_s))

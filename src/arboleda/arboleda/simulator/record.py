@@ -259,7 +259,11 @@ class Record:
         self._booted.clear()
         self.away = not self.born and plant.now - self.stepped_at > plant.away_after_s
         if self.away:
-            self.unattended = {cell.name: self._has_work(cell) for cell in self._cells}
+            self.unattended = {
+                cell.name: self._has_work(cell)
+                for cell in self._cells
+                if cell.tree is not None or cell.queued == 0  # with nothing under way, what waits begins
+            }
             self._since_start = False
         self.proofs.clear_news()
         self.works.clear_news()

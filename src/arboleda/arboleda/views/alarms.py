@@ -8,7 +8,7 @@ from typing import Any
 from arboleda.core.advice import in_words
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.plant import Plant
+from arboleda.core.plant import AWAY, Plant
 from arboleda.model.commands import Question
 from arboleda.model.messages import TaskChanged
 from arboleda.model.outside import plain
@@ -18,11 +18,13 @@ from .view import standing, waited_for
 
 Alarm = dict[str, Any]
 TASK_FAILED, CELL_HELD, CELL_CLEARED = "task_failed", "cell_held", "cell_cleared"
-CELL_BLOCKED, PERSON_ASKED = "cell_blocked", "person_asked"
+CELL_BLOCKED, PERSON_ASKED, PLANT_AWAY = "cell_blocked", "person_asked", "plant_away"
 BLOCKED_S = 10.0  # a cell is blocked for so long before anybody is told: a board that boots is back by then
 NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED})
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
 ASKED = Phrase("alarm.asked", "{person} is asked in {cell}: {question}")
+AWAY_HELD = Phrase("alarm.away", "{why}; what was at work is held: {cells}")
+AWAY_AT_REST = Phrase("alarm.away_at_rest", "{why}; no cell was at work, so that all go on")
 CLEARED = Phrase("alarm.cleared", "{cell} needs nobody any more: it is {state}")
 # The longest packet of the plant's own broker has 4096 bytes, and a letter has up to four.
 LONGEST, MOST = 300, 6
@@ -62,6 +64,14 @@ def of_task(plant: Plant, failed: TaskChanged) -> Alarm:
     reason = failed.reason.value if failed.reason else None
     task = _task(failed.task, failed.text)
     return _alarm(plant, failed.cell or "", TASK_FAILED, task, reason, failed.sentence)
+
+
+def of_absence(plant: Plant, away_s: float) -> Alarm:
+    """That the plant did nothing for so long, and which cells are held by that."""
+    why = AWAY(seconds=away_s)
+    held = [name for name, run in plant.cells.items() if run.trouble and run.trouble.sentence == why]
+    said = AWAY_HELD(why=why, cells=", ".join(held)) if held else AWAY_AT_REST(why=why)
+    return _alarm(plant, "", PLANT_AWAY, None, None, said)
 
 
 def of_cell(plant: Plant, cell: str) -> Alarm:

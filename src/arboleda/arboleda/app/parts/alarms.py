@@ -35,6 +35,7 @@ class AlarmsPart:
         self._number = 0
         self._failed: list[TaskChanged] = []
         self._seen = -1
+        self._stepped_at: float | None = None
         self._open: dict[str, tuple[str, alarms.Need]] = {}  # by cell: the alarm that stands, and its cause
         self._blocked: dict[str, float] = {}  # by cell: since when, as long as nobody was told
         self.notes = [f"Alarms: to {each}" for each in receivers]
@@ -56,6 +57,9 @@ class AlarmsPart:
 
     def stepped(self, plant: Plant) -> None:
         """Tell what came of a step, after its commands have left."""
+        before, self._stepped_at = self._stepped_at, plant.now
+        if before is not None and plant.now - before > plant.away_after_s:
+            self._tell(plant, alarms.of_absence(plant, plant.now - before), None)
         failed, self._failed = self._failed, []
         for task in failed:
             self._tell(plant, alarms.of_task(plant, task), None)

@@ -230,7 +230,7 @@ def every_request_is_answered(look: Look) -> Iterable[str]:
 @invariant(When.COMMANDED)
 def nothing_moves_after_an_absence(look: Look) -> Iterator[str]:
     """After the plant was away for longer than a robot may be silent, no robot is told to move before an
-    operator gets its cell going, or somebody brings a task to a cell that had nothing to do.
+    operator gets its cell going, or where nothing was under way in it, for a task.
     """
     for command in look.record.unasked:
         yield f"the plant was away, and by itself sends {command}"

@@ -85,7 +85,7 @@ def _found(look: Look) -> list[Asked]:
 
 def _held_after_absence(cell: Asked) -> Asked:
     worked = cell.state is S.EXECUTE
-    state, paused = S.HOLDING if worked else cell.state, cell.paused or worked or cell.queued > 0
+    state, paused = S.HOLDING if worked else cell.state, cell.paused or worked
     return replace(cell, state=state, paused=paused, troubled=cell.troubled or worked)
 
 
