@@ -7,13 +7,14 @@ from dataclasses import replace
 import pytest
 
 from arboleda.kinds.arm import MoveJoints, SetEffector
-from arboleda.kinds.mobile import FollowPath
+from arboleda.kinds.mobile import FollowPath, Mobile
 from arboleda.model.commands import Command, Home, Stop, StopMode
-from arboleda.model.plant_model import ForeignCommands, MotionState
+from arboleda.model.plant_model import Evidence, ForeignCommands, MotionState
 from arboleda.wire.bridge import PLANT_GONE_S, UNSURE_S, Bridge
 from arboleda.wire.hop import FromPlant, without_id
 from arboleda.wire.payloads import StopGoal
 from arboleda.wire.rejections import ForeignCommand, Rejection
+from arboleda.wire.transport import Publication
 
 from .conftest import EPOCH, Bench, link
 
@@ -213,3 +214,36 @@ def test_numbers_of_an_earlier_bridge_are_nobody_elses(bench) -> None:
     assert news(list(bench.tell(ack_epoch=EPOCH + 5, ack=9))) == []
     bench.order(replace(GRIP, id="7-1"))
     assert news(list(bench.tell())) == []
+
+
+@pytest.mark.parametrize("evidence", [Evidence.JOINTS, Evidence.STATE])
+def test_a_path_that_does_not_begin_where_its_robot_stands_is_said_once(evidence: Evidence) -> None:
+    """A board without ids passes it over and tells nobody."""
+    bench = Bench(evidence=evidence)
+    bench.connect()
+    mobile = bench.model.robots["rm_sis_a"]
+    assert isinstance(mobile, Mobile)
+    bench.tell(mobile.mqtt, node=4)
+    near = sorted((4, *mobile.grid.neighbours(4)))
+    far = next(node for node in range(mobile.grid.size) if node not in near)
+    path = FollowPath(id="", robot="rm_sis_a", nodes=(far,))
+    first = others(bench, path, "/original")
+    (sentence,) = news(first)
+    assert sentence.startswith("rm_sis_a: its board passes over path_cmd: ")
+    assert sentence.endswith(
+        f"it stands at node 4, where a path may begin at one of {', '.join(map(str, near))}"
+    )
+    assert any(isinstance(each, Publication) for each in first), "it is sent all the same"
+    assert [each.reason for each in first if isinstance(each, Rejection)] == ["limite"]
+    assert bench.bridge.counters["rm_sis_a"].refused == 1
+    bench.tell(mobile.mqtt, node=4)
+    assert news(others(bench, path, "/original")) == []
+
+
+@pytest.mark.parametrize("begins", [4, 3])
+def test_a_path_that_begins_where_its_robot_stands_or_next_to_it_is_no_news(begins: int) -> None:
+    bench = Bench(evidence=Evidence.JOINTS)
+    bench.connect()
+    mobile = bench.model.robots["rm_sis_a"]
+    bench.tell(mobile.mqtt, node=4)
+    assert news(others(bench, FollowPath(id="", robot="rm_sis_a", nodes=(begins,)))) == []

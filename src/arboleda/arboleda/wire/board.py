@@ -69,6 +69,7 @@ class Board:
         self._axes = self._form.joints
         self._motion: OpenMotion | None = None
         self._latched = False
+        self._warned: Sentence | None = None  # of the last command, that its board will not do it
 
     @property
     def in_motion(self) -> bool:
@@ -94,7 +95,31 @@ class Board:
         if isinstance(command, Stop) and command.mode is not StopMode.HALT:
             self._latched = command.mode is StopMode.LATCH
         word = self._refusal(command)
-        return self.refuse(at, command, word, sender) if word else self._send(at, command, sender)
+        if word:
+            return self.refuse(at, command, word, sender)
+        return [*self._passed_over(at, command), *self._send(at, command, sender)]
+
+    def _passed_over(self, at: float, command: Command) -> list[Message]:
+        """What is said, once, of a command that a board without ids will not do, and tells nobody."""
+        way, last = self._form.way(type(command)), self._last
+        if (
+            way is None
+            or last is None
+            or self.robot.evidence is Evidence.IDS
+            or not isinstance(command, Work)
+        ):
+            return []
+        rests = self._motion is None and last.state is MotionState.STOPPED
+        why = way.passed_over(self.robot, command, last) if rests else None
+        known, self._warned = self._warned, why
+        if why is None or why == known:
+            return []
+        sentence = rejections.passed_over(self.robot, command, why)
+        self._count(sentence)
+        name, topic = self.robot.name, shown(command)
+        return [
+            Rejection(at=at, robot=name, command=topic, id=command.id, reason="limite", sentence=sentence)
+        ]
 
     def refuse(self, at: float, command: Command, word: str, sender: str = "") -> list[Message]:
         """Do not send it, and say so with the word for the reason."""

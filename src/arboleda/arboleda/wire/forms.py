@@ -14,6 +14,7 @@ from arboleda.model.by_class import nearest
 from arboleda.model.commands import Command, Home, Stop, StopMode
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts
+from arboleda.model.messages import Report
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import Phrase, Sentence
@@ -26,6 +27,7 @@ FLOAT32_SLACK = 1e-6  # a goal at its limit comes back from a Float32MultiArray 
 ON_THE_GRID = Phrase(
     "why.on_the_grid", "a path begins at the robot's node or next to it, and follows the grid"
 )
+ELSEWHERE = Phrase("why.elsewhere", "it stands at node {node}, where a path may begin at one of {expected}")
 NODES = Phrase("why.nodes", "its nodes are 0 to {last}")
 BEYOND = Phrase("why.beyond", "number {number} is {value:.4g}; allowed: {lower:.4g} to {upper:.4g} {unit}")
 UNDONE = Phrase("why.undone", "it has not ended its last work, or is in fault")
@@ -39,6 +41,8 @@ class Way:
     goal: type[Goal]
     body: Callable[[Any, Any], dict[str, object]]
     refusal: Callable[[Any, Any], str | None] = lambda robot, command: None
+    # What a board that tells of no refusal will not do, by where its robot rests.
+    passed_over: Callable[[Any, Any, Report], Sentence | None] = lambda robot, command, said: None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +99,15 @@ def _check_path(mobile: Mobile, command: FollowPath) -> str | None:
         return "formato"
     inside = all(0 <= node < mobile.grid.size for node in command.nodes)
     return None if inside else "limite"
+
+
+def _begins_elsewhere(mobile: Mobile, command: FollowPath, said: Report) -> Sentence | None:
+    if said.node is None:
+        return None
+    expected = sorted((said.node, *mobile.grid.neighbours(said.node)))
+    if command.nodes[0] in expected:
+        return None
+    return ELSEWHERE(node=said.node, expected=", ".join(map(str, expected)))
 
 
 def _check_order(device: Device, command: Told) -> str | None:
@@ -158,6 +171,7 @@ OF_MOBILES: dict[type[Command], Way] = {
         goal=PathGoal,
         body=lambda robot, command: {"nodes": command.nodes},
         refusal=_check_path,
+        passed_over=_begins_elsewhere,
     ),
     Stop: STOP,
     Home: HOME,

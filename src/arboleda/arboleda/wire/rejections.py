@@ -8,13 +8,14 @@ from arboleda.model.commands import Command
 from arboleda.model.plant_model import Robot
 from arboleda.model.sentence import OWN, Phrase, Sentence
 
-from .forms import BEYOND, NODES, ON_THE_GRID, UNDONE, form_of
+from .forms import BEYOND, ELSEWHERE, NODES, ON_THE_GRID, UNDONE, form_of
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
 SOMEBODY = Phrase("foreign.somebody", "another node")
 REJECTED = Phrase("rejection", "{robot}: {command} was refused ({word}): {why}")
 REJECTED_OF = Phrase("rejection_of", "{robot}: {command} of {sender} was refused ({word}): {why}")
+PASSED_OVER = Phrase("rejection.passed_over", "{robot}: its board passes over {command}: {why}")
 OBEYED = Phrase("foreign.obeyed", "{robot}: {command} of {sender} was obeyed")
 OVERHEARD = Phrase("foreign.overheard", "{robot}: {command} of {sender} was sent to it")
 TAKEN = Phrase(
@@ -74,6 +75,11 @@ def refused(robot: Robot, command: Command, word: str, sender: str, *, by_board:
     return REJECTED(robot=robot.name, command=shown(command), word=word, why=why)
 
 
+def passed_over(robot: Robot, command: Command, why: Sentence) -> Sentence:
+    """What is said of a command that a board does not do, and tells nobody."""
+    return PASSED_OVER(robot=robot.name, command=shown(command), why=why)
+
+
 def unreadable(robot: Robot, topic: str, why: Sentence) -> Sentence:
     """What is said of a message on a robot's topic that is no command."""
     return REJECTED(robot=robot.name, command=topic, word="formato", why=why)
@@ -102,7 +108,21 @@ def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> Senten
 SAID_OF_OTHERS = {
     phrase.key: phrase
     for phrase in (
-        *(SOMEBODY, REJECTED, REJECTED_OF, OBEYED, OVERHEARD, TAKEN, ON_THE_GRID, NODES, BEYOND, UNDONE, OWN),
+        *(
+            SOMEBODY,
+            REJECTED,
+            REJECTED_OF,
+            OBEYED,
+            OVERHEARD,
+            TAKEN,
+            PASSED_OVER,
+            ELSEWHERE,
+            ON_THE_GRID,
+            NODES,
+            BEYOND,
+            UNDONE,
+            OWN,
+        ),
         *WHY.values(),
     )
 }
