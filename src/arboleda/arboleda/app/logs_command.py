@@ -72,7 +72,7 @@ def _print(unix_ns: int, line: str) -> None:
 
 
 def _starts(last: Path) -> list[Path]:
-    """A file of each start before the last one, the oldest first; what cannot be read is said and left out."""
+    """A file of each start before the last one, oldest first; what cannot be read is said and left out."""
     from arboleda.recorder import files, reader
 
     first_of = {part.epoch: part.path for part in reversed(files.parts_in(last.parent))}
