@@ -276,10 +276,13 @@ def test_a_part_that_would_fall_is_asked_about(told: Callable[..., Any]) -> None
 
 def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Callable[..., Any]) -> None:
     rig = told()
+    assert rig.face()["text/sis_a.failure"] == ["", ""]  # none in the record yet
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "drive path 0B")
     rig.crash("rm_sis_a")
     rig.wait(10.0)
+    assert rig.face()["text/sis_a.failure"] == ["Last failure in the record", ""]
+    assert rig.face()["text/sis_b.failure"] == ["", ""]
     said = 'Failed in step "drive path 0B": rm_sis_a: the link was lost while driving path 0B'
     assert rig.face()["text/sis_a.cause"] == [said, "failed"]
     for verb in (Verb.STOP, Verb.CLEAR, Verb.RESET):

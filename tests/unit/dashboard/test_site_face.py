@@ -58,6 +58,13 @@ def test_of_a_silent_plant_nothing_old_is_shown_and_it_can_still_be_told_to_stop
     assert row["acts"]
 
 
+def test_of_a_silent_plant_nothing_is_counted() -> None:
+    seen = plant("a", cell(), silent=SILENT, oee=[figures(None, 0.0), figures(0.5, 10.0, 3)])
+    told = face([seen], words("en"))
+    assert told["row/plants/a"]["texts"][3:] == ["", "", "-"]
+    assert told["text/sum"] == ["plants: 1 · no answer: 1", "offline"]
+
+
 def test_an_address_that_is_none_of_the_web_is_no_link() -> None:
     seen = plant("a", cell(), url="javascript:alert(1)")
     assert face([seen], words("en"))["row/plants/a"]["link"] is None

@@ -69,3 +69,14 @@ def test_it_survives_as_data() -> None:
 def test_what_is_no_data_of_a_sentence_is_refused(data: object) -> None:
     with pytest.raises(ValueError, match="is no sentence"):
         from_data(data, {"late": LATE})
+
+
+def test_a_value_that_says_nothing_leaves_no_parentheses() -> None:
+    held = Phrase("held", "{cell} is held ({why}); {next}")
+    assert str(held(cell="sis_a", why="", next="retry")) == "sis_a is held; retry"
+    assert str(held(cell="sis_a", why=NOTHING, next="retry")) == "sis_a is held; retry"
+    assert str(held(cell="f ()", why="link", next="retry")) == "f () is held (link); retry"
+    assert (
+        held(cell="c", why="", next="n").told(lambda _: "{cell}: detenida ({why}); {next}")
+        == "c: detenida; n"
+    )

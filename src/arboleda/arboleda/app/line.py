@@ -11,7 +11,7 @@ from arboleda.adapters.web.asked import PLANT
 from arboleda.adapters.web.limits import BEAT_S
 from arboleda.adapters.web.plant_side import COMMAND_LINE
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
-from arboleda.model.outside import plain
+from arboleda.model.outside import plain, said_by
 
 from .places import Place
 
@@ -180,10 +180,10 @@ class FarLine(Line):
         if isinstance(error, httpx.ConnectTimeout):
             return f", which cannot be reached at {url} (no connection in {FAR_CONNECT_S:g} s)."
         if isinstance(error, httpx.ConnectError):
-            return f", which cannot be reached at {url} ({plain(str(error), LONGEST)})."
+            return f", which cannot be reached at {url} ({said_by(error, LONGEST)})."
         if isinstance(error, httpx.TimeoutException):
             return f", which gave no answer at {url} in {TIMEOUT_S:g} s."
-        return f", and what answers at {url} is no plant or broke off ({plain(str(error), LONGEST)})."
+        return f", and what answers at {url} is no plant or broke off ({said_by(error, LONGEST)})."
 
 
 def _answer(answer: httpx.Response) -> Answer:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from typing import Any
 
 from arboleda.adapters.task_rows import TaskRow
-from arboleda.views.chronicle import Chronicle
+from arboleda.views.chronicle import Chronicle, is_failure
 
 from .faces import Face, task, whole
 from .faces.moment import Moment
@@ -23,6 +24,8 @@ class Story:
         self.chronicle = Chronicle(past_acts)
         self.trees: dict[str, TreeMemory] = {cell["name"]: TreeMemory() for cell in layout["cells"]}
         self.ended: dict[str, EndedTree] = {}  # by task; of those that the snapshot still shows
+        self._failed: set[str] = set()  # cells that have failed, also where that event is forgotten
+        self._told = 0  # the number of the last event that was looked at
         self._offset_s: float | None = None  # unix s less the plant's clock, so that shown times stay put
         self._snapshot: Row | None = None
 
@@ -38,7 +41,13 @@ class Story:
         shown = {task["id"] for task in snapshot["tasks"]}
         self.ended = {id: tree for id, tree in self.ended.items() if id in shown}
         self.chronicle.see(snapshot, at)
+        self._note_failures()
         self._snapshot = snapshot
+
+    def _note_failures(self) -> None:
+        newest = [*takewhile(lambda event: event["number"] > self._told, reversed(self.chronicle.events))]
+        self._told += len(newest)
+        self._failed |= {event["cell"] for event in newest if is_failure(event)}
 
     def face(self, language: str, links: Row) -> Face:
         """What a page in this language shows now; empty before the first snapshot."""
@@ -64,4 +73,5 @@ class Story:
             events=self.chronicle.events,
             words=words(language),
             unix_s=self._snapshot["at"] + self._offset_s,
+            failed=self._failed,
         )

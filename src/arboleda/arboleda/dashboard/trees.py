@@ -27,7 +27,8 @@ def build(layout: Layout, words: Words) -> None:
                     tag("h2", words("cells.changes", cell=cell["name"]))
                     if layout.get("recorded"):
                         there = {"tab": "cells", "cell": cell["name"], "task": None, "at": "failure"}
-                        way(words("record.link"), there, classes="to-record")
+                        failure = f"{cell['name']}.failure"  # empty where none is in the record
+                        way(None, there, classes="to-record", data_live=failure)
                     rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
 
 

@@ -38,6 +38,15 @@ def quoted(value: object, most: int = 40) -> str:
     return plain(ascii(value), most)
 
 
+def said_by(error: BaseException, most: int = LINE) -> str:
+    """What an error says, on one line; its name where it says nothing.
+
+    >>> said_by(ValueError("no port")), said_by(TimeoutError())
+    ('no port', 'TimeoutError')
+    """
+    return plain(str(error).strip(), most) or type(error).__name__
+
+
 def among(word: str, known: Iterable[str]) -> str:
     """What there is instead of a wrong word, and the nearest of it.
 

@@ -51,9 +51,15 @@ class Sentence:
         return self.phrase.key
 
     def told(self, template: Callable[[Phrase], str]) -> str:
-        """It in the language whose text for a phrase, with the same slots, is `template`."""
+        """It in the language whose text for a phrase, with the same slots, is `template`.
+
+        Of a value that says nothing its parentheses say nothing either.
+        """
         words = {slot: _told(value, template) for slot, value in self.values.items()}
-        return template(self.phrase).format(**words)
+        text = template(self.phrase)
+        for slot in [slot for slot, word in words.items() if word == ""]:
+            text = text.replace(f" ({{{slot}}})", "")
+        return text.format(**words)
 
     def parts(self) -> Iterator[Sentence]:
         """It, and every sentence inside it."""

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Container, Iterable, Iterator
 from typing import Any
 
+from arboleda.core.cell import BY_OPERATOR
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
 from .view import devices_once
@@ -104,3 +105,11 @@ def _states(snapshot: Row, known: Container[tuple[str, str]]) -> Iterator[Told]:
         yield task["cell"], "task", task["id"], task["state"], sentence
     for zone in snapshot["zones"]:
         yield None, "zone", zone["zone"], zone["state"], OWN(text=zone["robot"] or "")
+
+
+def is_failure(event: Event) -> bool:
+    """Whether a task failed, or a cell was held though no operator wanted it."""
+    if event["kind"] == "task":
+        return bool(event["what"] == "failed")
+    held = event["kind"] == "cell" and event["what"] == "held"
+    return held and all(part.key != BY_OPERATOR.key for part in event["sentence"].parts())

@@ -9,7 +9,7 @@ import httpx
 
 from arboleda.adapters.web.plant_side import COMMAND_LINE
 from arboleda.model.errors import ArboledaError
-from arboleda.model.outside import plain
+from arboleda.model.outside import plain, said_by
 from arboleda.model.sentence import Phrase
 
 from ..places import Place
@@ -69,7 +69,7 @@ class Reach:
         except (asyncio.TimeoutError, httpx.TimeoutException) as error:
             raise Silent(NO_ANSWER(seconds=ANSWER_S)) from error
         except httpx.HTTPError as error:
-            raise Silent(NOT_REACHED(url=url, error=plain(str(error))[:LONGEST])) from error
+            raise Silent(NOT_REACHED(url=url, error=said_by(error)[:LONGEST])) from error
         except ValueError as error:
             raise Silent(NO_PLANT(url=url)) from error
         if answer.is_success:

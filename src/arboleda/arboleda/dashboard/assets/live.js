@@ -63,9 +63,14 @@ export function drawList(list) {
 
 function keepingFocus(change) {
   const focused = document.activeElement;
+  const list = focused?.closest("[data-rows]");
   change();
-  if (focused?.isConnected) focused.focus({ preventScroll: true });
+  const next = focused?.isConnected ? focused : list && nearest(list);
+  next?.focus({ preventScroll: true });
 }
+
+// Where a button was pressed and has gone, the keyboard is at what is offered now in its place, else at its card.
+const nearest = (list) => list.querySelector("button:enabled") ?? list.closest("article")?.querySelector("[data-choose]");
 
 // Only what has changed is drawn anew: a button that somebody is pressing must not go away under the finger.
 function drawRow(list, id, row, columns) {

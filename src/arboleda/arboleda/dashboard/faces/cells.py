@@ -48,6 +48,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.state": [words.of("cell_state", stands), stands],
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         f"text/{name}.report": _report(words, cell, task),
+        f"text/{name}.failure": [words("record.link") if name in moment.failed else "", ""],
         **_ways(words, cell),
         f"text/{name}.task": [_task_line(moment, task), task["state"] if task else "none"],
         f"text/{name}.step": [words.say(cell["step"]) if cell["step"] else "", stands],

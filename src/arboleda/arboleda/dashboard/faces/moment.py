@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,7 @@ class Moment:
     events: Sequence[dict[str, Any]]
     words: Words
     unix_s: float
+    failed: Container[str] = ()  # cells of which a failure is in the record
 
     def unix(self, plant_s: float) -> float:
         """A time of the plant's clock as unix s."""

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from typing import Any
 
-from arboleda.core.cell import BY_OPERATOR
 from arboleda.recorder.followed import followed
 from arboleda.recorder.views import Views
+from arboleda.views.chronicle import is_failure
 
 from ..faces import Face, task, whole
 from ..faces.moment import Moment
@@ -107,6 +107,7 @@ class Past:
             events=self._events[max(0, upto - SHOWN_EVENTS) : upto],
             words=words(language),
             unix_s=at_ns / 1e9,
+            failed={each["cell"] for each in self._events if is_failure(each)},
         )
 
     def _task(self, then: Moment, at_ns: int, id: str) -> Face:
@@ -116,11 +117,3 @@ class Past:
         """The moments at which something happened."""
         mine = (each for each in self._events if cell in (None, each["cell"]))
         return sorted({moment_of(each["at"]) for each in mine if not only_failures or is_failure(each)})
-
-
-def is_failure(event: Row) -> bool:
-    """Whether a task failed, or a cell was held though no operator wanted it."""
-    if event["kind"] == "task":
-        return bool(event["what"] == "failed")
-    held = event["kind"] == "cell" and event["what"] == "held"
-    return held and all(part.key != BY_OPERATOR.key for part in event["sentence"].parts())

@@ -55,8 +55,8 @@ def _row(plant: PlantSeen, words: Words) -> Row:
         words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"])
         if _is_heard(plant)
         else "",
-        words("oee.counted", **_ended([plant])) if plant.oee else "",
-        _percent(whole_oee(plant.oee)),
+        words("oee.counted", **_ended([plant])) if plant.oee and _is_heard(plant) else "",
+        _percent(whole_oee(plant.oee if _is_heard(plant) else ())),
     ]
     return {
         "state": state,
@@ -112,13 +112,14 @@ def _sum(plants: Sequence[PlantSeen], words: Words) -> list[str]:
     there = [state for state in ORDER if state in states]
     counts = [f"{_said(state, words)}: {states[state]}" for state in there[::-1]]
     tasks = sum((_tasks(plant) for plant in plants), Counter[str]())
-    figures = [
-        words("site.plants", count=len(plants)),
-        *counts,
-        words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"]),
-        words("oee.counted", **_ended(plants)),
-        f"OEE {_percent(whole_oee(row for plant in plants for row in plant.oee))}",
-    ]
+    heard = [plant for plant in plants if _is_heard(plant)]
+    figures = [words("site.plants", count=len(plants)), *counts]
+    if heard:
+        figures += [
+            words("site.open_tasks", running=tasks["running"], waiting=tasks["queued"]),
+            words("oee.counted", **_ended(heard)),
+            f"OEE {_percent(whole_oee(row for plant in heard for row in plant.oee))}",
+        ]
     return [" · ".join(figures), there[0] if there else ""]
 
 
