@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from arboleda.dashboard.wording import words
 from arboleda.model.messages import Reason, Report
 from arboleda.model.plant_model import MotionState
 from arboleda.recorder.cause import BY_KEY, BY_REASON, PHRASES, Evidence, Sent, cause_of
@@ -128,3 +129,21 @@ def test_a_command_of_an_earlier_start_is_somebody_elses() -> None:
         reader.take(again, step.unix_ns, step.now, step.events, again.step(step.now, step.events))
     cause = reader.incident.cause
     assert (cause.kind, cause.robot) == ("foreign", "rm_sis_a")
+
+
+@pytest.mark.parametrize(
+    ("word", "spanish"),
+    [
+        ("stop ra1", "la terminó un operador, al dar el paro a ra1"),
+        ("stop", "la terminó un operador, al dar el paro a la planta"),
+        ("cancel sis_a", "la terminó un operador, al cancelar sis_a"),
+    ],
+)
+def test_what_an_operator_did_is_said_in_both_languages(word: str, spanish: str) -> None:
+    acts = [(9.0, word)]
+    cause = cause_of(
+        Evidence(reason=Reason.STOPPED, key="command.stopped", failed_at=10.0, robot=ARM, acts=acts)
+    )
+    verb, _, scope = word.partition(" ")
+    assert str(cause.sentence) == f"an operator ended it: {verb} {scope or 'plant'}"
+    assert words("es").say(cause.sentence) == spanish

@@ -27,15 +27,22 @@ from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.model.task import Order
 from arboleda.trees import steps
 from arboleda.trees.context import Context
-from arboleda.trees.leaves import Dwell, Require, Unless
+from arboleda.trees.leaves import Dwell, Require, Unless, titled
 
 from .decorators import Again, AtMost, Forgiven, Inverted, Times
 from .errors import RecipeError, RoleError
 from .handles import Ask, Step, flat, handle, named, said
 from .parameters import parameter
-from .sharing import check_at_once, held, using
+from .sharing import WORK, check_at_once, held, using
 
 FINAL = frozenset({Reason.STOPPED, Reason.CANCELLED, Reason.PART_LOST, Reason.INTERRUPTED, Reason.INTERNAL})
+CHOOSE = Phrase("step.choose", "choose")
+IS = Phrase("step.is", "is {answer}")
+NO_OTHER = Phrase("step.no_other", "no other answer")
+FAIL = Phrase("step.fail", "fail")
+WAIT = Phrase("step.wait", "wait")
+PARALLEL = Phrase("step.parallel", "parallel")
+FALLBACK = Phrase("step.fallback", "fallback")
 OTHER_ANSWER = Phrase("recipe.other_answer", "{robot} answered {answer}; the recipe knows {known}")
 
 
@@ -99,14 +106,15 @@ def _reason(word: Reason | str) -> Reason:
 
 def work(*parts: Step | Sequence[Step]) -> Step:
     """One step after the other."""
-    return steps.framed(steps.sequence("work", *flat(parts)))
+    return steps.framed(steps.sequence(WORK(), *flat(parts)))
 
 
 def parallel(*parts: Step) -> Step:
     """All at the same time, done once all are; where one fails, the others are halted."""
     check_at_once(parts)
     policy = common.ParallelPolicy.SuccessOnAll(synchronise=True)  # else what is done would be done again
-    return steps.framed(composites.Parallel("parallel", policy=policy, children=list(parts)))
+    node = composites.Parallel(str(PARALLEL()), policy=policy, children=list(parts))
+    return steps.framed(titled(node, PARALLEL()))
 
 
 class Kit:
@@ -161,21 +169,21 @@ class Kit:
             return Failure(reason=Reason.REJECTED, sentence=sentence)
 
         def branch(value: Value, way: Step | Sequence[Step]) -> Step:
-            chosen = Unless(f"is {shown(value)}", partial(answers, value))
+            chosen = Unless(IS(answer=shown(value)), partial(answers, value))
             return steps.framed(steps.sequence(shown(value), chosen, *flat([way])))
 
         branches = [branch(value, way) for value, way in ways.items()]
-        other_way = Require("no other answer", self._context, other)
-        return steps.framed(steps.selector("choose", *branches, other_way))
+        other_way = Require(NO_OTHER(), self._context, other)
+        return steps.framed(steps.selector(CHOOSE(), *branches, other_way))
 
     def fail(self, sentence: str) -> Step:
         """The task has failed, with this sentence."""
         failure = Failure(reason=Reason.REJECTED, sentence=as_sentence(sentence))
-        return Require("fail", self._context, lambda: failure)
+        return Require(FAIL(), self._context, lambda: failure)
 
     def wait(self, seconds: float) -> Step:
         """Nothing for so long; the time stands still while the cell is held."""
-        return Dwell("wait", self._context, seconds)
+        return Dwell(WAIT(), self._context, seconds)
 
     def retry(
         self,
@@ -204,7 +212,7 @@ class Kit:
         """The first step that does not fail; where all do, the last one's failure counts."""
         *others, last = parts
         forgiven = [Forgiven(each, self._context) for each in others]
-        return steps.framed(steps.selector("fallback", *forgiven, last))
+        return steps.framed(steps.selector(FALLBACK(), *forgiven, last))
 
     def invert(self, step: Step) -> Step:
         """The step, which has to fail."""

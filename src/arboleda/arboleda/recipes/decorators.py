@@ -15,8 +15,14 @@ from py_trees.decorators import Decorator
 from arboleda.model.messages import Failure, Reason
 from arboleda.model.sentence import Phrase
 from arboleda.trees.context import Context
+from arboleda.trees.leaves import title_of, titled
 from arboleda.trees.trail import Keeps
 
+RETRY = Phrase("step.retry", "retry {step}")
+REPEAT = Phrase("step.repeat", "repeat {step}")
+TIMEOUT = Phrase("step.timeout", "timeout {step}")
+TRY = Phrase("step.forgive", "try {step}")
+INVERT = Phrase("step.invert", "invert {step}")
 TOO_LATE = Phrase("recipe.too_late", "{step} did not end within {seconds:g} s")
 NOT_FAILED = Phrase("recipe.not_failed", "{step} was to fail, and did not")
 
@@ -26,6 +32,11 @@ class Around(Keeps, Decorator):
 
     frame = True
 
+    def __init__(self, phrase: Phrase, child: Behaviour) -> None:
+        title = phrase(step=title_of(child))
+        super().__init__(str(title), child)
+        titled(self, title)
+
 
 class Again(Around):
     """Does its step again, `times` more at most, after a pause: while it fails for one of `causes`."""
@@ -33,7 +44,7 @@ class Again(Around):
     def __init__(
         self, child: Behaviour, context: Context, *, times: int, pause_s: float, causes: Collection[Reason]
     ) -> None:
-        super().__init__(f"retry {child.name}", child)
+        super().__init__(RETRY, child)
         self.context = context
         self.times = times
         self.pause_s = pause_s
@@ -74,7 +85,7 @@ class Times(Around):
     """Does its step `times` times, one after the other."""
 
     def __init__(self, child: Behaviour, context: Context, *, times: int) -> None:
-        super().__init__(f"repeat {child.name}", child)
+        super().__init__(REPEAT, child)
         self.context = context
         self.times = times
         self.done = 0
@@ -102,7 +113,7 @@ class AtMost(Around):
     """Its step ends within `seconds`, or is left, and the task fails."""
 
     def __init__(self, child: Behaviour, context: Context, *, seconds: float) -> None:
-        super().__init__(f"timeout {child.name}", child)
+        super().__init__(TIMEOUT, child)
         self.context = context
         self.seconds = seconds
         self.until = 0.0
@@ -127,7 +138,7 @@ class Forgiven(Around):
     """Its step may fail, for another one is tried then."""
 
     def __init__(self, child: Behaviour, context: Context) -> None:
-        super().__init__(f"try {child.name}", child)
+        super().__init__(TRY, child)
         self.context = context
 
     def update(self) -> Status:
@@ -140,7 +151,7 @@ class Inverted(Around):
     """Its step has to fail."""
 
     def __init__(self, child: Behaviour, context: Context) -> None:
-        super().__init__(f"invert {child.name}", child)
+        super().__init__(INVERT, child)
         self.context = context
 
     def update(self) -> Status:

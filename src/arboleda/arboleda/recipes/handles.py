@@ -32,6 +32,9 @@ NOT_YET = Phrase("recipe.not_yet", "{robot} did not say {value} of {fact} within
 VISIT = Phrase("step.visit", "visit {pose}")
 HOME = Phrase("step.go_home", "go home")
 ASK = Phrase("step.ask", "ask {person}")
+SAYS = Phrase("step.says", "says")
+BECOMES = Phrase("step.becomes", "becomes")
+DOING = Phrase("doing.order", "doing {order}")
 ASKING = Phrase("doing.ask", "asking {person}")
 
 
@@ -82,7 +85,7 @@ class Handle:
     def says(self, **facts: Value) -> Step:
         """A check: the device says so, else the task fails."""
         self._check(facts)
-        return Require("says", self._context, partial(self._objection, facts))
+        return Require(SAYS(), self._context, partial(self._objection, facts))
 
     def becomes(self, *, at_most_s: float, **facts: Value) -> Step:
         """Wait until the device says so, at most `at_most_s` s."""
@@ -95,7 +98,7 @@ class Handle:
             )
             return Failure(reason=Reason.DEADLINE, sentence=sentence)
 
-        return Await("becomes", self._context, lambda: not self._unsaid(facts), at_most_s, late)
+        return Await(BECOMES(), self._context, lambda: not self._unsaid(facts), at_most_s, late)
 
     def _of(self, act: Act) -> Act:
         """A command to the device, noted where cells share that."""
@@ -149,9 +152,9 @@ class DeviceHandle(Handle):
             zones = steps.interlocked(self._context, told)
             words = " ".join([verb, *map(shown, given.values())])
             if not isinstance(told, ToldQuery):
-                act = self._of(Act(f"{name} {words}", self._context, make, f"doing {words}"))
+                act = self._of(Act(f"{name} {words}", self._context, make, DOING(order=words)))
                 return steps.sequence(act.title, *zones, act) if zones else act
-            asked = Ask(f"{name} {words}", self._context, make, f"doing {words}")
+            asked = Ask(f"{name} {words}", self._context, make, DOING(order=words))
             asked.answers, asked.by, asked.asked = told.told.answers, name, words
             self._of(asked)
             return asked

@@ -14,6 +14,7 @@ from arboleda.trees.leaves import TakeDevices
 
 from .errors import RecipeError
 
+WORK = Phrase("step.work", "work")
 USING = Phrase("step.using", "with {devices}")
 
 
@@ -53,7 +54,7 @@ def held(context: Context, step: Behaviour) -> Behaviour:
         raise RecipeError(f"{told}; where a recipe has one, all that cells share is used in one")
     around = _innermost(step)
     if around is None:
-        return steps.framed(steps.sequence("work", *steps.with_devices(context, outside, [step])))
+        return steps.framed(steps.sequence(WORK(), *steps.with_devices(context, outside, [step])))
     uses = [index for index, child in enumerate(around.children) if any(_used(child))]
     first, last = uses[0], uses[-1]
     parts = steps.with_devices(context, outside, around.children[first : last + 1])

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from arboleda.model.messages import Reason
-from arboleda.model.sentence import Phrase, Sentence
+from arboleda.core.advice import DO
+from arboleda.core.operator import PLANT
+from arboleda.model.messages import Reason, Verb
+from arboleda.model.sentence import Phrase, Sentence, Value
 
 from .troubles import ALARM, BOOT, BRIDGE, SILENCE, Trouble
 
@@ -201,7 +203,7 @@ def cause_of(evidence: Evidence) -> Cause:
     return Cause(kind=kind, robot=evidence.robot, sentence=PHRASES[kind](**values))
 
 
-Found = tuple[str, dict[str, float | str]]
+Found = tuple[str, dict[str, Value]]
 
 
 def _operator(evidence: Evidence) -> Found | None:
@@ -210,7 +212,8 @@ def _operator(evidence: Evidence) -> Found | None:
         return None
     acts = [word for at, word in evidence.acts if at <= evidence.failed_at]
     if acts:
-        return "operator", {"word": acts[-1]}
+        verb, _, scope = acts[-1].partition(" ")
+        return "operator", {"word": DO[Verb(verb)](scope=scope or PLANT())}
     return ("foreign", {}) if evidence.robot is not None else None
 
 
