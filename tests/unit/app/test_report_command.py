@@ -83,12 +83,24 @@ def test_the_test_of_a_report_fails_in_the_same_way(
         names["test_what_failed_in_sis_a"](Sim())
 
 
+@pytest.mark.parametrize("kind", ["stuck_effector", "opened_effector"])
+def test_forks_that_do_not_fail_as_the_record_did_say_that_they_prove_nothing(
+    tmp_path: Path, kind: str
+) -> None:
+    act = fault(kind, "ra_1", 30.0 if kind == "stuck_effector" else 0.0)
+    content = reported(tmp_path, 3.0 if kind == "stuck_effector" else 6.0, act)
+    assert "forks prove nothing here" in content and "no prueban nada" in content
+    assert "Forks that were really run" not in content
+    assert "had nothing befallen the devices" not in content
+
+
 def test_a_report_is_small_whole_and_in_two_languages(tmp_path: Path) -> None:
     content = reported(tmp_path, 5.3, fault("mute", "ra_1", 2.6))
     assert len(content.encode()) < 2_000_000
     assert not re.search(r"(src|href)=", content.split("<script>")[0])
     assert "ra1 no dijo nada durante" in content and "ir a la estación 7 [*]" in content
     assert "failed sis_a 0B 7 (id lot): ra1: no telemetry for 1.5 s" in content  # the fork without a change
+    assert "Forks that were really run" in content and "prove nothing" not in content
     assert content.count("done sis_a 0B 7 (id lot)") == 2  # without what befell it, and with more patience
 
 

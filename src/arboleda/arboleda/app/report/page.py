@@ -68,12 +68,17 @@ def _parts(report: Report, *, has_twin: bool) -> Iterator[str]:
     acts = "".join(f"<li>{at - _zero(found):+.2f} s {escape(word)}</li>" for at, word in found.acts)
     acts = acts or f"<li>{_both('none')}</li>"
     yield f"</section><section><h2>{_both('acts')}</h2><ul>{acts}</ul></section>"
-    yield f"<section><h2>{_both('changed')}</h2><p class=quiet>{_both('changed_note')}</p>"
+    yield f"<section><h2>{_both('changed')}</h2><p class=quiet>{_both(_note(report))}</p>"
     yield f"<table>{''.join(_try(each, report) for each in report.tries)}</table></section>"
     yield f"<section><h2>{_both('again')}</h2><pre>{escape(report.command)}</pre></section>"
     yield f"<section><h2>{_both('test')}</h2><p class=quiet>{_both('test_note')}</p>"
     yield f"<pre id=test>{escape(report.case)}</pre>"
     yield f"<button id=copy>{_both('copy')}</button> <button id=save>{_both('save')}</button></section>"
+
+
+def _note(report: Report) -> str:
+    """What forks say here, or that they say nothing."""
+    return "changed_note" if report.tries[0].alike else "changed_nothing"
 
 
 def _zero(found: Incident) -> float:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.incident import Incident
 from arboleda.recorder.troubles import SILENCE
 
-from ..fork.happenings import TASK
+from ..fork.happenings import TASK, Happening
 from ..fork.run import Asked, forked
 from ..replay_command import sentence_of
 from .reading import Read
@@ -23,20 +23,27 @@ WITHOUT, HEALTHY, STALE, DEADLINE = "without", "healthy", "stale", "deadline"
 
 @dataclass(frozen=True, kw_only=True)
 class Try:
-    """A fork: what of, in a word, with which value, and what became of the task; `command` runs it again."""
+    """A fork: what of, in a word, with which value, and what became of the task; `command` runs it again.
+
+    `alike`: the task ended in the same state for the same reason as in the record.
+    """
 
     what: str
     value: float
     end: str
     done: bool
+    alike: bool
     options: str
 
 
 def tries(read: Read) -> list[Try]:
-    """The forks of a task from its beginning: without any change first, which has to end as it did."""
+    """The forks of a task from its beginning: without any change first. Where that does not end as the record
+    did, other ones would prove nothing, and are not run."""
     found: list[Try] = []
     for what, value, model, options in _changes(read.model, read.incident):
         found.append(_tried(read, what, value, model, options))
+        if not found[0].alike:
+            break
     return found
 
 
@@ -65,6 +72,13 @@ def _tried(read: Read, what: str, value: float, model: PlantModel, options: str)
         healthy=what == HEALTHY,
     )
     found = forked(record.first.beginning, record.steps(), asked, sentence_of)
-    ends = [each.said for each in found.fork if each.stream == TASK + incident.task]
-    end = ends[-1] if ends else "?"
-    return Try(what=what, value=value, end=end, done=end.startswith("done"), options=options)
+    fork, recorded = (_last(row, incident.task) for row in (found.fork, found.recorded))
+    end = fork.said if fork else "?"
+    alike = fork is not None and recorded is not None and fork.what == recorded.what
+    done = end.startswith("done")
+    return Try(what=what, value=value, end=end, done=done, alike=alike, options=options)
+
+
+def _last(row: Sequence[Happening], task: str) -> Happening | None:
+    """How the task ended there."""
+    return next((each for each in reversed(row) if each.stream == TASK + task), None)

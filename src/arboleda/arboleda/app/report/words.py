@@ -27,8 +27,15 @@ WORDS: dict[str, tuple[str, str]] = {
     "changed_note": (
         "Forks that were really run from when the task was asked for, with virtual devices, which what "
         "befell the real ones befalls too. They say what devices as those of the simulator would have done.",
-        "Ramas que se ejecutaron de verdad desde que se pidió la tarea, con dispositivos virtuales, a los que"
-        " les ocurre lo mismo que a los reales. Dicen lo que harían dispositivos como los del simulador.",
+        "Bifurcaciones que se ejecutaron de verdad desde que se pidió la tarea, con dispositivos virtuales,"
+        " a los que les ocurre lo mismo que a los reales."
+        " Dicen lo que harían dispositivos como los del simulador.",
+    ),
+    "changed_nothing": (
+        "Virtual devices cannot bring this failure about from the record: without any change, the task ends "
+        "otherwise than it did. So forks prove nothing here, and no others were run.",
+        "Con dispositivos virtuales este fallo no se reproduce a partir del registro: sin ningún cambio,"
+        " la tarea termina de otro modo. Así que las bifurcaciones no prueban nada aquí, y no hay otras.",
     ),
     "without": ("without any change", "sin ningún cambio"),
     "healthy": ("had nothing befallen the devices", "si a los dispositivos no les hubiera ocurrido nada"),
@@ -41,7 +48,7 @@ WORDS: dict[str, tuple[str, str]] = {
     "test": ("A test that fails in the same way", "Una prueba que falla igual"),
     "test_note": (
         "For pytest, with Arboleda's fixture sim. It is made of what the record has; run it to see.",
-        "Para pytest, con el fixture sim de Arboleda. Hecha de lo que hay en el registro; ejecútala.",
+        "Para pytest, con el fixture sim de Arboleda. Hecha de lo que hay en el registro; ejecútela.",
     ),
     "copy": ("copy", "copiar"),
     "save": ("save as a file", "guardar como archivo"),
