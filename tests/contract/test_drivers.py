@@ -199,6 +199,30 @@ def test_a_disk_that_hangs(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> None:
     assert stop.result(PATIENCE_S).refusal is None
 
 
+MESSAGES = {
+    "dobot": "arboleda.drivers.dobot.machine.FrameReader.feed",
+    "vda5050": "arboleda.drivers.vda5050.machine.read",
+    "modbus": "arboleda.drivers.modbus.machine.ModbusDevice.report",
+    "opcua": "arboleda.drivers.opcua.machine.OpcUaDevice.report",
+}
+"""Where each driver takes what its device says."""
+
+
+@pytest.mark.parametrize(("shop", "takes"), MESSAGES.items(), indirect=["shop"])
+def test_a_message_that_breaks_what_takes_it(shop: Shop, takes: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is the device's trouble: no thread of the driver ends by it."""
+    threads = set(threading.enumerate())
+    with monkeypatch.context() as broken:
+        broken.setattr(takes, breaks)
+        shop.until(online=False)
+    shop.until(online=True)
+    assert threads <= set(threading.enumerate())
+
+
+def breaks(*_: object) -> None:
+    raise KeyError("lastNodeId")
+
+
 @contextmanager
 def hung_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Nothing that is written to the plant's memory comes back."""

@@ -14,6 +14,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar
 
+from arboleda.adapters.device_feed import taking
 from arboleda.drivers.port import Clock, DriverError, Hear, NotSent
 from arboleda.drivers.ros_action.events import (
     Answered,
@@ -28,6 +29,7 @@ from arboleda.drivers.ros_action.events import (
     SendGoal,
     Status,
     Unsent,
+    Untaken,
 )
 from arboleda.drivers.ros_action.machine import Machine
 from arboleda.model.commands import Command
@@ -103,7 +105,7 @@ class ActionClientDriver:
 
     def see(self, seen: Seen) -> None:
         """Something was measured; in the thread of ROS 2."""
-        self._step(seen)
+        self._take(seen, seen)
 
     def _join(self, node: Any) -> None:
         from action_msgs.srv import CancelGoal
@@ -130,6 +132,14 @@ class ActionClientDriver:
                     self._later(self._cancel_all)
         return messages
 
+    def _take(self, said: Any, event: Event) -> None:
+        """What the server or the device said."""
+        with taking(said, self._lose):
+            self._step(event)
+
+    def _lose(self, why: str) -> None:
+        self._step(Untaken(why=why))
+
     def _later(self, what: Callable[[], None]) -> None:
         """Have it done in the thread of ROS 2: an action client is not made for several."""
         self._node.executor.create_task(what)
@@ -150,17 +160,19 @@ class ActionClientDriver:
 
     def _answered(self, id: str, future: Any) -> None:
         handle = future.result()
-        self._step(Answered(id=id, accepted=handle.accepted))
+        self._take(handle, Answered(id=id, accepted=handle.accepted))
         if handle.accepted:
             handle.get_result_async().add_done_callback(partial(self._ended, id))
 
     def _ended(self, id: str, future: Any) -> None:
         said = future.result()
         status = STATUSES.get(said.status, Status.UNKNOWN)
-        self._step(Ended(id=id, status=status, **self.end(said.result)))
+        with taking(said, self._lose):
+            self._step(Ended(id=id, status=status, **self.end(said.result)))
 
     def _cancelled(self, future: Any) -> None:
-        self._step(CancelAnswered(refused=future.result().return_code == REJECTED))
+        said = future.result()
+        self._take(said, CancelAnswered(refused=said.return_code == REJECTED))
 
     def _look(self) -> None:
         """Each server publishes the states of its goals, by an endpoint of its own."""

@@ -22,6 +22,7 @@ from arboleda.drivers.ros_action.events import (
     SendGoal,
     Status,
     Unsent,
+    Untaken,
 )
 from arboleda.drivers.ros_action.joints import JointsSeen
 from arboleda.model.plant_model import Evidence, Link
@@ -310,3 +311,13 @@ def test_settings_that_do_not_fit_are_said() -> None:
     assert said == [f"there are 2 names for the 6 joints of {ARM.name}"]
     with pytest.raises(ValueError, match="speed_percent is 0"):
         Settings(speed_percent=0)
+
+
+def test_what_cannot_be_taken_has_lost_the_goal_which_is_cancelled(rig: Rig) -> None:
+    rig.under_way()
+    said = rig.tell(Untaken(why="it has said what cannot be taken, 7 (TypeError: no joints)"))
+    assert str(said[0].lost) == "it has said what cannot be taken, 7 (TypeError: no joints)"  # type: ignore[union-attr]
+    assert rig.count(CancelAll) == 1
+    rig.tell(Ended(id=GO.id, status=Status.SUCCEEDED))
+    rig.wait(0.5)
+    assert rig.last.done is None

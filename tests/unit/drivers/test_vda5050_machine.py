@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from arboleda.drivers import MotionState, NotSent, Stop, StopMode
+from arboleda.adapters.vda5050.messages import Headers
+from arboleda.drivers import MotionState, NotSent, Report, Stop, StopMode
 from arboleda.drivers.vda5050.machine import AGAIN_S
 from arboleda.drivers.vda5050.settings import EdgeAction, Settings
 from arboleda.kinds.mobile import FollowPath
 from arboleda.virtual.vda5050.faults import FAULTS
+from arboleda.virtual.vda5050.machine import VirtualAgv
+from arboleda.virtual.vda5050.words import state_of
 
 from .vda5050_rig import Rig, devices
 
@@ -343,6 +348,56 @@ def test_a_vehicle_that_is_silent_for_too_long_is_lost() -> None:
     rig.faults.switch("hush", on=False)
     rig.run(1)
     assert rig.said["cart"].state is MotionState.STOPPED
+
+
+def test_a_vehicle_that_does_not_count_its_headers_is_heard_by_its_timestamps(rig: Rig) -> None:
+    boots = rig.said["cart"].boot_id
+    for second in range(3):
+        said = state(headerId=7, timestamp=f"2100-01-01T00:00:0{second}.000Z", driving=second == 2)
+        rig.vehicle.state(rig.now, said)
+        rig.run(0.5)
+    assert (rig.said["cart"].state, rig.said["cart"].boot_id) == (MotionState.MOVING, boots)
+
+
+def test_states_that_never_become_newer_are_named_where_the_vehicle_counts_as_silent() -> None:
+    rig = Rig(silent_after_s=5.0)
+    rig.run(0.5)
+    rig.vehicle.state(rig.now, state(headerId=2**32 - 1, timestamp="1970-01-01T00:00:00.000Z"))
+    said = [each for each in rig.vehicle.step(rig.now + 6.0) if isinstance(each, Report)]
+    assert str(said[0].lost).startswith(
+        "arboleda/agv1 has told no state that counts for 5 s: the last one has headerId 4294967295"
+    )
+
+
+def test_a_state_that_is_refused_is_named_while_there_is_no_other() -> None:
+    rig = Rig()
+    rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})
+    rig.vehicle.refused("lastNodeSequenceId must be integer; it is 'two'")
+    (report, *_) = (
+        each
+        for each in rig.vehicle.connection(0.0, {"connectionState": "ONLINE"})
+        if isinstance(each, Report)
+    )
+    assert str(report.lost).endswith(
+        "no state yet that could be read: lastNodeSequenceId must be integer; it is 'two'"
+    )
+
+
+def test_what_was_open_is_over_once_the_vehicle_has_said_what_breaks_the_machine(rig: Rig) -> None:
+    rig.drive(0, 3, 6, 7)
+    rig.run(0.5)
+    lost = [each for each in rig.vehicle.lose(rig.now, "it has said [[]]") if isinstance(each, Report)]
+    assert {str(each.lost) for each in lost} == {
+        "arboleda/agv1 is there, and has told no state yet that could be read: it has said [[]]"
+    }
+    rig.run(60)
+    assert rig.said["cart"].state is MotionState.STOPPED and rig.said["cart"].done is None
+
+
+def state(**news: Any) -> dict[str, Any]:
+    """A state as it is read, with changes."""
+    headers = Headers("2.1", "arboleda", "agv1")
+    return {**headers("state"), **state_of(VirtualAgv(version="2.1"), (), "2.1"), **news}
 
 
 def test_what_was_not_sent_is_not_open(rig: Rig) -> None:

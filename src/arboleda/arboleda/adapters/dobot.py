@@ -8,6 +8,7 @@ import threading
 from collections.abc import Sequence
 from contextlib import suppress
 
+from arboleda.adapters.device_feed import taking
 from arboleda.drivers.dobot.machine import (
     Answered,
     Asked,
@@ -71,8 +72,15 @@ class Dobot:
     def _run(self) -> None:
         while not self._ending.is_set():
             events = self._heard()
-            while any(isinstance(message, Open) for message in self._step(events)):
-                events = [self._connect()]
+            with taking([getattr(event, "data", b"") for event in events], self._lose):
+                while any(isinstance(message, Open) for message in self._step(events)):
+                    events = [self._connect()]
+
+    def _lose(self, why: str) -> None:
+        """Nothing of this connection counts any more."""
+        with self._lock:
+            self._hang_up()
+        self._step([Closed(why=why)])
 
     def _step(self, events: list[Event]) -> list[Message]:
         with self._lock:

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Iterable, Sequence
 
 from arboleda.adapters.broker_login import address, login
+from arboleda.adapters.device_feed import taking
 from arboleda.adapters.mqtt import MqttClient, NotConnected
 from arboleda.adapters.seldom import Seldom
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver
@@ -81,7 +82,8 @@ class Vda5050:
         while not self._ending.is_set():
             with self._lock:
                 now = self._clock()
-                self._try(self._vehicle.step(now))
+                with taking("a state", self._lose):
+                    self._try(self._vehicle.step(now))
                 wait_s = self._vehicle.next_deadline - now
             self._ending.wait(max(0.01, wait_s))
 
@@ -90,7 +92,8 @@ class Vda5050:
             if isinstance(event, Connection):
                 self._try(self._vehicle.connected(self._clock(), up=event.up))
             elif len(event.topic) <= LONGEST_TOPIC:
-                self._read(event)
+                with taking(event.payload, self._lose):
+                    self._read(event)
 
     def _read(self, delivery: Delivery) -> None:
         settings = self._settings
@@ -107,8 +110,14 @@ class Vda5050:
                 raise Unfit(f"it says to be of {quoted(said['manufacturer'])} {quoted(said['serialNumber'])}")
         except Unfit as error:
             self._warn(f"a message on {delivery.topic} is refused: {error}")
+            if topic == "state":
+                self._vehicle.refused(str(error))
             return
         self._try(HEARD[topic](self._vehicle, self._clock(), said))
+
+    def _lose(self, why: str) -> None:
+        self._warn(f"{self._settings.vehicle}: {why}")
+        self._try(self._vehicle.lose(self._clock(), why))
 
     def _warn(self, what: str) -> None:
         if self._seldom.is_due(what, self._clock()):

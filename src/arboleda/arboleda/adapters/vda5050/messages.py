@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timezone
 from functools import cache
 from importlib.resources import files
@@ -17,7 +17,7 @@ from typing import Any
 import fastjsonschema
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.outside import plain
+from arboleda.model.outside import plain, quoted
 
 LARGEST = 1_000_000  # bytes of a message
 DIGITS = 20  # of a whole number
@@ -39,7 +39,13 @@ def from_bytes(version: str, topic: str, payload: bytes) -> dict[str, Any]:
     if len(payload) > LARGEST:
         raise Unfit(f"it has {len(payload)} bytes")
     try:
-        said = json.loads(payload, parse_constant=_refuse, parse_float=_finite, parse_int=_whole)
+        said = json.loads(
+            payload,
+            parse_constant=_refuse,
+            parse_float=_finite,
+            parse_int=_whole,
+            object_pairs_hook=_without_nulls,
+        )
     except (ValueError, RecursionError) as error:
         raise Unfit(plain(f"it is no JSON: {error}")) from error
     _check(version, topic, said)
@@ -69,7 +75,7 @@ def _check(version: str, topic: str, message: object) -> None:
     try:
         _checks(version)[topic](message)
     except fastjsonschema.JsonSchemaValueException as error:
-        raise Unfit(plain(error.message.replace("data.", "", 1))) from error
+        raise Unfit(plain(f"{error.message.replace('data.', '', 1)}{_shown(error.value)}")) from error
     assert isinstance(message, Mapping)
     if message["version"].split(".")[:2] != version.split("."):
         raise Unfit(plain(f"it is of version {message['version']}, not {version}"))
@@ -92,7 +98,18 @@ def _whole(digits: str) -> int:
 
 
 def _finite(digits: str) -> float:
+    """To the schemas a number without a fraction is a whole one, however it is written."""
     number = float(digits)
     if not math.isfinite(number):
         raise ValueError("a number is too large")
-    return number
+    return int(number) if number.is_integer() else number
+
+
+def _without_nulls(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Many vehicles write null where a field has no value: then there is no field."""
+    return {name: value for name, value in pairs if value is not None}
+
+
+def _shown(value: object) -> str:
+    """The value that does not fit, where it is a single one."""
+    return "" if isinstance(value, Mapping | list) else f"; it is {quoted(value)}"

@@ -87,5 +87,12 @@ class Unsent:
     why: str
 
 
-Event = Found | Seen | Answered | Ended | CancelAnswered | Asked
+@dataclass(frozen=True, kw_only=True)
+class Untaken:
+    """The server or the device has said what the machine broke on, in a sentence."""
+
+    why: str
+
+
+Event = Found | Seen | Answered | Ended | CancelAnswered | Asked | Untaken
 Message = SendGoal | CancelAll | Unsent | Report

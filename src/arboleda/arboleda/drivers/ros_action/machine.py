@@ -24,6 +24,7 @@ from .events import (
     SendGoal,
     Status,
     Unsent,
+    Untaken,
 )
 from .goal import Goal
 from .mover import Mover, NoGoal
@@ -81,6 +82,8 @@ class Machine:
             self._hear_answer(now, event)
         elif isinstance(event, Ended):
             self._hear_end(now, event)
+        elif isinstance(event, Untaken):
+            self._lose(now, event.why)
         else:
             self._hear_cancel(now, event)
 

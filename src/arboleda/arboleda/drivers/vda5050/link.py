@@ -10,6 +10,7 @@ from .settings import Settings
 from .state import VehicleState
 
 BROKEN = {"CONNECTIONBROKEN", "CONNECTION_BROKEN"}
+LONGEST_WHY = 200  # characters
 WRAP = 2**31  # headers count to 2**32, then from 0
 
 
@@ -22,6 +23,7 @@ class Link:
         self._word: str | None = None  # what was said of the connection
         self._heard_at = -math.inf
         self._silent = False
+        self._refused = ""  # why the last of its states did not count, while none has since
         self._last: VehicleState | None = None
         self._first = True  # the next state begins a row of headers
         self.boots = 1
@@ -45,10 +47,15 @@ class Link:
         if self._word != "ONLINE":
             return f"{vehicle} has left ({self._word})"
         if self._silent:
-            return f"{vehicle} has told no state for {self._settings.silent_after_s:g} s"
+            counts = " that counts" if self._refused else ""
+            return f"{vehicle} has told no state{counts} for {self._settings.silent_after_s:g} s{self._why}"
         if self._last is None:
-            return f"{vehicle} is there, and has told no state yet that could be read"
+            return f"{vehicle} is there, and has told no state yet that could be read{self._why}"
         return None
+
+    @property
+    def _why(self) -> str:
+        return f": {self._refused}" if self._refused else ""
 
     def _others(self) -> str:
         if not self.neighbours:
@@ -73,12 +80,25 @@ class Link:
             return False
         if last is not None and not self._first:
             behind = (last.header - state.header) % 2**32
-            if behind == 0 or (behind < WRAP and state.timestamp <= last.timestamp):
+            if behind < WRAP and state.timestamp <= last.timestamp:
+                was = f"headerId {last.header} and timestamp {last.timestamp}"
+                is_ = f"headerId {state.header} and timestamp {state.timestamp}"
+                self.refuse(f"the last one has {is_}, which is not after {was}")
                 return False
-            self.has_booted = behind < WRAP
+            self.has_booted = 0 < behind < WRAP  # some vehicles never count: their timestamps do
             self.boots += self.has_booted
         self._last, self._heard_at, self._silent, self._first = state, now, False, False
+        self._refused = ""
         return True
+
+    def refuse(self, why: str) -> None:
+        """A state has come that does not count."""
+        self._refused = plain(why, LONGEST_WHY)
+
+    def lose(self, why: str) -> None:
+        """No state of before counts any more."""
+        self._begin_anew()
+        self.refuse(why)
 
     def falls_silent(self, now: float) -> bool:
         """Whether it has become too long since the last state."""
@@ -86,4 +106,4 @@ class Link:
         return self._silent and not before and self.is_online
 
     def _begin_anew(self) -> None:
-        self._last, self._silent = None, False
+        self._last, self._silent, self._refused = None, False, ""

@@ -138,6 +138,16 @@ class Vehicle:
         self._judge_instants(state)
         return [*messages, *self._reports(now)]
 
+    def refused(self, why: str) -> None:
+        """A state that does not fit the schema has come; `why` is said where none does."""
+        self._link.refuse(why)
+
+    def lose(self, now: float, why: str) -> list[Message]:
+        """It has said what broke this machine: what was open is nobody's, until it says something else."""
+        self._link.lose(why)
+        self._forget()
+        return [*self._reports(now)]
+
     def factsheet(self, now: float, said: Said) -> list[Message]:
         """What it can do: orders are as long as it takes them, and what it lacks is told."""
         sheet, self._has_sheet = factsheet.read(said), True
