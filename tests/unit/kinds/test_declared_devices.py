@@ -12,7 +12,8 @@ import pytest
 from arboleda.core.cell_states import CellState
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
 from arboleda.model.messages import Reason, TaskState, Verb
-from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.plant_model import Evidence, Link, PlantModel
+from arboleda.model.recipe import Recipe
 from arboleda.model.sentence import OWN
 from arboleda.recipes import Choice, Kit, RecipeError, parallel, recipe, work
 
@@ -61,6 +62,38 @@ def test_what_a_verb_needs_is_refused_where_it_is_not_so() -> None:
     assert (ended.state, ended.reason) == (TaskState.FAILED, Reason.PRECONDITION)
     assert str(ended.sentence) == "oven needs lid to be closed, and said open: no doing bake 5"
     assert "oven bake" not in here.told
+
+
+@pytest.mark.parametrize("shut", [True, False])
+def test_what_a_question_needs_is_refused_where_it_is_not_so(shut: bool) -> None:
+    needs = (("lid", "closed"),)
+    weigh = DeviceVerb(
+        name="weigh", effect=Effect.QUERY, needs=needs, takes_s=1.0, at_most_s=5.0, answers=("light", "heavy")
+    )
+
+    @recipe("weigh")
+    def weighs(cell: Kit):  # type: ignore[no-untyped-def]
+        oven = cell.device("oven")
+        seen = oven.weigh()
+        asked = work(seen, cell.choose(seen, {"light": [], "heavy": []}))
+        return work(oven.close(), asked) if shut else asked
+
+    here = Bench(with_oven(weighs, replace(OVEN, verbs={**OVEN.verbs, "weigh": weigh})))
+    here.submit("bench weigh")
+    ended = here.outcome()
+    if shut:
+        assert (ended.state, here.told) == (TaskState.DONE, ["oven close", "oven weigh"])
+    else:
+        assert (ended.state, ended.reason, here.told) == (TaskState.FAILED, Reason.PRECONDITION, [])
+        assert str(ended.sentence) == "oven needs lid to be closed, and said open: no doing weigh"
+
+
+def with_oven(recipe: Recipe, kind: DeviceKind) -> PlantModel:
+    """A cell with another kind of oven."""
+    made = model(recipe)
+    (cell,) = made.cells
+    oven = replace(cell.roles["oven"], kind=kind)  # type: ignore[call-arg]
+    return replace(made, cells=(replace(cell, members=(("oven", oven), cell.members[1])),))
 
 
 def test_a_part_that_is_left_clamped_holds_the_cell_until_somebody_acts() -> None:

@@ -460,7 +460,7 @@ class Dispatcher:
             sentence = (before if was else now)(robot=robot, fact=fact)
             return Failure(reason=Reason.REJECTED, sentence=sentence)
         if isinstance(command, Query):
-            return self.beliefs[robot].unreachable(was=was)
+            return self.beliefs[robot].unreachable(was=was) or self._unmet(command, was=was)
         if isinstance(command, Work) and (tool := self.opening_tool(robot)) is not None:
             return Failure(reason=Reason.REJECTED, sentence=MAY_LET_GO(robot=robot, tool=tool))
         obstacle = self.obstacle(robot, was=was)
