@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import permutations
 from typing import Any
 
 import pytest
 
 from arboleda.model.errors import ConfigError
-from arboleda.model.plant_model import Crossing, Pose
+from arboleda.model.plant_model import Crossing, Pose, Workspace
 from arboleda.recipes.storage import palletizing_way, plan_problems, storage_way
 from arboleda.recipes.storage_cell import Palletizing, StorageCell
 from arboleda.testing import shipped
-from arboleda.trees.zone_plan import Leg, plan
+from arboleda.trees.zone_plan import Leg, entered, passed, plan, recovery_zones
 
 NONE = frozenset[str]()
 STATION, OTHER, PLACE = 7, 4, 8  # PLACE is where the shipped cell palletizes to
@@ -76,7 +77,7 @@ def test_a_storage_way_has_these_legs(case: tuple[StorageCell, list[Any]]) -> No
 def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None:
     made = cell(pickup="x", station4="y")
     pick, place = made.stations[OTHER], made.stations[PLACE]
-    assert plan(made, (made.home, pick, place), made.pickup) == [
+    assert plan(made.workspaces["ra1"], (made.home, pick, place), made.pickup) == [
         Leg(start=0, end=2, zones=frozenset({"x", "y"}))
     ]
 
@@ -84,7 +85,9 @@ def test_a_part_that_may_have_to_go_back_needs_the_zone_of_the_pick_up() -> None
 def test_an_arm_that_stands_at_a_station_starts_there() -> None:
     made = cell(("station 8", "pick-up", "x"), ("home", "station 8", "y"))
     start = made.palletizing.place
-    legs = plan(made, storage_way(made, made.pickup, made.stations[STATION], start), made.pickup)
+    legs = plan(
+        made.workspaces["ra1"], storage_way(made, made.pickup, made.stations[STATION], start), made.pickup
+    )
     assert legs[0] == Leg(start=0, end=1, zones=frozenset({"x", "y"}))
     legs = plan(made.workspaces["ra1"], palletizing_way(made, start), made.pickup)
     assert [(leg.start, leg.end) for leg in legs] == [(0, 1), (1, 2), (2, 3)]
@@ -108,3 +111,54 @@ def test_a_home_or_a_place_in_a_zone_is_a_problem_with_its_pose() -> None:
         "station 8": "cell sis_a: station 8 lies in zone y; "
         "palletizing ends and waits there, so it must be outside all zones",
     }
+
+
+MOBILE = shipped("sis_a").cells[0].mobile
+
+
+def on_grid(home: int, goal: int, zoned: int) -> Workspace:
+    """A mobile robot with two nodes where it goes, and one in a zone where it has nothing to do."""
+    poses = [Pose(name=name, q=node) for name, node in (("home", home), ("goal", goal))]
+    gate = Pose(name="gate", q=zoned, zones=frozenset({"x"}))
+    return Workspace(robot=MOBILE, home=poses[0], poses=(*poses, gate))
+
+
+@pytest.mark.parametrize("zoned", range(MOBILE.grid.size))
+def test_a_leg_on_a_grid_holds_what_lies_on_its_way_and_on_the_way_home_from_wherever_it_halts(
+    zoned: int,
+) -> None:
+    """All ways of a grid of nine nodes."""
+    route = MOBILE.grid.route
+    others = (node for node in range(MOBILE.grid.size) if node != zoned)
+    for home, goal in permutations(others, 2):
+        space = on_grid(home, goal, zoned)
+        (leg,) = plan(space, space.poses[:2], None)
+        halted = route(home, goal)
+        ways = {node for spot in halted for node in (*route(spot, home), *route(home, spot))}
+        assert (leg.zones == {"x"}) is (zoned in ways | {*halted} | {*route(goal, home)}), (home, goal)
+
+
+def test_a_motion_on_a_grid_enters_all_that_its_nodes_lie_in_but_where_it_begins() -> None:
+    space = on_grid(6, 0, 3)
+    assert entered(space, space.home, (6, 3, 0)) == {"x"}
+    assert entered(space, None, (4, 3, 0)) == {"x"}
+    assert entered(space, None, (3, 0)) == NONE
+    assert entered(space, None, (3,)) == {"x"}
+    assert entered(space, None, (6, 7, 4, 1, 0)) == NONE
+
+
+def test_a_recovery_on_a_grid_needs_what_lies_between_a_pose_and_home() -> None:
+    space = on_grid(6, 0, 3)
+    assert recovery_zones(space, space.poses[1], None) == {"x"}
+    assert recovery_zones(space, space.home, None) == NONE
+
+
+def test_what_lies_between_two_nodes_is_that_of_the_ways_there_and_back_without_their_ends() -> None:
+    space = on_grid(6, 0, 3)
+    assert (passed(space, 6, 0), passed(space, 3, 0), passed(space, None, 0)) == ({"x"}, NONE, NONE)
+
+
+def test_nothing_lies_between_two_poses_of_an_arm_but_what_is_named() -> None:
+    made = cell(("home", "pick-up", "x"))
+    space = made.workspaces["ra1"]
+    assert passed(space, made.home.q, made.pickup.q) == NONE

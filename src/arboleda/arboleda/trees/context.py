@@ -171,7 +171,7 @@ class Context:
         """The zones that its robot has to hold for a command."""
         space = self.cell.workspaces.get(command.robot)
         if space is not None and isinstance(command, Motion) and command.way:
-            return zone_plan.entered(space, self._dispatcher.place(space), command.way[-1])
+            return zone_plan.entered(space, self._dispatcher.place(space), command.way)
         locks = self.cell.interlocks_of(command.robot)
         return frozenset(each.zone for each in locks if each.is_ended_by(command))
 
@@ -302,7 +302,14 @@ class Context:
     def recovery_zones(self, robot: str) -> frozenset[str]:
         """What the way of a recovery needs, from where the robot stands now."""
         space = self.cell.workspaces[robot]
-        return zone_plan.recovery_zones(space, self._dispatcher.place(space), self.way_back(robot))
+        place, back = self._dispatcher.place(space), self.way_back(robot)
+        between = self.zones_between(robot, *((back,) if back else ()), space.home)
+        return zone_plan.recovery_zones(space, place, back) | between
+
+    def zones_between(self, robot: str, *goals: Pose) -> frozenset[str]:
+        """The zones that a robot comes by to each of these poses from where it is, which may be no pose."""
+        space, here = self.cell.reach[robot], self.position(robot)
+        return frozenset[str]().union(*(zone_plan.passed(space, here, goal.q) for goal in goals))
 
     def way_back(self, robot: str) -> Pose | None:
         """Where a recovery brings what a robot holds: back where it came from, else as the cell says."""

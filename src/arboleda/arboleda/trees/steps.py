@@ -170,7 +170,7 @@ def visit_from_anywhere(
     def needed() -> frozenset[str]:
         way = (context.standing(robot), pose, *((space.home,) if pose.zones else ()))
         legs = zone_plan.plan(space, way, context.way_back(robot))
-        return frozenset[str]().union(*(leg.zones for leg in legs))
+        return context.zones_between(robot, pose).union(*(leg.zones for leg in legs))
 
     out = [_move(context, robot, space.home)] if pose.zones else []
     leave = LeaveZones(LEAVE_ZONES(), context, robot)

@@ -1,8 +1,11 @@
-"""Which shared zones a way of a robot needs, and from where to where it must hold them."""
+"""Which shared zones a way of a robot needs, and from where to where it must hold them.
+
+A robot of a grid also comes by the nodes between two poses: each where a pose lies counts, wherever it halts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -39,11 +42,21 @@ def plan(space: Workspace, way: Sequence[Pose], back: Pose | None) -> list[Leg]:
     ]
 
 
-def entered(space: Workspace, start: Pose | None, goal: Position) -> frozenset[str]:
-    """The zones that one motion gets into: where its goal lies and, from a known pose, those crossed."""
-    ends = [pose for pose in space.poses if goal in (pose.q, pose.above)]
-    inside = frozenset[str]().union(*(pose.zones for pose in ends))
+def entered(space: Workspace, start: Pose | None, way: Sequence[Position]) -> frozenset[str]:
+    """The zones that one motion gets into: those that its way comes by and, from a known pose, those crossed.
+
+    A way of several positions begins where the robot is.
+    """
+    inside = _lying(space, way[1:] or way)
+    ends = [pose for pose in space.poses if way[-1] in (pose.q, pose.above)]
     return inside if start is None else inside | _crossed(space, [(start, end) for end in ends])
+
+
+def passed(space: Workspace, start: Position | None, goal: Position) -> frozenset[str]:
+    """The zones between a position and a goal, by the way that a robot of a grid is given there or back."""
+    there = space.robot.route(start, goal)
+    back = () if start is None else space.robot.route(goal, start)
+    return _lying(space, {*there, *back} - {start, goal})
 
 
 def recovery_zones(space: Workspace, start: Pose | None, back: Pose | None) -> frozenset[str]:
@@ -60,12 +73,21 @@ def _zones(space: Workspace, poses: Sequence[Pose], back: Pose | None) -> frozen
     moves = [*pairwise(poses), *combinations(recovery, 2)]
     moves += [(pose, goal) for pose in poses for goal in recovery]
     inside = (pose.zones for pose in (*poses, *recovery))
-    return _crossed(space, moves).union(*inside)
+    halted = [spot for a, b in pairwise(poses) for spot in space.robot.route(a.q, b.q)]
+    between = (passed(space, spot, goal.q) for spot in halted for goal in recovery)
+    return _crossed(space, moves).union(*inside, *between)
 
 
 def _crossed(space: Workspace, moves: Sequence[tuple[Pose, Pose]]) -> frozenset[str]:
     ends = [{a.name, b.name} for a, b in moves] if space.crossings else []
-    return frozenset[str]().union(*(each.zones for each in space.crossings if {each.a, each.b} in ends))
+    named = (each.zones for each in space.crossings if {each.a, each.b} in ends)
+    return frozenset[str]().union(*named, *(passed(space, a.q, b.q) for a, b in moves))
+
+
+def _lying(space: Workspace, spots: Collection[Position]) -> frozenset[str]:
+    """The zones of all poses at, or below, these positions."""
+    there = (pose for pose in space.poses if pose.q in spots or pose.above in spots) if spots else ()
+    return frozenset[str]().union(*(pose.zones for pose in there))
 
 
 def lying(pose: Pose) -> str:

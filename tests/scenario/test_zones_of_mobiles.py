@@ -1,0 +1,43 @@
+"""A mobile robot whose way comes by a target in a zone, and another one that works there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arboleda.app.config import load
+from arboleda.simulator.run import Simulation
+from arboleda.simulator.shrink import explicit
+
+PLANT = """
+name: cross
+uses: [recipes.py]
+cells:
+  yard:
+    devices: {one: {kind: mobile}, two: {kind: mobile}}
+    targets:
+      home: {one: {node: 6}, two: {node: 8}}
+      gate: {one: {node: 3}, two: {node: 3}}
+      far: {one: {node: 0}}
+zones:
+  gate: {poses: [yard gate]}
+"""
+RECIPES = """
+from arboleda.recipes import parallel, recipe, work
+
+@recipe("go")
+def go(cell):
+    one, two = cell.devices("one", "two")
+    return parallel(work(one.go("far"), one.home()), two.visit("gate", cell.wait(3)))
+"""
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_it_waits_for_the_zone_of_a_node_on_its_way(tmp_path: Path, seed: int) -> None:
+    (tmp_path / "plant.yaml").write_text(PLANT, "utf-8")
+    (tmp_path / "recipes.py").write_text(RECIPES, "utf-8")
+    model = load(tmp_path / "plant.yaml")
+    result = Simulation(model, seed, explicit(())).run(seconds=60.0)
+    assert result.broken is None, str(result.broken)
+    assert result.outcomes.keys() == {"done"}
