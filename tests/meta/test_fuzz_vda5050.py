@@ -33,4 +33,4 @@ def test_nothing_is_raised_and_nothing_refused_counts(fuzz: Any) -> None:
 def test_a_number_without_a_limit_would_be_found(fuzz: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(messages, "DIGITS", 4000)
     with pytest.raises(AssertionError, match="OverflowError"):
-        fuzz.run(8000, 1)
+        fuzz.run(8000, 3)
