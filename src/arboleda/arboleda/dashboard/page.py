@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from contextlib import suppress
+from functools import cache
 from typing import Annotated
 
 from fastapi import FastAPI, Query, Request
@@ -22,11 +23,11 @@ from .feed import Feed
 from .past import page as past_page
 from .past.stills import Stills
 from .past.turns import BESIDE_S, Turns
-from .plant_side import Layout, PlantSide
+from .plant_side import PlantSide
 from .shell import Parts, language_of, role_shown
 from .twin import pane, window
 from .twin.show import Show
-from .wording import Words, words
+from .wording import words
 
 PARTS: Parts = {
     "cells": trees.build,
@@ -47,13 +48,25 @@ def mount(server: FastAPI, plant: PlantSide) -> None:
     stills, turns = Stills(), Turns(BESIDE_S)
     layout = plant.layout()
 
+    @cache
+    def made(language: str, role: str | None) -> str:
+        said = words(language)
+
+        def top(parts: list[str]) -> None:
+            header.build(layout, said, parts, role)
+            if layout.get("demo"):
+                demo.build(said)
+
+        return shell.body(layout, said, PARTS, header=top)
+
     def build(request: Request, client: Client) -> None:
         if past_page.asked(request):
             past_page.open_page(client, plant, stills, turns, request, beside=True)
             return
         said = words(language_of(request))
         window.open_window(client, show)
-        open_page(client, Desk(client, plant, feed, said), feed, layout, said, role_shown(request))
+        open_page(client, Desk(client, plant, feed, said), feed)
+        shell.fill(layout, said, PARTS, script="page.js", made=made(said.language, role_shown(request)))
 
     window.serve(server, plant, show, stills)
     _serve_tasks(server, plant, feed)
@@ -86,18 +99,11 @@ def _serve_tasks(server: FastAPI, plant: PlantSide, feed: Feed) -> None:
     server.add_api_route("/history.json", kept, include_in_schema=False)
 
 
-def open_page(client: Client, desk: Desk, feed: Feed, layout: Layout, said: Words, role: str | None) -> None:
-    """Build the page of one browser and let it live."""
+def open_page(client: Client, desk: Desk, feed: Feed) -> None:
+    """Let the page of one browser live."""
     ui.on("arboleda", desk.hear)
     client.on_connect(lambda: feed.add(desk))
     client.on_delete(lambda: feed.remove(desk))
-
-    def top(parts: list[str]) -> None:
-        header.build(layout, said, parts, role)
-        if layout.get("demo"):
-            demo.build(said)
-
-    shell.fill(layout, said, PARTS, script="page.js", header=top)
 
 
 def _keep_running(feed: Feed, show: Show) -> None:

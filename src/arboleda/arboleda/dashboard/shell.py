@@ -16,7 +16,7 @@ from arboleda.model.errors import StartError
 
 from . import trees
 from .plant_side import Layout
-from .tags import tag
+from .tags import markup, tag
 from .unopened import Unopened
 from .wording import LANGUAGES, Words
 
@@ -69,27 +69,35 @@ def role_shown(request: Request) -> str | None:
     return None if door is None or door.open else request.scope["arboleda.role"].value
 
 
-def fill(
+def fill(layout: Layout, said: Words, parts: Parts, *, script: str, made: str) -> None:
+    """Fill the page of one browser with what was `made` of its parts; `script` is its entry."""
+    shown = parts_of(parts, layout)
+    ui.add_head_html(head(said, script, *(["twin.js"] if "twin" in shown else [])))
+    ui.html(made, sanitize=False).classes("app")
+
+
+def body(
     layout: Layout,
     said: Words,
     parts: Parts,
     *,
-    script: str,
     header: Callable[[list[str]], None],
     footer: Callable[[], None] = lambda: None,
-) -> None:
-    """Fill the page of one browser; `header` is given the names of the parts, `script` is its entry."""
+) -> str:
+    """A page as HTML, the same for each browser; `header` is given the names of the parts."""
     shown = parts_of(parts, layout)
-    ui.add_head_html(head(said, script, *(["twin.js"] if "twin" in shown else [])))
-    with tag("div", classes="app"):
+
+    def build() -> None:
         header(list(shown))
         with tag("div", id="parts"):
-            for name, build in shown.items():
+            for name, build_part in shown.items():
                 label = said(f"tab.{name}")
                 with tag("section", id=f"part-{name}", classes="part", data_part=name, aria_label=label):
-                    build(layout, said)
+                    build_part(layout, said)
         trees.detail(said)
         footer()
+
+    return markup(build)
 
 
 def parts_of(parts: Parts, layout: Layout) -> Parts:

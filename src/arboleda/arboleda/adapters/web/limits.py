@@ -15,7 +15,7 @@ LATER_S = "10"  # Retry-After of what is full
 
 READ = (50.0, 400)  # per second, at once
 PAGE = (300.0, 6000)  # one page is a hundred small files, and twenty browsers may sit behind one address
-OPEN = (2.0, 40)  # a page itself, which takes a tenth of a second and a megabyte to build
+OPEN = (2.0, 40)  # a page itself, the largest of all answers
 CHANGE = (10.0, 50)
 GUESS = (0.1, 5)
 MESSAGE = (50.0, 200)

@@ -62,14 +62,14 @@ def open_page(
     window.bring_three()
     client.on_connect(visitor.come)
     role = shell.role_shown(request)
-    shell.fill(
+    made = shell.body(
         layout,
         said,
         PARTS,
-        script="record.js",
         header=lambda parts: header.of_record(layout, said, parts, role, beside=beside),
         footer=lambda: bar.build(layout, said),
     )
+    shell.fill(layout, said, PARTS, script="record.js", made=made)
 
 
 def arrival(request: Request) -> Arrival:

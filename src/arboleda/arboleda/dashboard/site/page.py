@@ -44,13 +44,8 @@ def mount(server: FastAPI, site: SiteSide) -> None:
         client.on_connect(lambda: (frames.add(desk), opened.set()))
         client.on_delete(lambda: frames.remove(desk))
         role = role_shown(request)
-        shell.fill(
-            {"places": {"robots": []}},
-            said,
-            {"plants": _plants},
-            script="site.js",
-            header=lambda parts: header.of_site(said, parts, role),
-        )
+        made = shell.body(NOTHING_DRAWN, said, PARTS, header=lambda parts: header.of_site(said, parts, role))
+        shell.fill(NOTHING_DRAWN, said, PARTS, script="site.js", made=made)
 
     _serve(server, site)
     shell.serve(server, {"plant": words("en")("site.title")}, build)
@@ -103,6 +98,10 @@ def _plants(_layout: Layout, said: Words) -> None:
                 said("tasks.send"), SUBMIT, "", said("site.send_does"), classes="primary", id="site-send"
             )
         tag("p", said("site.send_does"), classes="hint")
+
+
+NOTHING_DRAWN: Layout = {"places": {"robots": []}}
+PARTS: shell.Parts = {"plants": _plants}
 
 
 class Desk(OpenPage):
