@@ -10,6 +10,7 @@ import yaml
 
 from arboleda.app.client import PlantClient
 from arboleda.dashboard.wording import LANGUAGES
+from arboleda.model.messages import Verb
 
 from ..patience import PATIENCE_MS
 from .conftest import SHIPPED
@@ -91,6 +92,39 @@ def in_trouble(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     shared = str(SHIPPED.with_name("shared.yaml"))
     with running(folder, "--plant", shared, "--boards", "real", "--rate", "1") as address:
         yield address
+
+
+@pytest.fixture(scope="module")
+def crowd(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A plant of seven cells, of which the last is stopped."""
+    folder = tmp_path_factory.mktemp("crowd")
+    plant = yaml.safe_load(SHIPPED.read_text())
+    plant["cells"] = {f"c{n}": numbered(plant["cells"]["sis_a"], n) for n in range(1, 8)}
+    file = folder / "plant.yaml"
+    file.write_text(yaml.safe_dump(plant))
+    with running(folder, "--plant", str(file)) as address:
+        PlantClient(folder).operate(Verb.STOP, "c7")
+        yield address
+
+
+def numbered(cell: dict[str, Any], n: int) -> dict[str, Any]:
+    arm = {**cell["arm"], "name": f"a{n}", "mqtt": f"a_{n}", "twin": f"t{n}"}
+    return {**cell, "arm": arm, "mobile": {**cell["mobile"], "name": f"m{n}"}}
+
+
+def test_axe_finds_nothing_on_many_cells(crowd: str, eye: Callable[[str], Eye]) -> None:
+    eyes = eye(crowd)
+    page = eyes.page
+    page.wait_for_selector(".crowd > :first-child[data-cell=c7]", state="attached")
+    page.wait_for_selector(".for-all [data-act=clear]")
+    eyes.look("many cells, trouble first")
+    assert not page.is_visible("[data-cell=c7] .tree-box")
+    page.click(".counts [data-s=aborted] a")
+    page.wait_for_selector("[data-cell=c7].opened .tree-box")
+    eyes.look("one of them opened")
+    page.click("[data-choose=c7]")
+    page.wait_for_selector("[data-cell=c7]:not(.opened)", state="attached")
+    assert not eyes.violations, "\n".join(eyes.violations)
 
 
 def test_axe_finds_nothing_on_a_plant_at_work(at_work: str, eye: Callable[[str], Eye]) -> None:

@@ -6,9 +6,11 @@ from typing import Any
 
 import pytest
 
-from arboleda.dashboard.faces.moment import seconds
+from arboleda.dashboard.faces.moment import Moment, seconds
+from arboleda.dashboard.faces.stop import face as stop_face
 from arboleda.dashboard.faces.stop import stopped
 from arboleda.dashboard.faces.tasks import sorted_tasks
+from arboleda.dashboard.wording import words
 from arboleda.model.messages import Verb
 from arboleda.testing import faults
 from arboleda.views.changes import changed
@@ -312,3 +314,41 @@ def test_refused_messages_are_counted_with_the_last_reason(told: Callable[..., A
 )
 def test_spans_are_short(value: float | None, text: str) -> None:
     assert seconds(value) == text
+
+
+def test_cells_in_trouble_come_first_and_the_counts_lead_to_them(told: Callable[..., Any]) -> None:
+    rig = told()
+    assert rig.face()["order/cells"] == ["sis_a", "sis_b", "sis_c"]
+    rig.operate(Verb.STOP, "sis_c")
+    rig.wait(1.0)
+    face = rig.face()
+    assert face["order/cells"] == ["sis_c", "sis_a", "sis_b"]
+    assert face["rows/counts"] == ["aborted", "idle"]
+    assert face["row/counts/aborted"]["link"]["to"] == {"tab": "cells", "cell": "sis_c", "task": None}
+    assert face["row/counts/idle"]["texts"] == ["idle: 2"]
+
+
+def test_what_leads_out_of_a_stop_is_offered_for_the_whole_plant(told: Callable[..., Any]) -> None:
+    rig = told()
+    assert rig.face()["rows/for_all"] == []
+    for verb, following in ((Verb.STOP, "clear"), (Verb.CLEAR, "reset"), (Verb.RESET, "resume")):
+        rig.operate(verb)
+        rig.wait(1.0)
+        face = rig.face()
+        assert face["rows/for_all"] == [following]
+        (offer,) = face[f"row/for_all/{following}"]["acts"]
+        assert (offer["act"], offer["of"]) == (following, "")
+
+
+def test_below_the_stop_button_stands_no_list_of_a_hundred_robots() -> None:
+    robots = [robot(f"a{number}", still=False) for number in range(100)]
+    moment = Moment(
+        snapshot={"robots": robots},
+        layout={"no_stop": []},
+        links={},
+        trees={},
+        events=[],
+        words=words("en"),
+        unix_s=0.0,
+    )
+    assert stop_face(moment)["text/stop"][0].endswith("a6, a7 and 92 more")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .plant_side import Layout
-from .tags import link, live, tag, way
+from .tags import link, live, rows, tag, way
 from .wording import LANGUAGES, Words
 
 
@@ -13,6 +13,7 @@ def build(layout: Layout, words: Words, parts: list[str], role: str | None) -> N
         _stop(words, words("stop.button"), words("does.stop"))
         with tag("div", classes="brand"):
             tag("h1", layout["plant"])
+            rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum", role="status")
         _tabs(words, parts)
         _tools(words, role)
@@ -27,6 +28,7 @@ def of_record(layout: Layout, words: Words, parts: list[str], role: str | None, 
     with tag("header", classes="top"):
         with tag("div", classes="brand"):
             tag("h1", layout["plant"])
+            rows("counts", [""], classes="counts")
             live("p", "sum", classes="sum")
         _tabs(words, parts)
         if beside:

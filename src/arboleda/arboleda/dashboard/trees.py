@@ -10,13 +10,13 @@ from .plant_side import Layout
 from .tags import link, live, report, rows, tag, way
 from .wording import Words
 
-MANY = 4  # cells; more than these are shown one tree at a time on a wall screen too
+FEW, CROWD = 4, 6  # cells: so few have all their trees on a wall screen, a crowd has small cards
 
 
 def build(layout: Layout, words: Words) -> None:
     once = [*devices_once(layout["cells"])]
-    many = "many" if len(layout["cells"]) > MANY else "few"
-    with tag("div", classes=f"cells {many}"):
+    rows("for_all", [""], classes="for-all")
+    with tag("div", classes=f"cells {_size(len(layout['cells']))}"):
         for cell in layout["cells"]:
             with tag("article", classes="cell", data_cell=cell["name"]):
                 _card(cell, [device for of, device in once if of == cell["name"]], words)
@@ -30,6 +30,12 @@ def build(layout: Layout, words: Words) -> None:
                         failure = f"{cell['name']}.failure"  # empty where none is in the record
                         way(None, there, classes="to-record", data_live=failure)
                     rows(f"changes.{cell['name']}", ["", "", ""], classes="small")
+
+
+def _size(cells: int) -> str:
+    if cells >= CROWD:
+        return "crowd"
+    return "few" if cells <= FEW else "many"
 
 
 def beside(layout: Layout, words: Words) -> None:

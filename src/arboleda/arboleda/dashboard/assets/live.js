@@ -61,7 +61,7 @@ export function drawList(list) {
   box.closest(".table").classList.toggle("is-empty", rows.length === 0);
 }
 
-function keepingFocus(change) {
+export function keepingFocus(change) {
   const focused = document.activeElement;
   const list = focused?.closest("[data-rows]");
   change();

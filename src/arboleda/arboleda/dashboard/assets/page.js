@@ -29,7 +29,7 @@ function arrive(there) {
   const { tab, cell, task: named } = there;
   question.dismiss(); // it was asked elsewhere
   shell.showPart(tab);
-  shell.showCell(cell ?? shell.cells()[0]);
+  shell.showCell(cell);
   if (cellOf(scope.of) !== (cell ?? "")) chooseScope(cell ?? "");
   form.offer(cell);
   task.show(named);

@@ -147,7 +147,7 @@ function arrive(there) {
   if (!shell.settled(there)) return;
   const { tab, cell, task: named, at: asked } = there;
   shell.showPart(tab);
-  shell.showCell(cell ?? shell.cells()[0]);
+  shell.showCell(cell);
   open(named);
   if (moment !== null && Number(asked) && address(moment) !== asked) go(Number(asked) * 1000);
   tree.close();

@@ -1,6 +1,6 @@
 // What every page of ours does: parts, cells, filters, language, look, the browser's tab.
 
-import { drawList, setRowFilter, value } from "./live.js";
+import { drawList, keepingFocus, onChange, setRowFilter, value } from "./live.js";
 import * as place from "./place.js";
 
 export const all = (selector) => [...document.querySelectorAll(selector)];
@@ -14,6 +14,8 @@ export function start() {
   look(lookNow());
   setRowFilter((list, row) => !filters[list] || row?.cell === filters[list]);
   document.addEventListener("click", clicked);
+  onChange(inOrder);
+  document.querySelector(".cells")?.addEventListener("pointerleave", inOrder);
 }
 
 // A line below the header; false where the sentence is one of trouble.
@@ -38,9 +40,25 @@ export function showPart(chosen) {
   all("[data-tab]").forEach((tab) => (tab.dataset.tab === chosen ? tab.setAttribute("aria-current", "page") : tab.removeAttribute("aria-current")));
 }
 
-export function showCell(chosen) {
+// In a crowd a card is opened by who names it, so that all of them are seen at first.
+const inCrowd = () => document.querySelector(".cells.crowd") !== null;
+
+export function showCell(named) {
+  const chosen = named ?? cells()[0];
+  const pressed = inCrowd() ? named : chosen;
   all("article[data-cell]").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
-  all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === chosen));
+  all(".crowd > .cell").forEach((cell) => cell.classList.toggle("opened", cell.dataset.cell === named));
+  all("[data-choose]").forEach((card) => card.setAttribute("aria-pressed", card.dataset.choose === pressed));
+}
+
+// Trouble first; nothing moves under a pointer that is about to press something.
+export function inOrder() {
+  const box = document.querySelector(".cells");
+  const order = value("order/cells");
+  if (!box || !order || box.matches(":hover")) return;
+  if (order.every((name, n) => box.children[n]?.dataset.cell === name)) return;
+  const found = new Map([...box.children].map((cell) => [cell.dataset.cell, cell]));
+  keepingFocus(() => box.append(...order.map((name) => found.get(name))));
 }
 
 const ICONS = { trouble: "tree_trouble", waits: "tree_waits" };
@@ -86,7 +104,8 @@ function clicked(event) {
   const button = event.target.closest("button");
   if (!button) return;
   const { choose, twinCell, filter, value: cell, language } = button.dataset;
-  if (choose ?? twinCell) place.go({ cell: choose ?? twinCell });
+  const opened = choose && inCrowd() && button.getAttribute("aria-pressed") === "true";
+  if (choose ?? twinCell) place.go({ cell: opened ? null : (choose ?? twinCell) });
   if (filter) filterBy(filter, cell);
   if (language) cookie("language", language), location.assign(place.address({ lang: language }));
   if (button.classList.contains("look")) nextLook();

@@ -24,10 +24,22 @@ def face(moment: Moment) -> Face:
     cells = moment.snapshot["cells"]
     every = {verb for cell in cells for verb in suggested(cell) if verb in FOR_ALL}
     found["text/suggested.plant"] = [" ".join(sorted(every)), ""]
+    found.update(_for_all(moment, [verb for verb in FOR_ALL if verb in every]))
     for row in (*cells, *moment.snapshot["robots"]):
         found[f"text/refused.{row['name']}"] = [_refused(moment, row["refused"]), ""]
     found["text/refused.plant"] = [_refused(moment, refused_everywhere(cells)), ""]
     found.update(_zones(moment))
+    return found
+
+
+def _for_all(moment: Moment, verbs: list[str]) -> Face:
+    """What several cells want at once, offered beside the cards for the whole plant."""
+    words = moment.words
+    found: Face = {"rows/for_all": verbs}
+    for verb in verbs:
+        label = words("cells.for_all", verb=words.of("verb", verb))
+        offer = {"act": verb, "of": "", "label": label, "does": words.of("does", verb)}
+        found[f"row/for_all/{verb}"] = {"state": "next", "texts": [], "acts": [offer]}
     return found
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from . import Face
 from .moment import Moment
 
+NAMED = 8  # robots below the button; of more, how many
 LATCHED = 4  # MotionState.STOP_LATCHED
 
 
@@ -57,5 +58,11 @@ def face(moment: Moment) -> Face:
         "unconfirmed": found.silent,
         "partly": found.confirmed,
     }.get(found.state, ())
-    sentence = moment.words(f"stop.{found.state}", robots=", ".join(robots), count=len(found.confirmed))
+    sentence = moment.words(f"stop.{found.state}", robots=_named(moment, robots), count=len(found.confirmed))
     return {"text/stop": [sentence, found.state]}
+
+
+def _named(moment: Moment, robots: tuple[str, ...]) -> str:
+    names = ", ".join(robots[:NAMED])
+    more = len(robots) - NAMED
+    return moment.words("stop.and_more", robots=names, count=more) if more > 0 else names

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from typing import Any
+
 from arboleda.views.view import standing, waited_for
 
 from . import Face, asked, cells, links, panel, stop, tasks, timeline
@@ -22,24 +25,52 @@ WORST = (
     "idle",
 )
 WELL = ("execute", "idle")
+Row = dict[str, Any]
 
 
 def face(moment: Moment) -> Face:
     found: Face = {"text/sum": _sum(moment), "text/title": _title(moment), "text/needs": _needs(moment)}
+    found |= {"order/cells": _trouble_first(moment), **_counts(moment)}
     for part in PARTS:
         found.update(part(moment))
     return found
 
 
 def _sum(moment: Moment) -> list[str]:
-    """How many cells are in which state, the worst of them colours it; and who is waited for."""
+    """Who is waited for, and whether the plant ends; the worst state of a cell colours it."""
     states = [standing(cell) for cell in moment.snapshot["cells"]]
-    there = [state for state in WORST if state in states]
-    counts = [f"{moment.words.of('cell_state', state)}: {states.count(state)}" for state in there[::-1]]
     ending = [moment.words("page.ending")] if moment.snapshot["ending"] else []
     people = [name for names in waited_for(moment.snapshot).values() for name in names]
     waits = [_waits(moment, people)] if people else []
-    return [" · ".join([*counts, *waits, *ending]), there[0] if there else ""]
+    return [" · ".join([*waits, *ending]), min(states, key=WORST.index, default="")]
+
+
+def _trouble_first(moment: Moment) -> list[str]:
+    """Those that need somebody, the worst first; all others as the plant file has them."""
+    waited = waited_for(moment.snapshot)
+
+    def rank(cell: Row) -> tuple[int, bool]:
+        stands = standing(cell)
+        return len(WORST) if stands in WELL else WORST.index(stands), cell["name"] not in waited
+
+    return [cell["name"] for cell in sorted(moment.snapshot["cells"], key=rank)]
+
+
+def _counts(moment: Moment) -> Face:
+    """How many cells are in which state, each with the way to the first of them."""
+    first: dict[str, str] = {}
+    for cell in moment.snapshot["cells"]:
+        first.setdefault(standing(cell), cell["name"])
+    states = Counter(standing(cell) for cell in moment.snapshot["cells"])
+    there = [state for state in WORST if state in first]
+    found: Face = {"rows/counts": there}
+    for state in there:
+        found[f"row/counts/{state}"] = {
+            "state": state,
+            "texts": [f"{moment.words.of('cell_state', state)}: {states[state]}"],
+            "link": {"column": 0, "to": {"tab": "cells", "cell": first[state], "task": None}},
+        }
+    return found
 
 
 def _waits(moment: Moment, people: list[str]) -> str:

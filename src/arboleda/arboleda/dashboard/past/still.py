@@ -15,7 +15,8 @@ Row = dict[str, Any]
 def without_acts(face: Face) -> Face:
     """The same face with no button; what one was called stands in its row where nothing else would."""
     found = {key: _told(each) if key.startswith("row/") else each for key, each in face.items()}
-    return found | {key: ["", ""] for key in found if key.endswith(".offer")}
+    none: Face = {"rows/for_all": []} if "rows/for_all" in found else {}
+    return found | none | {key: ["", ""] for key in found if key.endswith(".offer")}
 
 
 def _told(row: Row) -> Row:
