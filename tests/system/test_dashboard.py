@@ -361,7 +361,7 @@ def test_a_link_leads_to_part_cell_and_language(open_page: Open) -> None:
     show(page, "panel")
     page.wait_for_selector("[data-scope=sis_b][aria-pressed=true]")
     page.click("[data-language=en]")
-    page.wait_for_selector("[aria-label='For whom']")
+    page.wait_for_selector("[aria-label='What to act on']")
     assert "cell=sis_b" in page.url and "lang=en" in page.url
     page.go_back()
     page.wait_for_selector("html[lang=es]")

@@ -69,7 +69,12 @@ test_of.__test__ = False  # type: ignore[attr-defined]
             "the board reports a fault",
         ),
         (2.5, fault("brown_out", "rm_sis_a", 3.0), "the board of rm_sis_a booted", "driving path 0B"),
-        (3.0, fault("stuck_effector", "ra_1", 30.0), "ra1 did not switch", "while switching the effector on"),
+        (
+            3.0,
+            fault("stuck_effector", "ra_1", 30.0),
+            "clamp of ra1 did not do",
+            "while switching the effector on",
+        ),
     ],
 )
 def test_the_test_of_a_report_fails_in_the_same_way(

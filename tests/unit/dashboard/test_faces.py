@@ -244,9 +244,10 @@ def test_what_would_be_refused_is_disabled_with_the_reason(told: Callable[..., A
     rig = told()
     rig.operate(Verb.STOP, "sis_a")
     rig.wait(1.0)
-    clear, reset, _ = ways(rig.face())
+    clear, reset, resume = ways(rig.face())
     assert (clear["acts"][0]["refused"], reset["acts"][0]["refused"]) == (False, True)
-    assert reset["texts"][1] == "Not now: sis_a is aborted; this needs a cell that is stopped"
+    assert reset["texts"][1] == "After Clear sis_a"
+    assert resume["texts"][1] == "After Reset sis_a"
 
 
 def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None:

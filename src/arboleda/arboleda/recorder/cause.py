@@ -119,7 +119,9 @@ PHRASES = {
     "no_part": Phrase("cause.no_part", "no part lay where {robot} was to pick it up"),
     "not_gripped": Phrase("cause.not_gripped", "{robot} closed, and held no part"),
     "part_lost": Phrase("cause.part_lost", "{robot} lost its part on the way"),
-    "switch": Phrase("cause.switch", "{robot} did not switch what it holds with as it was told"),
+    "switch": Phrase(
+        "cause.switch", "The gripper, suction cup or clamp of {robot} did not do what it was told"
+    ),
     "off_target": Phrase("cause.off_target", "{robot} said that it was done, and what it reported denies it"),
     "short": Phrase(
         "cause.short",

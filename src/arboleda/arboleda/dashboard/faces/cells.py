@@ -109,9 +109,10 @@ def _ways(words: Words, cell: Row) -> Face:
     """What leads the cell out: a row for each advice, in the order to do it."""
     name, found = cell["name"], {}
     for number, advice in enumerate(cell["advice"]):
+        before = cell["advice"][number - 1] if number else None
         found[f"row/ways.{name}/{number}"] = {
             "state": "hand" if advice["hand"] else "next" if number == 0 else "later",
-            "texts": [_said(words, advice) if advice["hand"] else "", _note(words, advice)],
+            "texts": [_said(words, advice) if advice["hand"] else "", _note(words, advice, before)],
             "acts": [] if advice["hand"] else [_offer(words, advice)],
         }
     return {f"rows/ways.{name}": [str(number) for number in range(len(cell["advice"]))], **found}
@@ -124,9 +125,11 @@ def _said(words: Words, advice: Row) -> str:
     return said[:1].upper() + said[1:]
 
 
-def _note(words: Words, advice: Row) -> str:
-    """Why not now; else what comes of it."""
-    if advice["refusal"]:
+def _note(words: Words, advice: Row, before: Row | None) -> str:
+    """What comes first, or why not now; else what comes of it."""
+    if advice["refusal"] and before and not advice["instead"]:
+        note = words("ways.after", first=_said(words, before))
+    elif advice["refusal"]:
         note = words("ways.not_yet", why=words.say(advice["refusal"]))
     elif advice["drops"]:
         note = words("ways.drops", robots=", ".join(advice["drops"]))
