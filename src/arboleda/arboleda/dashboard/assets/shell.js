@@ -43,8 +43,11 @@ export function showPart(chosen) {
 // In a crowd a card is opened by who names it, so that all of them are seen at first.
 const inCrowd = () => document.querySelector(".cells.crowd") !== null;
 
+let first; // of the plant file: who names none sees the same one, whatever is in trouble meanwhile
+
 export function showCell(named) {
-  const chosen = named ?? cells()[0];
+  first ??= cells()[0];
+  const chosen = named ?? first;
   const pressed = inCrowd() ? named : chosen;
   all("article[data-cell]").forEach((cell) => cell.classList.toggle("chosen", cell.dataset.cell === chosen));
   all(".crowd > .cell").forEach((cell) => cell.classList.toggle("opened", cell.dataset.cell === named));
