@@ -45,7 +45,7 @@ from arboleda.model.messages import (
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel
 from arboleda.testing import shipped
 from arboleda.wire.status import STALE, to_status
-from arboleda_ros import statuses
+from arboleda_ros import convert, statuses
 from arboleda_ros.link import connect, limit_discovery
 from arboleda_ros.orchestrator import NoBridge
 
@@ -163,6 +163,17 @@ def test_a_command_reaches_the_bridge_with_its_id(pair, sent):
     (event,) = pair.bridge.events
     assert (event.message, event.copied, event.sender) == (sent, False, "")
     assert event.at == pytest.approx(time.monotonic(), abs=1.0)
+
+
+def test_an_id_on_a_plain_topic_makes_no_command_of_the_plant(pair, links):
+    stranger = Stranger(links(), "stranger")
+    forged = convert.command_message(replace(MOVE, id="7-9999"))
+    assert [dim.label for dim in forged.layout.dim] == ["id=7-9999"]
+    stranger.say("/ra1/joint_goals_q", forged)
+    eventually(lambda: pair.bridge.events)
+    (event,) = pair.bridge.events
+    assert event.message == replace(MOVE, id="", heard=None)
+    assert event.sender
 
 
 def test_who_listens_beside_the_bridge_hears_copies(pair, links):

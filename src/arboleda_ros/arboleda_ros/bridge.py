@@ -19,7 +19,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import Link, PlantModel, Robot
 from arboleda.wire import epochs, rejections
-from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant
+from arboleda.wire.hop import HEARTBEAT, PLAIN, FromPlant, without_id
 from arboleda.wire.rejections import ForeignCommand, Rejection
 from arboleda.wire.status import ERROR, OK, WARN
 
@@ -112,8 +112,9 @@ class BridgePort(Port):
         if convert.is_copy(message):
             return
         with self._telling(robot, PLAIN[kind]):
-            command = convert.command(kind, robot, message)
-        sender = "" if command.id else self._senders.of(f"{robot.name}/{PLAIN[kind]}")
+            # The plant gives its ids on `command`, before this bridge too: one that stands here is no proof.
+            command = without_id(convert.command(kind, robot, message))
+        sender = self._senders.of(f"{robot.name}/{PLAIN[kind]}")
         self._on_event(FromPlant(at=self._clock(), message=command, sender=sender))
 
     @contextmanager
