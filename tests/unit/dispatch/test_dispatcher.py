@@ -11,7 +11,7 @@ from arboleda.dispatch.dispatcher import Dispatcher
 from arboleda.dispatch.ledger import State
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
-from arboleda.model.commands import Home, Stop, Switch
+from arboleda.model.commands import Home, Stop, StopMode, Switch
 from arboleda.model.messages import Failure, Reason, Report
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.testing import shipped
@@ -141,3 +141,19 @@ def test_a_command_names_the_last_telemetry_of_its_robot_that_was_heard_and_a_st
     dispatcher.latch("ra1")
     sent = [each for each in dispatcher.outbox if isinstance(each, MoveJoints | Stop)]
     assert [(type(each), each.heard) for each in sent] == [(MoveJoints, 42), (Stop, None)]
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_command_that_the_plant_never_gave_is_told_and_halted_and_the_next_number_is_above_it(
+    dispatcher: Dispatcher, *, moving: bool
+) -> None:
+    go = partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0))
+    move = dispatcher.send(go, "sis_a", "moving", 100.1) if moving else None
+    dispatcher.outbox.clear()
+    told = replace(Report(at=100.2, **STILL), state=MotionState.MOVING, accepted=f"{EPOCH}-9999")
+    for at in (100.2, 100.3):
+        dispatcher.report(replace(told, at=at), at)
+    assert dispatcher.outbox == [Stop(id=f"{EPOCH}-10000", robot="ra1", mode=StopMode.HALT)]
+    (noticed,) = dispatcher.interference.noticed
+    assert f"took command {EPOCH}-9999, which this plant never gave" in str(noticed.sentence)
+    assert move is None or move.interference == noticed.sentence

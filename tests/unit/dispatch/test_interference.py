@@ -35,3 +35,23 @@ def test_each_command_of_others_has_the_next_number_and_the_last_twenty_are_kept
     for at in range(22):
         known.note("ra1", "ra1: effector_cmd 0 of another node was refused", float(at), obeyed=False)
     assert [each.number for each in known.noticed] == list(range(3, 23))
+
+
+@pytest.mark.parametrize(
+    ("accepted", "number"),
+    [
+        ("7-3", None),
+        ("7-4", 4),
+        ("6-9999", None),
+        ("7-x", None),
+        (None, None),
+        ("7-9999999999", 9_999_999_999),
+    ],
+)
+def test_a_command_of_this_start_above_the_last_that_was_given_is_forged(
+    accepted: str | None, number: int | None
+) -> None:
+    known = Interferences()
+    report = Report(at=1.0, robot="ra1", accepted=accepted)
+    assert known.forged(report, 7, 3) == number
+    assert known.forged(report, 7, 3) is None

@@ -28,7 +28,7 @@ from arboleda.model.sentence import BOTH, Phrase, Sentence
 from . import evidence
 from .belief import Belief
 from .evidence import Before, Verdict
-from .interference import Interferences
+from .interference import MOST, NEVER_GIVEN, Interferences
 from .ledger import Entry, Feed, Ledger, State
 from .underway import UnderWay, Unnamed
 
@@ -361,6 +361,17 @@ class Dispatcher:
         refused, obeyed = self.interference.rise(report)
         if report.foreign is not None and (refused or obeyed):
             self.interfere(report.robot, report.foreign, report.at, obeyed=obeyed)
+        number = self.interference.forged(report, self.epoch, self._count)
+        if number is not None:
+            self._halt_forged(report, number)
+
+    def _halt_forged(self, report: Report, number: int) -> None:
+        """Somebody commanded a robot in the plant's name: it is halted, and the next numbers are higher."""
+        sentence = NEVER_GIVEN(robot=report.robot, id=report.accepted or "")
+        self.interfere(report.robot, sentence, report.at, obeyed=True)
+        if number < MOST:
+            self._count = number
+        self._stop(report.robot, StopMode.HALT)
 
     def _prove(self, belief: Belief, report: Report, now: float, before: Before | None = None) -> None:
         """Book what a report proves; `before` is None where it only repeats what was believed."""

@@ -6,9 +6,15 @@ from collections import deque
 from dataclasses import dataclass
 
 from arboleda.model.messages import Report
-from arboleda.model.sentence import Sentence
+from arboleda.model.sentence import Phrase, Sentence
 
 KEPT = 20
+MOST = 1_000_000_000  # no plant gives so many commands in one start; a bridge reads ids of ten digits
+NEVER_GIVEN = Phrase(
+    "foreign.never_given",
+    "{robot}: its bridge took command {id}, which this plant never gave; it is halted. The log names other "
+    "nodes that publish on /{robot}/command",
+)
 LATELY_S = 5.0  # in which a robot reports what a command has brought about
 
 
@@ -30,6 +36,7 @@ class Interferences:
         self._counts: dict[str, tuple[int | None, int, int]] = {}  # robot -> bridge's start, refused, obeyed
         self._obeyed: dict[str, tuple[float, Sentence]] = {}
         self._count = 0
+        self._accepted: dict[str, str | None] = {}
 
     def note(self, robot: str, sentence: Sentence, at: float, *, obeyed: bool) -> None:
         self._count += 1
@@ -52,3 +59,12 @@ class Interferences:
             refused = obeyed = 0
         self._counts[report.robot] = told
         return told[1] > refused, told[2] > obeyed
+
+    def forged(self, report: Report, epoch: int, given: int) -> int | None:
+        """The number of a command of `epoch` that a robot newly took, above the last that was given."""
+        if report.accepted == self._accepted.get(report.robot):
+            return None
+        self._accepted[report.robot] = report.accepted
+        start, _, number = (report.accepted or "").partition("-")
+        is_ours = start == str(epoch) and number.isascii() and number.isdigit()
+        return int(number) if is_ours and int(number) > given else None
