@@ -122,6 +122,10 @@ class Step(Leaf):
         return self.RESULTS[self.step.status]
 
     def halt(self) -> None:
+        self.halt_step()
+        super().halt()
+
+    def halt_step(self) -> None:
+        """End what the plant does for it, if it does something."""
         if self.step.status is Status.RUNNING:
             self.step.stop(Status.INVALID)
-        super().halt()

@@ -33,6 +33,7 @@ class Forgiving(Step):
 
     def work(self) -> Result:
         if self.context.failure is not None:
+            self.halt_step()
             return FAILURE
         result = super().work()
         cause = self.context.failure
@@ -61,16 +62,22 @@ class Main(Node):
         try:
             result = self.below[0].execute()
         except ScriptError as error:
-            self.below[0].reset()
+            self._halt_all()
             self.causes[:] = [Failure(reason=Reason.REJECTED, sentence=error.sentence)]
             result = FAILURE
         if self.context.failure is not None:
-            self.below[0].reset()
+            self._halt_all()
             return FAILURE
         if result is FAILURE:
             generic = Failure(reason=Reason.REJECTED, sentence=FAILED(tree=self.name))
             self.context.fail(self.causes[0] if self.causes else generic, self)
         return result
+
+    def _halt_all(self) -> None:
+        """Halt whatever runs, also below nodes that have ended: an error comes in the middle of a tick."""
+        for node in list(self.below[0].iterate()):
+            if node.status is Status.RUNNING:
+                node.stop(Status.INVALID)
 
     def halt(self) -> None:
         self.below[0].reset()
