@@ -31,31 +31,6 @@ def test_a_number_above_ours_is_somebody_elses_and_told_once() -> None:
     assert labels.foreign is None
 
 
-def led(least_epoch: int) -> Telemetry:
-    return Telemetry(state=MotionState.STOPPED, q=None, node=0, least_epoch=least_epoch)
-
-
-def test_a_number_of_our_epoch_before_our_first_command_is_forged_and_we_rise_above_it() -> None:
-    labels = Labels(1000)
-    labels.hear(led(1000))
-    labels.hear(accepted(1000, 5000))
-    assert (labels.foreign, labels.forged, labels.epoch) == ((1000, 5000), True, 1001)
-
-
-def test_a_number_that_we_have_given_is_not_forged_and_moves_no_epoch() -> None:
-    labels = Labels(1000)
-    seq = labels.issue(Home(id="1-1", robot="ra1"))
-    labels.hear(accepted(1000, seq))
-    assert (labels.foreign, labels.forged, labels.epoch) == (None, False, 1000)
-
-
-def test_two_bridges_do_not_rise_above_one_another() -> None:
-    labels = Labels(1000)
-    labels.hear(led(1000))
-    labels.hear(accepted(1050, 3))
-    assert (labels.foreign, labels.forged, labels.epoch) == ((1050, 3), False, 1000)
-
-
 def test_a_refusal_is_new_once_and_again_after_a_reboot() -> None:
     labels = Labels(1000)
     labels.issue(Home(id="1-1", robot="ra1"))

@@ -257,13 +257,7 @@ class Board:
             sentence = rejections.taken(self.robot, epoch, seq)
             self._count_foreign(sentence, refused=False)
             out.append(ForeignCommand(at=at, robot=self.robot.name, sentence=sentence))
-        return [*out, *self._halt_forged(at)]
-
-    def _halt_forged(self, at: float) -> list[Message]:
-        """A halt of what somebody gave in the name of this bridge; it counts whatever its numbers."""
-        if not self.labels.forged or not self.robot.has_stop:
-            return []
-        return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.HALT))
+        return out
 
     def _given_up_before(self, at: float) -> list[Message]:
         """A report of each command that the board has newly given up, but for the last, which all tell."""

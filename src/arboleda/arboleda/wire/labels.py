@@ -33,9 +33,7 @@ class Labels:
     `objection` is what the board has refused in its last telemetry and not before, with the word.
     `answered` is the last query that a device answered, with the answer; `failed` the last command that it
     gave up, with its word, and `failed_before` those that it names newly beside that one.
-    `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before;
-    `forged`, whether that has our own epoch. No other bridge gives that, so none rises in answer where
-    ours does.
+    `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before.
     """
 
     def __init__(self, epoch: int) -> None:
@@ -48,7 +46,6 @@ class Labels:
         self.failed_before: list[tuple[str, str]] = []
         self.objection: tuple[Issued, str] | None = None
         self.foreign: tuple[int, int] | None = None
-        self.forged = False
         self._accepted: tuple[int | None, int | None] = (None, None)  # as the board said it last
         self._least = -1  # the oldest epoch whose commands count for the board, as it said last
         self._seq = 0
@@ -96,14 +93,11 @@ class Labels:
         """Take over what telemetry says about our commands; the seqs that it reports ended."""
         acknowledged = -1 if said.ack_epoch is None else said.ack_epoch
         self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
-        self.foreign = self._strange(said)
         begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
         if begins and (acknowledged >= self.epoch or self._least > self.epoch):
             self._raise_above(self._least)
         self._led = self._led or self._least == self.epoch
-        self.forged = self.foreign is not None and self.foreign[0] == self.epoch
-        if self.forged:
-            self._raise_above(self.epoch)
+        self.foreign = self._strange(said)
         refused = self._refused(said)
         ours = said.ack_epoch == self.epoch
         self.accepted = self._name(said.ack) if ours else None
@@ -132,12 +126,11 @@ class Labels:
     def _strange(self, said: Telemetry) -> tuple[int, int] | None:
         """A number above ours that the board newly accepted: another MQTT client has commanded it.
 
-        Before it has heard of us, it may be one of the bridge before us, whose clock was ahead.
+        Before we have given it a command, it may be one of the bridge before us, whose clock was ahead.
         """
         accepted = (said.ack_epoch, said.ack)
         before, self._accepted = self._accepted, accepted
-        unheard_of = not self._spoken and not self._led
-        if unheard_of or said.ack_epoch is None or said.ack is None or accepted == before:
+        if not self._spoken or said.ack_epoch is None or said.ack is None or accepted == before:
             return None
         above = (said.ack_epoch, said.ack) > (self.epoch, self._seq)
         return (said.ack_epoch, said.ack) if above else None
