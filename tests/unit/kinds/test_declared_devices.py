@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from arboleda.core.cell_states import CellState
+from arboleda.dispatch.ledger import State
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect, FactType, UseError
 from arboleda.model.messages import Reason, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link, PlantModel
@@ -88,9 +89,9 @@ def test_what_a_question_needs_is_refused_where_it_is_not_so(shut: bool) -> None
         assert str(ended.sentence) == "oven needs lid to be closed, and said open: no doing weigh"
 
 
-def with_oven(recipe: Recipe, kind: DeviceKind) -> PlantModel:
+def with_oven(recipe: Recipe, kind: DeviceKind, evidence: Evidence = Evidence.IDS) -> PlantModel:
     """A cell with another kind of oven."""
-    made = model(recipe)
+    made = model(recipe, evidence=evidence)
     (cell,) = made.cells
     oven = replace(cell.roles["oven"], kind=kind)  # type: ignore[call-arg]
     return replace(made, cells=(replace(cell, members=(("oven", oven), cell.members[1])),))
@@ -125,6 +126,24 @@ def test_a_process_that_finishes_goes_on_through_a_stop_and_keeps_the_cell_from_
     assert str(here.plant.cells["bench"].waiting_for()) == "oven is still doing bake 10"
     assert here.wait(60.0, lambda: not here.machines["oven"].moving)
     assert here.machines["oven"].facts["dose"] == 10
+
+
+@pytest.mark.parametrize("evidence", list(Evidence), ids=lambda level: level.value)
+def test_a_process_that_finishes_while_its_device_is_stopped_is_seen_to_end(evidence: Evidence) -> None:
+    @recipe("heat")
+    def heat(cell: Kit):  # type: ignore[no-untyped-def]
+        return work(cell.device("oven").bake(dose=10))
+
+    bake = replace(OVEN.verbs["bake"], needs=())
+    here = Bench(with_oven(heat, replace(OVEN, verbs={**OVEN.verbs, "bake": bake}), evidence))
+    here.submit("bench heat")
+    here.wait(2.0)
+    assert here.operate(Verb.STOP) is None
+    ledger = here.plant.dispatcher.ledger
+    (entry,) = ledger.of_robot("oven")
+    assert here.wait(60.0, lambda: not here.machines["oven"].moving)
+    assert here.wait(1.0, lambda: not ledger.of_robot("oven"))
+    assert entry.state is State.DONE
 
 
 def test_a_motion_is_halted_by_a_stop() -> None:

@@ -106,12 +106,17 @@ def _look(entry: Entry, belief: Belief, report: Report) -> None:
     _look_at_goal(entry, belief, report)
     seen.moving = seen.moving or report.state is MotionState.MOVING
     if report.state is not None:
-        stopped = report.state is MotionState.STOPPED
-        seen.stopped_since = (seen.stopped_since or report.at) if stopped else None
+        seen.stopped_since = (seen.stopped_since or report.at) if _rests(entry, report) else None
     if report.done not in (None, seen.ended, entry.command.id):
         seen.unhomed = False  # the end of another command is told only now: what was seen is from before ours
     seen.unhomed = seen.unhomed or report.homed is False
     seen.ended = report.done or seen.ended
+
+
+def _rests(entry: Entry, report: Report) -> bool:
+    """Whether a robot says that it is at rest; one that is stopped says so once its work is finished."""
+    finished = entry.finishes and report.state is MotionState.STOP_LATCHED
+    return finished or report.state is MotionState.STOPPED
 
 
 def _look_at_goal(entry: Entry, belief: Belief, report: Report) -> None:
@@ -266,11 +271,11 @@ def _progress(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
 
 def _work_by_ids(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
     finished = report.done == entry.command.id
-    if finished and report.state is MotionState.STOPPED:
+    if finished and _rests(entry, report):
         return _off_target(entry, belief) if _elsewhere(entry, belief) else Verdict(feed=Feed.DONE)
     if entry.accepted_at is None:
         return Verdict(feed=Feed.ACCEPTED) if finished or report.accepted == entry.command.id else None
-    if report.state is MotionState.STOPPED and _elsewhere(entry, belief):
+    if _rests(entry, report) and _elsewhere(entry, belief):
         return _short(entry)
     return None
 
@@ -335,7 +340,7 @@ def _process_by_facts(entry: Entry, belief: Belief, report: Report) -> Verdict |
 
 
 def _work_by_state(entry: Entry, belief: Belief, report: Report) -> Verdict | None:
-    if entry.seen.moving and report.state is MotionState.STOPPED and entry.cancelled_at is None:
+    if entry.seen.moving and _rests(entry, report) and entry.cancelled_at is None:
         return Verdict(feed=Feed.DONE)  # after a halt, the same edge proves no more than the halt
     return Verdict(feed=Feed.ACCEPTED) if entry.seen.moving and entry.state is State.SENT else None
 

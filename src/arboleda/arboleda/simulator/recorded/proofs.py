@@ -150,7 +150,7 @@ def _moved(
     proof: Proof, sent: SentCommand, shown: Shown, report: Report, robot: Robot, off: float | None
 ) -> None:
     """Whether it is under way or done; `off` is how far beyond its tolerance the robot stands."""
-    command, stopped = sent.command, report.state is MotionState.STOPPED
+    command, stopped = sent.command, _rests(sent, report)
     if isinstance(command, Switch):
         told = all(report.fact(name) == value for name, value in command.sets)
         proof.done |= told if command.sets else report.done == command.id
@@ -179,6 +179,12 @@ def _moved(
         proof.done |= seen and (stopped or report.state is None)
     if (stopped or report.state is None) and not _surely_at(off):
         proof.causes.add(Reason.STOPPED_SHORT)
+
+
+def _rests(sent: SentCommand, report: Report) -> bool:
+    """Whether it says that it is at rest; what goes on through a stop has ended where it says "stopped"."""
+    latched = sent.is_work and not sent.can_be_halted and report.state is MotionState.STOP_LATCHED
+    return latched or report.state is MotionState.STOPPED
 
 
 def _at(off: float | None) -> bool:
