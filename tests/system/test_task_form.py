@@ -81,7 +81,7 @@ def test_another_recipe_asks_for_what_it_needs_and_no_more(page: Any) -> None:
 
 
 def test_a_task_for_any_cell_says_where_it_went_and_why(page: Any) -> None:
-    page.click("#task-form :text('la que antes la termine')")
+    page.click("#task-form :text('la que la termine antes')")
     page.click("#task-form [data-value=palletizing]")
     assert page.input_value("#task-text") == "sis_a,sis_b,sis_c palletizing"
     assert "cell=sis_a" not in page.url

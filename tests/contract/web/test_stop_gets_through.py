@@ -7,9 +7,9 @@ import http.client
 import json
 import socket
 import time
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from contextlib import ExitStack, closing, suppress
-from threading import Event, Semaphore
+from threading import Semaphore
 from typing import Any
 
 import pytest
@@ -169,22 +169,3 @@ def slow_page(app: FastAPI, built: list[int]) -> None:
         time.sleep(0.02)  # as NiceGUI does: nothing else runs in the loop meanwhile
         built.append(len(built))
         return "a page"
-
-
-def test_while_something_else_is_made_that_takes_long(serve, plant: Plant) -> None:
-    making, stopped = Event(), Event()
-
-    def slow(app: FastAPI) -> None:
-        @app.get("/slow")
-        async def make() -> bool:  # in the loop, as a page or a snapshot is made
-            making.set()
-            return stopped.wait(10)
-
-    web = serve(mount=slow)
-    with ThreadPoolExecutor() as browser:
-        page = browser.submit(web.client().get, "/slow")
-        assert making.wait(10)
-        assert stop(web, {}) == 200
-        stopped.set()
-        assert page.result().json() is True
-    assert plant.acts == [(Verb.STOP, "", False)]
