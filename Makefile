@@ -1,6 +1,6 @@
 # Everything a person types here; what each target does is in `make help`.
 .DEFAULT_GOAL := help
-.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
+.PHONY: run test integration-test test-tools judge-test ros-test campaign drawn-campaign devices-campaign crash-campaign standby-campaign kills hosts mutants cost firmware firmware-test firmware-robot fuzz install lint diagrams reference shots example-pictures clean help docs
 
 export PYTHON
 export PYTHONDONTWRITEBYTECODE := # what a target here runs hundreds of times is compiled once
@@ -77,6 +77,10 @@ hosts: install  ## a plant on hosts of its own (network namespaces; root): 1000 
 mutants:  ## plant 400 small bugs in core and wire, see which of them tests and simulator find; hours
 	@scripts/install test
 	PYTHONPATH=mutation $(BIN)/python -m arboleda_mutation $(MUTANTS)
+
+cost:  ## count the Python calls of pinned scenarios; fails where there are more than 2 % more; COST=--pin writes the table anew
+	@scripts/install test
+	$(BIN)/python -m arboleda_bench.cost $(COST)
 
 firmware:  ## build the board for Linux, firmware/build/board
 	@$(MAKE) --no-print-directory -C firmware board

@@ -61,7 +61,7 @@ def run(scene: Scene) -> Result:
 
 def _costs(model: PlantModel, calls: int) -> Iterator[tuple[str, Costs]]:
     yard = Yard(model)
-    move = _until_a_move(yard)
+    move = until_a_move(yard)
     tick = _cost(_tree(yard).tick_once, calls)
     yield "step: a report that repeats the last", (_cost_of_reports(yard, move, calls, 0.0), tick)
     yield "step: a report of a moving arm", (_cost_of_reports(yard, move, calls, FURTHER_RAD), tick)
@@ -110,15 +110,15 @@ def _ends_of_moves(yard: Yard, calls: int) -> Costs:
 def _cycle(yard: Yard, finish: Finish) -> list[float]:
     """One task from its beginning to its end; what each end of a move took that another command follows."""
     costs: list[float] = []
-    out = _begin(yard)
+    out = begin_task(yard)
     while not is_over(out):
         command = command_in(out)
-        if command is not None and _leads_on(yard, command):
+        if command is not None and leads_on(yard, command):
             yard.step(yard.accepts(command))
             cost, out = finish(yard, yard.finishes(command))
             costs.append(cost)
         else:
-            out = _go_on(yard, command)
+            out = go_on(yard, command)
     return costs
 
 
@@ -137,21 +137,21 @@ def _timed_tick(yard: Yard, report: Report) -> tuple[float, list[Any]]:
     return (thread_time_ns() - begin) / 1000, yard.step()
 
 
-def _until_a_move(yard: Yard) -> MoveJoints:
+def until_a_move(yard: Yard) -> MoveJoints:
     """Bring a storage task to the arm's first move, and that under way."""
-    out = _begin(yard)
+    out = begin_task(yard)
     while not isinstance(command := command_in(out), MoveJoints):
-        out = _go_on(yard, command)
+        out = go_on(yard, command)
     yard.step(yard.accepts(command))
     return command
 
 
-def _begin(yard: Yard) -> list[Any]:
+def begin_task(yard: Yard) -> list[Any]:
     yard.roll_call()
     return yard.ask(f"{yard.plant.model.cells[0].name} 0B 7")
 
 
-def _go_on(yard: Yard, command: Command | None) -> list[Any]:
+def go_on(yard: Yard, command: Command | None) -> list[Any]:
     """The robot does what was asked of it, or time passes."""
     if command is None:
         return yard.sleep()
@@ -159,7 +159,7 @@ def _go_on(yard: Yard, command: Command | None) -> list[Any]:
     return yard.step(yard.finishes(command))
 
 
-def _leads_on(yard: Yard, command: Command) -> bool:
+def leads_on(yard: Yard, command: Command) -> bool:
     """Whether the end of a command is that of a move that another command follows at once."""
     home = yard.plant.model.cells[0].home
     return isinstance(command, FollowPath) or (isinstance(command, MoveJoints) and command.q != home.q)

@@ -1,0 +1,1 @@
+"""Cost lock: the Python calls of pinned scenarios, which do not depend on how fast or busy a machine is."""

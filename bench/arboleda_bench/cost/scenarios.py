@@ -1,0 +1,230 @@
+"""Scenarios of the cost lock: what a plant does again and again, each from a beginning of its own.
+
+A scenario yields what is counted, one act after the other; what it does between two of them is not counted.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import httpx
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from arboleda.adapters import clock
+from arboleda.adapters.store import IN_MEMORY, Store
+from arboleda.adapters.web.api import make_app
+from arboleda.adapters.web.auth import Role
+from arboleda.app.config import load
+from arboleda.app.parts.orchestrator import Orchestrator
+from arboleda.app.parts.web import Side
+from arboleda.app.simulate.request import Request
+from arboleda.core.plant import Plant
+from arboleda.kinds.mobile import FollowPath
+from arboleda.model.commands import Command
+from arboleda.model.plant_model import PlantModel
+from arboleda.recorder.state import state_of
+from arboleda.recorder.steps import Step, as_json
+from arboleda.simulator.people import Attendant, Customers
+from arboleda.simulator.run import MINUTE_S
+from arboleda.simulator.world import World
+from arboleda.views import view
+
+from .. import plants
+from ..obedient import EPOCH, Yard, command_in, is_over
+from ..step import begin_task, go_on, leads_on, until_a_move
+
+Act = Callable[[], object]
+Scenario = Callable[[], Iterator[Act]]
+TIMES = 10
+SEEDS, CYCLES = 10, 1
+FURTHER_RAD = 1e-4
+TEXT = "c1 0B 7"
+
+
+def repeated_reports(cells: int) -> Iterator[Act]:
+    """Steps with a report that says nothing new."""
+    yield from _reports(cells, by_rad=0.0)
+
+
+def moving_reports(cells: int) -> Iterator[Act]:
+    """Steps with a report of an arm that has moved on."""
+    yield from _reports(cells, by_rad=FURTHER_RAD)
+
+
+def ends_of_moves(cells: int) -> Iterator[Act]:
+    """Steps with a report that ends a move, which the next command follows."""
+    yard = Yard(_model(cells))
+    out = begin_task(yard)
+    while not is_over(out):
+        command = command_in(out)
+        if command is None or not leads_on(yard, command):
+            out = go_on(yard, command)
+            continue
+        yard.step(yard.accepts(command))
+        report = yard.finishes(command)
+        made: list[Any] = []
+        yield lambda report=report, made=made: made.extend(yard.step(report))
+        out = made
+
+
+def waking() -> Iterator[Act]:
+    """Wakings of a tree that waits for a move."""
+    yard = Yard(_model(1))
+    until_a_move(yard)
+    run = yard.plant.cells["c1"].run
+    assert run is not None
+    for _ in range(TIMES):
+        yield run.tick
+
+
+def first_task() -> Iterator[Act]:
+    """A plant from its making to the first command of its first task."""
+    yield partial(_first_command, _model(1, dwell_s=0))
+
+
+def _first_command(model: PlantModel) -> None:
+    assert command_in(begin_task(Yard(model))) is not None
+
+
+def views(cells: int) -> Iterator[Act]:
+    """Views after one cell has changed."""
+    yard = Yard(_model(cells))
+    out = begin_task(yard)
+    view.snapshot(yard.plant)
+    while not is_over(out):
+        out = go_on(yard, command_in(out))
+        yield partial(view.snapshot, yard.plant)
+
+
+def recorded_steps() -> Iterator[Act]:
+    """What the flight record makes of the steps of a task."""
+    yard = Yard(_model(1))
+    out = begin_task(yard)
+    while not is_over(out):
+        command = command_in(out)
+        out = go_on(yard, command)
+        events = tuple(yard.words.values())
+        yield partial(_recorded, yard.plant, yard.now, events, tuple(out))
+
+
+def _recorded(plant: Plant, now: float, events: tuple[Any, ...], messages: tuple[Any, ...]) -> bytes:
+    return as_json(Step(0, now, events, messages, state_of(plant, 1)))
+
+
+def from_http() -> Iterator[Act]:
+    """A task from its HTTP request to its first command, in a plant that keeps it."""
+    model = _model(1, dwell_s=0)
+    with Store(IN_MEMORY) as store:
+        port = Port()
+        plant = WholePlant(model, EPOCH, _crash, store)
+        plant.connect(port)
+        for words in Yard(model).words.values():
+            plant.hear(replace(words, at=clock.seconds()))
+        plant.loop.turn()
+        transport = httpx.ASGITransport(app=Logged(make_app(Side(plant))))
+        client = httpx.AsyncClient(transport=transport, base_url="http://plant")
+        yield lambda: asyncio.run(_ask_by_http(client, plant, port))
+
+
+class WholePlant(Orchestrator):
+    """A plant as the web part wants it, with a history that nobody asks for here."""
+
+    def history(self, query: object) -> list[Any]:
+        return []
+
+    def oee(self, query: object) -> list[Any]:
+        return []
+
+
+class Port:
+    """A port that keeps the commands that leave."""
+
+    def __init__(self) -> None:
+        self.commands: list[Command] = []
+
+    def send(self, message: object) -> None:
+        if isinstance(message, FollowPath):
+            self.commands.append(message)
+
+
+class Logged:
+    """An application to which everybody is an operator."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await self._app({**scope, "arboleda.role": Role.OPERATOR}, receive, send)
+
+
+async def _ask_by_http(client: httpx.AsyncClient, plant: Orchestrator, port: Port) -> None:
+    async with client:
+        answer = asyncio.ensure_future(client.post("/api/tasks", json={"text": TEXT}))
+        while not port.commands:
+            await asyncio.sleep(0)
+            plant.loop.turn()
+        assert (await answer).status_code == 202
+
+
+def _crash(name: str, error: BaseException) -> None:
+    raise error
+
+
+def judged_seeds() -> Iterator[Act]:
+    """Simulated seeds with normal faults and every invariant."""
+    setting = Request(cycles=CYCLES).setting
+    for seed in range(1, SEEDS + 1):
+        yield partial(setting.run, seed)
+
+
+def bare_seeds() -> Iterator[Act]:
+    """The same plants and customers without faults and without a judge."""
+    setting = Request(cycles=CYCLES).setting
+    for seed in range(1, SEEDS + 1):
+        yield partial(_bare, setting.plant(seed), seed)
+
+
+def _bare(model: PlantModel, seed: int) -> None:
+    world = World(model)
+    customers = Customers(world, seed)
+    Attendant(world, seed)
+    while customers.cycles < CYCLES:
+        world.advance(MINUTE_S)
+
+
+def _reports(cells: int, by_rad: float) -> Iterator[Act]:
+    yard = Yard(_model(cells))
+    move = until_a_move(yard)
+    for _ in range(TIMES):
+        first, *others = yard.words[move.robot].q or ()
+        report = yard.say(replace(yard.words[move.robot], q=(first + by_rad, *others)))
+        yield partial(yard.plant.step, report.at, (report,))
+
+
+def _model(cells: int, **timing: float) -> PlantModel:
+    with tempfile.TemporaryDirectory() as folder:
+        return load(plants.write(Path(folder) / "plant.yaml", cells, timing=timing))
+
+
+SCENARIOS: dict[str, Scenario] = {
+    "step: a report that repeats the last": partial(repeated_reports, 1),
+    "step: a report that repeats the last, 100 cells": partial(repeated_reports, 100),
+    "step: a report of a moving arm": partial(moving_reports, 1),
+    "step: the report that ends a move": partial(ends_of_moves, 1),
+    "step: the report that ends a move, 100 cells": partial(ends_of_moves, 100),
+    "waking of a tree that waits on": waking,
+    "a plant from its making to its first command": first_task,
+    "a task from HTTP to its first command": from_http,
+    "view with one changed cell": partial(views, 1),
+    "view with one changed cell of 100": partial(views, 100),
+    "view with one changed cell of 300": partial(views, 300),
+    "recorded step": recorded_steps,
+    f"{SEEDS} simulated seeds, judged": judged_seeds,
+    f"{SEEDS} simulated seeds, not judged": bare_seeds,
+}

@@ -1,0 +1,88 @@
+"""Table of pinned costs: for each scenario its calls, and the functions that make most of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .counter import Calls
+
+FOLDER = Path(__file__).parent
+ALLOWED = 0.02  # a scenario may have so many more calls than are pinned
+LEAST_SHARE = 0.002  # of the calls of its scenario, for a function to be in the table
+NAMED = 6  # functions that grew, in a finding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """What a scenario costs: all its calls, and those of the functions that are called most."""
+
+    calls: int
+    functions: Mapping[str, int]
+
+    @classmethod
+    def of(cls, calls: Calls) -> Cost:
+        """The cost that was counted; the rarest functions are left out."""
+        most = sorted(calls.items(), key=lambda each: (-each[1], each[0]))
+        least = LEAST_SHARE * calls.total()
+        return cls(calls=calls.total(), functions={name: number for name, number in most if number >= least})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """A scenario's cost beside the pinned one, which is None for a scenario that is new."""
+
+    name: str
+    pinned: Cost | None
+    now: Cost
+
+    @property
+    def growth(self) -> float:
+        """The share by which the calls have grown; less than nothing where they are fewer."""
+        return 0.0 if self.pinned is None else self.now.calls / self.pinned.calls - 1
+
+    @property
+    def is_dearer(self) -> bool:
+        """Whether it fails: more calls than are allowed, or no pinned cost at all."""
+        return self.pinned is None or self.now.calls > self.pinned.calls * (1 + ALLOWED)
+
+    @property
+    def is_cheaper(self) -> bool:
+        """Whether it should be pinned anew, so that it stays so."""
+        return self.pinned is not None and self.now.calls < self.pinned.calls * (1 - ALLOWED)
+
+    def grown(self) -> list[str]:
+        """The functions that grew most, one line each."""
+        if self.pinned is None:
+            return []
+        rare = round(LEAST_SHARE * self.pinned.calls)
+        rows = []
+        for name, number in self.now.functions.items():
+            before = self.pinned.functions.get(name)
+            more = number - (rare if before is None else before)
+            if more > 0:
+                was = f"at most {rare:,}" if before is None else f"{before:,}"
+                rows.append((more, f"{number:,} calls, pinned {was}: {name}"))
+        return [line for _, line in sorted(rows, reverse=True)[:NAMED]]
+
+
+def file_for(python: str) -> Path:
+    """The table of a version of Python, as "3.11": each makes other calls of the same code."""
+    return FOLDER / f"python{python}.json"
+
+
+def read(file: Path) -> dict[str, Cost]:
+    """The pinned costs by scenario; nothing where there is no such file."""
+    if not file.exists():
+        return {}
+    rows: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return {name: Cost(**row) for name, row in rows.items()}
+
+
+def write(file: Path, costs: Mapping[str, Cost]) -> None:
+    """Pin these costs."""
+    rows = {name: {"calls": cost.calls, "functions": dict(cost.functions)} for name, cost in costs.items()}
+    file.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
