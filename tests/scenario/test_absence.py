@@ -175,6 +175,75 @@ def slowly_booting() -> Callable[[], Rig]:
     return make
 
 
+@pytest.fixture
+def going_on() -> Rig:
+    """A plant whose first cell goes on by itself after an absence."""
+    plant = shipped("sis_a", "sis_b", evidence=Evidence.IDS)
+    first, second = plant.cells
+    made = Rig(replace(plant, cells=(replace(first, goes_on_after_absence=True), second)))
+    made.wait(2.0)
+    return made
+
+
+@pytest.mark.parametrize("seconds", GAPS_S)
+@pytest.mark.parametrize("processes", [(PLANT,), (PLANT, BRIDGE)], ids=["plant", "machine"])
+@pytest.mark.parametrize(
+    "step",
+    ["drive path 0B", "move to pick-up", "effector on/dwell", "move to station 4", "effector off/dwell"],
+)
+def test_a_cell_goes_on_by_itself_where_the_plant_file_says_so(
+    going_on: Rig, seconds: float, processes: tuple[str, ...], step: str
+) -> None:
+    first, second = (going_on.submit(f"sis_a 0B {station}").task for station in (4, 5))
+    going_on.wait_for("sis_a", f"main/{step}" if "/" not in step else step)
+    for process in processes:
+        going_on.stall(process, seconds)
+    going_on.wait(seconds + 90.0)
+    assert [going_on.outcomes()[task].state.value for task in (first, second)] == ["done", "done"]
+
+
+def test_a_cell_whose_arm_lost_its_supply_meanwhile_stays_held(going_on: Rig) -> None:
+    going_on.submit("sis_a 0B 4")
+    going_on.wait_for("sis_a", "main/move to station 4")
+    going_on.stall(PLANT, 3.0)
+    going_on.power_off("ra_1")
+    going_on.wait(4.0)
+    going_on.power_on("ra_1")
+    del going_on.sent[:]
+    going_on.wait(60.0)
+    assert going_on.plant.cells["sis_a"].state is CellState.HELD and motions(going_on) == []
+
+
+def test_who_is_heard_again_long_after_an_absence_moves_nothing(going_on: Rig) -> None:
+    going_on.submit("sis_a 0B 4")
+    going_on.wait_for("sis_a", "main/move to pick-up")
+    going_on.stop_broker()
+    going_on.stall(PLANT, 3.0)
+    going_on.wait(60.0)
+    del going_on.sent[:]
+    going_on.start_broker()
+    going_on.wait(60.0)
+    assert going_on.plant.cells["sis_a"].state is CellState.HELD and motions(going_on) == []
+
+
+def test_a_cell_of_which_the_file_says_nothing_stays_held_beside_one_that_goes_on(going_on: Rig) -> None:
+    first, second = going_on.submit("sis_a 0B 4").task, going_on.submit("sis_b 0B 4").task
+    going_on.wait_for("sis_b", "main/drive path 0B")
+    going_on.stall(PLANT, 3.0)
+    assert going_on.wait(120.0, until=lambda: going_on.outcomes()[first].state.value == "done")
+    assert going_on.plant.cells["sis_b"].state is CellState.HELD
+    assert going_on.outcomes()[second].state.value == "running"
+
+
+def test_a_queue_that_was_paused_before_an_absence_stays_so(going_on: Rig) -> None:
+    first = going_on.submit("sis_a 0B 4").task
+    going_on.wait_for("sis_a", "main/move to pick-up")
+    going_on.plant.cells["sis_a"].queue_paused = True
+    going_on.stall(PLANT, 3.0)
+    assert going_on.wait(120.0, until=lambda: going_on.outcomes()[first].state.value == "done")
+    assert going_on.plant.cells["sis_a"].queue_paused
+
+
 def test_a_hold_of_an_operator_is_still_his(rig: Rig) -> None:
     rig.submit("sis_a 0B 4")
     rig.wait_for("sis_a", "main/move to pick-up")

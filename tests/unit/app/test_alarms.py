@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -17,6 +18,7 @@ from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
@@ -261,3 +263,19 @@ def test_a_topic_of_a_board_is_refused(
 @pytest.fixture
 def options(tmp_path: Any) -> Callable[..., Options]:
     return lambda: Options(state_dir=tmp_path / "state", page=False, alarms=alarm_options())
+
+
+def test_that_the_plant_was_away_names_the_cells_that_go_on_by_themselves(told: Told) -> None:
+    plant = shipped("sis_a", "sis_b", evidence=Evidence.IDS)
+    first, second = plant.cells
+    rig = heard(Rig(replace(plant, cells=(replace(first, goes_on_after_absence=True), second))), told)
+    rig.wait(2.0)
+    for cell in ("sis_a", "sis_b"):
+        rig.submit(f"{cell} 0B 7")
+        rig.wait_for(cell, "main/drive path 0B")
+    rig.stop_broker()  # else what waited in the inbox proves it in the very step in which the plant is back
+    rig.stall(PLANT, 5.0)
+    rig.wait(6.0)
+    away = next(alarm for alarm in told.alarms if alarm["kind"] == "plant_away")
+    goes_on = "what was at work goes on once its devices prove what they did: sis_a"
+    assert away["sentence"].endswith(f"{goes_on}; what was at work is held: sis_b")

@@ -80,6 +80,12 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "negative dwell": ("dwell_s: 0.2", "dwell_s: -1", "3:19: timing.dwell_s", "at least 0, is -1"),
     "unknown time": ("dwell_s", "dwel_s", "3:10: timing: the key", 'did you mean "dwell_s"?'),
     "on for true": ("drive_to_start: false", "drive_to_start: on", "31:21: ", 'true or false, is "on"'),
+    "go on without proof": (
+        "    home: {deg: [0, 0, 0",
+        "    on_absence: go_on\n    home: {deg: [0, 0, 0",
+        "35:17: cells.sis_c.on_absence",
+        "rm_sis_c has none",
+    ),
     "half a task": ("queue_limit: 5", "queue_limit: 1.5", "30:18: ", "must be a whole number, is 1.5"),
     "no queue": ("queue_limit: 5", "queue_limit: 0", "30:18: ", "must be at least 1, is 0"),
     "mqtt version": ("3.1.1", "3.1", "2:15: mqtt_version", "must be 3.1.1 or 5, is 3.1"),

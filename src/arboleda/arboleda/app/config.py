@@ -31,7 +31,7 @@ from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
 from .plant_file.recipe_check import MOST, Trial, combinations
 from .plant_file.robot_models import ArmModel
-from .plant_file.robots import arm, arm_model, mobile
+from .plant_file.robots import arm, arm_model, check_absence, mobile
 from .plant_file.shapes import (
     CellShape,
     FileShape,
@@ -290,6 +290,7 @@ def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robo
         check_nodes_show(document, (*place, MOBILE), routes, the_mobile)
     if not (shape and retry and the_arm and the_mobile and routes and poses):
         return None
+    check_absence(document, place, shape.on_absence, (the_arm, the_mobile))
     return StorageCell(
         name=name,
         recipes=RECIPES,
@@ -298,6 +299,7 @@ def _cell(document: Document, name: str, kinds: Kinds, common: Mapping[str, Robo
         paths=routes,
         queue_limit=shape.queue_limit,
         goes_on=shape.on_restart == "go_on",
+        goes_on_after_absence=shape.on_absence == "go_on",
         drive_to_start=shape.drive_to_start,
         retry=Retry(**retry.model_dump()),
         piece_check=shape.piece_check,

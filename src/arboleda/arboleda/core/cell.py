@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.ledger import State
+from arboleda.model.commands import Motion
 from arboleda.model.errors import QueueFull
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Failure, Reason, TaskState
@@ -26,6 +28,20 @@ from arboleda.trees.walk_back import NO_PART
 from . import advice
 from .advice import Advice
 from .cell_states import TABLE, Cause, CellState, after
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoesOn:
+    """A hold that an absence made and that ends by itself, `by` s of the plant's time at the latest.
+
+    It ends only while `trouble` is the one that made it, and once each device is seen at rest after `since`;
+    `paused` is how the queue was before.
+    """
+
+    trouble: Failure
+    since: dict[str, Moment]
+    by: float
+    paused: bool
 
 
 class CellRun:
@@ -53,6 +69,7 @@ class CellRun:
         self.left_over = False  # whether tasks of an earlier start wait, since nobody said `resume`
         self.dirty = False
         self.closed = False
+        self._goes_on: GoesOn | None = None  # how it gets out of a hold by itself, after an absence
         self._changed = changed
         self._ways_out = ways_out
         self._cancelling = False
@@ -126,6 +143,11 @@ class CellRun:
     @property
     def is_held(self) -> bool:
         return self.state is CellState.HELD
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether it gets out of its hold by itself, once its devices have proved what they did."""
+        return self._goes_on is not None
 
     @property
     def why_held(self) -> Sentence:
@@ -239,9 +261,18 @@ class CellRun:
         self._hold(Cause.HOLD)
 
     def hold_after_absence(self, failure: Failure) -> None:
-        """The plant was away: what was at work is held; a cell with nothing under way goes on."""
+        """The plant was away: what was at work is held; a cell with nothing under way goes on.
+
+        Where the plant file says so, a held one goes on too, as soon as its devices prove what they did. That
+        has to be within the time in which they confirm a stop: later nobody expects a move any more.
+        """
         if self.state is CellState.EXECUTE:
+            paused = self.queue_paused
             self._hold(Cause.AWAY, failure)
+            if self.cell.goes_on_after_absence and self.task is not None:
+                by = self.context.plant_now + self.context.timing.stop_timeout_s
+                moments = self.context.moments()
+                self._goes_on = GoesOn(trouble=failure, since=moments, by=by, paused=paused)
         self.context.cancel_motions()
 
     def _hold(self, cause: Cause, trouble: Failure | None = None) -> None:
@@ -373,7 +404,21 @@ class CellRun:
         if self.task is not None and self.trouble is None:
             self.trouble = self._fault()
         self._miss_part()
-        return False
+        return self._gone_on()
+
+    def _gone_on(self) -> bool:
+        """Leave `held` after an absence, where nothing else is in the way and what was at work is proved."""
+        goes_on, self._goes_on = self._goes_on, None
+        if goes_on is None or self.trouble is not goes_on.trouble or self.stranded:
+            return False
+        if self.context.plant_now > goes_on.by:
+            return False
+        if self.context.open_commands() or not self._proved(goes_on.since):
+            self._goes_on = goes_on  # until its devices have said what they did
+            return False
+        self._again(Cause.RETRY)
+        self.queue_paused = goes_on.paused
+        return True
 
     def _judged(self) -> bool:
         """Look what devices say of the steps at which an earlier start ended; whether that is news.
@@ -453,6 +498,19 @@ class CellRun:
                 return entry.failure
         found = (self.context.obstacle(robot.name, was=True) for robot in self.cell.reached)
         return next((failure for failure in found if failure), None)
+
+    def _proved(self, since: dict[str, Moment]) -> bool:
+        """Whether its devices are at rest and can work, and what was at work may be given anew.
+
+        A motion whose robot was not heard meanwhile may: it begins wherever the robot stands now.
+        """
+        for entry in [act.entry for act in self.run.interrupted() if act.entry is not None]:
+            lost = entry.failure is not None and entry.failure.reason is Reason.LINK_LOST
+            anew = entry.too_early or (lost and isinstance(entry.command, Motion))
+            if entry.state is State.FAILED and not anew:
+                return False
+        able = all(self.context.obstacle(robot.name) is None for robot in self.cell.reached)
+        return able and not self.context.moving_since(since)
 
     def _again(self, cause: Cause) -> None:
         self.become(cause)

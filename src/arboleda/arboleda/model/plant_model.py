@@ -351,6 +351,7 @@ class Cell:
     spaces: tuple[Workspace, ...] = ()  # of those that go from pose to pose
     queue_limit: int
     goes_on: bool = False  # after a restart the queue of an idle cell goes on by itself
+    goes_on_after_absence: bool = False  # what was at work, too, once its devices prove what they did
     retry: Retry = Retry()
     zone_wait_s: float = 30.0
     recipes: tuple[Recipe, ...] = ()

@@ -262,9 +262,13 @@ class Record:
             self.unattended = {
                 cell.name: self._has_work(cell)
                 for cell in self._cells
-                if cell.tree is not None or cell.queued == 0  # with nothing under way, what waits begins
+                if (cell.tree is not None and not cell.cell.goes_on_after_absence)
+                or cell.queued == 0  # with nothing under way, what waits begins
             }
             self._since_start = False
+            for cell in self._cells:
+                if cell.cell.goes_on_after_absence:  # once more by itself, as if somebody had said retry
+                    self._retried(cell.name)
         self.proofs.clear_news()
         self.works.clear_news()
         if moment.heard:

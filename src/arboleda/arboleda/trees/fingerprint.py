@@ -53,7 +53,7 @@ OF_NODES = frozenset(
         "done",
     ]
 )
-NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on"})  # of a cell
+NO_MATTER = frozenset({"recipes", "queue_limit", "goes_on", "goes_on_after_absence"})  # of a cell
 
 
 def joined(*words: str) -> str:

@@ -24,6 +24,9 @@ NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
 ASKED = Phrase("alarm.asked", "{person} is asked in {cell}: {question}")
 AWAY_HELD = Phrase("alarm.away", "{why}; what was at work is held: {cells}")
+AWAY_GOES_ON = Phrase(
+    "alarm.away_goes_on", "{why}; what was at work goes on once its devices prove what they did: {cells}"
+)
 AWAY_AT_REST = Phrase("alarm.away_at_rest", "{why}; no cell was at work, so that all go on")
 CLEARED = Phrase("alarm.cleared", "{cell} needs nobody any more: it is {state}")
 # The longest packet of the plant's own broker has 4096 bytes, and a letter has up to four.
@@ -67,11 +70,17 @@ def of_task(plant: Plant, failed: TaskChanged) -> Alarm:
 
 
 def of_absence(plant: Plant, away_s: float) -> Alarm:
-    """That the plant did nothing for so long, and which cells are held by that."""
+    """That the plant did nothing for so long, and which cells are held by that, or go on by themselves."""
     why = AWAY(seconds=away_s)
-    held = [name for name, run in plant.cells.items() if run.trouble and run.trouble.sentence == why]
-    said = AWAY_HELD(why=why, cells=", ".join(held)) if held else AWAY_AT_REST(why=why)
-    return _alarm(plant, "", PLANT_AWAY, None, None, said)
+    held = {name: run for name, run in plant.cells.items() if run.trouble and run.trouble.sentence == why}
+    stay = ", ".join(name for name, run in held.items() if not run.goes_on)
+    go_on = ", ".join(name for name, run in held.items() if run.goes_on)
+    sentence = why if held else AWAY_AT_REST(why=why)
+    if go_on:
+        sentence = AWAY_GOES_ON(why=sentence, cells=go_on)
+    if stay:
+        sentence = AWAY_HELD(why=sentence, cells=stay)
+    return _alarm(plant, "", PLANT_AWAY, None, None, sentence)
 
 
 def of_cell(plant: Plant, cell: str) -> Alarm:

@@ -258,7 +258,7 @@ class Orchestrator:
             return
         if isinstance(message, Absence):
             LOG.warning(
-                "the plant was away for %.1f s; what was at work is held, see `arboleda status`",
+                "the plant was away for %.1f s; cells that were at work are held, see `arboleda status`",
                 message.seconds,
             )
             return

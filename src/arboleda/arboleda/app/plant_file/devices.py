@@ -19,6 +19,7 @@ from .document import Document, Place, choice, nearest, shown
 from .drivers import OF_DEVICES, link
 from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
+from .robots import check_absence
 from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, is_name
 from .used import KindInPython, Used
 
@@ -108,6 +109,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
     spaces = targets.workspaces(document, place, members, tools)
     if spaces is None:
         return None
+    check_absence(document, place, shape.on_absence, members.values())
     return Cell(
         name=str(place[-1]),
         members=tuple(members.items()),
@@ -117,6 +119,7 @@ def device_cell(document: Document, place: Place, kinds: Kinds, common: Mapping[
         shared=tuple(sharing.values()),
         queue_limit=shape.queue_limit,
         goes_on=shape.on_restart == "go_on",
+        goes_on_after_absence=shape.on_absence == "go_on",
         zone_wait_s=shape.zone_wait_s,
         retry=Retry(**retry.model_dump()),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -10,7 +11,7 @@ from arboleda.kinds.arm import Arm, Joint
 from arboleda.kinds.floor import Placement
 from arboleda.kinds.mobile import Grid, Mobile
 from arboleda.kinds.person import Person, person
-from arboleda.model.plant_model import Evidence
+from arboleda.model.plant_model import Evidence, Link, Robot
 
 from . import drivers
 from .document import Document, Place, choice, closest, nearest, shown
@@ -222,3 +223,13 @@ def _tolerance(document: Document, place: Place, model: ArmModel) -> tuple[float
             rule = f"at least {in_file_unit(joint, least)}, half a motor step and a little"
             document.problem(place, f"q{number} must have {rule}, has {in_file_unit(joint, value)}")
     return tolerance
+
+
+def check_absence(document: Document, place: Place, on_absence: str, robots: Iterable[Robot]) -> None:
+    """Keep a problem where a cell is to go on after an absence and a device cannot prove what it did then."""
+    unproved = [
+        robot.name for robot in robots if robot.link is not Link.NONE and robot.evidence is not Evidence.IDS
+    ]
+    if on_absence == "go_on" and unproved:
+        rule = "go_on needs evidence: ids of each device, which proves what it did meanwhile"
+        document.problem((*place, "on_absence"), f"{rule}; {unproved[0]} has none")

@@ -59,6 +59,7 @@ QUEUE_LIMIT = 100
 NO_PORT = 0  # of a file that names none
 QueueLimit = Annotated[int, Field(ge=1, le=10_000)]
 OnRestart = Literal["hold", "go_on"]
+OnAbsence = Literal["hold", "go_on"]
 Angles = Annotated[list[Number], Field(min_length=1, max_length=9)]
 
 
@@ -123,6 +124,7 @@ class CellShape(Shape):
     palletizing: Any = None
     queue_limit: QueueLimit = QUEUE_LIMIT
     on_restart: OnRestart = "hold"
+    on_absence: OnAbsence = "hold"
     drive_to_start: bool = True
     retry: Any = None
     piece_check: bool = False
@@ -137,6 +139,7 @@ class DeviceCellShape(Shape):
     default_recipe: str = ""
     queue_limit: QueueLimit = QUEUE_LIMIT
     on_restart: OnRestart = "hold"
+    on_absence: OnAbsence = "hold"
     retry: Any = None
     targets: Any = None
     groups: Any = None
