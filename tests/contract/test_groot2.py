@@ -44,13 +44,12 @@ def cell(name: str, status: str) -> dict[str, Any]:
 class Viewer:
     """A client as Groot2 is one."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, **options: int) -> None:
         self.port = port
         self._context = zmq.Context()
-        self.connect()
-
-    def connect(self) -> None:
         self._socket = self._context.socket(zmq.REQ)
+        for name, value in options.items():
+            self._socket.setsockopt(getattr(zmq, name), value)
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.setsockopt(zmq.RCVTIMEO, int(PATIENCE_S * 1000))
         self._socket.connect(f"tcp://127.0.0.1:{self.port}")
@@ -93,11 +92,11 @@ def started() -> Iterator[Callable[..., Groot2Part]]:
 
 
 @pytest.fixture
-def viewer() -> Iterator[Callable[[int], Viewer]]:
+def viewer() -> Iterator[Callable[..., Viewer]]:
     viewers = []
 
-    def connected(port: int) -> Viewer:
-        viewers.append(Viewer(port))
+    def connected(port: int, **options: int) -> Viewer:
+        viewers.append(Viewer(port, **options))
         return viewers[-1]
 
     yield connected
@@ -138,6 +137,16 @@ def test_each_cell_has_a_pair_of_ports_and_its_own_tree(
     assert msgpack.unpackb(second.ask("B", b"StepOfSisB")[0])["StepOfSisB"]["task_text"] == "sis_b 0B 7"
     assert first.ask("I", b"{}") == [b"read only: breakpoints and hooks would change what robots do"]
     assert part.notes == [f"Groot2: sis_a {port}/{port + 1}, sis_b {port + 2}/{port + 3} on 127.0.0.1"]
+
+
+def test_a_client_that_numbers_its_requests_is_answered(
+    started: Callable[..., Groot2Part], viewer: Callable[..., Viewer], port: int
+) -> None:
+    """A REQ socket that does so, and another request before the reply to the first."""
+    started("sis_a", port=port)
+    client = viewer(port, REQ_CORRELATE=1, REQ_RELAXED=1)
+    client.send(struct.pack("<BBI", 2, ord("B"), 1), b"")
+    assert b"no task yet" in client.ask("T")[0]
 
 
 def test_a_plant_shows_its_cells_where_its_file_says_so(

@@ -103,10 +103,11 @@ class Desk:
     def _answer(self, server: Any) -> None:
         """As a REP socket would, which waits for ever where a client breaks off in its request."""
         with suppress(zmq.ZMQError):  # whoever asked is gone
-            client, *parts = server.recv_multipart(zmq.NOBLOCK)
-            if parts[:1] == [b""]:
-                reply = self._desks[server].answer(parts[1:], time.time_ns() // 1000)
-                server.send_multipart([client, b"", *reply], zmq.NOBLOCK)
+            parts = server.recv_multipart(zmq.NOBLOCK)
+            if b"" in parts:
+                begin = parts.index(b"") + 1  # before it stands what brings the reply to the client
+                reply = self._desks[server].answer(parts[begin:], time.time_ns() // 1000)
+                server.send_multipart([*parts[:begin], *reply], zmq.NOBLOCK)
 
     def _saw(self, cell: Mapping[str, Any]) -> None:
         watched = self._watched[cell["name"]]
