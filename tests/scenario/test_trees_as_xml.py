@@ -220,3 +220,24 @@ def test_a_parameter_may_be_a_number(folder: Path) -> None:
     (cell,) = load(folder / "plant.yaml").cells
     assert width.limits(cell) == Limits(lower=0.0, upper=85.0)
     assert times.limits(cell) == Limits(lower=-LARGEST, upper=LARGEST, whole=True)
+
+
+GRIP = (
+    '<BehaviorTree ID="Grip"><jaw_close width_mm="{width}" force_n="{force}"/></BehaviorTree>'
+    '<TreeNodesModel><SubTree ID="T"><input_port name="force" type="double"/></SubTree></TreeNodesModel>'
+)
+
+
+@pytest.mark.parametrize(("given", "width"), [("20", 20.0), ("{=}", 80.0), ("{other}", 30.0)])
+def test_a_subtree_that_shares_names_is_told_what_it_is_given(folder: Path, given: str, width: float) -> None:
+    sub = f'<SubTree ID="Grip" width="{given}" _autoremap="true"/>'
+    body = f'<Script code="width := 80; other := 30"/>{sub}'
+    file = f'<root BTCPP_format="4" main_tree_to_execute="T"><BehaviorTree ID="T"><Sequence>{body}'
+    (folder / "tend.xml").write_text(f"{file}</Sequence></BehaviorTree>{GRIP}</root>")
+    rig = Rig(load(folder / "plant.yaml"))
+    rig.wait(5.0)
+    assert rig.submit("cell tend 1000 #much").state is TaskState.REFUSED, "the jaw takes no such force"
+    rig.submit("cell tend 40 #one")
+    rig.wait(30.0, until=lambda: state(rig) in ENDED)
+    assert state(rig) is TaskState.DONE, rig.outcomes()["one"]
+    assert said(rig, "width_mm", "jaw") == width

@@ -124,6 +124,32 @@ def test_a_check_of_version_3_leaves_its_child_when_the_values_differ() -> None:
     assert said[1:] == ["R:RRRRI:0", "R:RRRSI:1", "F:IIIII:6"]
 
 
+SUB = '<SubTree ID="In" {} _autoremap="true"/>'
+COUNTS = '<Script code="n = n * 10 + x"/>'
+MODEL_OF_IN = '<TreeNodesModel><SubTree ID="In"><input_port name="x" default="5"/></SubTree></TreeNodesModel>'
+SHARED = [
+    (SUB.format(""), COUNTS, 1),
+    (SUB.format('x="2"'), COUNTS, 2),
+    (SUB.format('x="{y}"'), COUNTS, 3),
+    (SUB.format('x="2"').replace("true", "false"), '<Script code="@n = x"/>', 2),
+    (SUB.format('x="2"'), f"<Sequence>{SUB.replace('In', 'Under').format('')}</Sequence>", 2),
+    (SUB.format('x="2"'), f'<Sequence><Script code="x = 4"/>{COUNTS}</Sequence>', 4),
+    (SUB.format('x="2"'), '<Sequence><UnsetBlackboard key="x"/><Script code="n = x"/></Sequence>', 1),
+    ('<Sequence><SubTree ID="In" x="2" _autoremap="1"/><Script code="n = x"/></Sequence>', COUNTS, 1),
+]
+
+
+@pytest.mark.parametrize(("subtree", "inner", "comes_to"), SHARED)
+def test_what_a_subtree_is_given_stands_before_the_names_that_it_shares(
+    subtree: str, inner: str, comes_to: int
+) -> None:
+    """With `_autoremap` also before a default of its model."""
+    main = f'<Sequence><Script code="x := 1; y := 3"/>{subtree}</Sequence>'
+    bodies = {"Main": main, "In": inner, "Under": COUNTS}
+    trees = "".join(f'<BehaviorTree ID="{name}">{body}</BehaviorTree>' for name, body in bodies.items())
+    assert ticks(trees + MODEL_OF_IN, 1)[0].endswith(f":{comes_to}")
+
+
 def test_what_was_seen_of_a_variable_is_kept() -> None:
     scope = Scope()
     scope.set("x", 1)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from .findings import Place
 from .markup import Attribute
 from .nodes import Category, Kind
+from .values import PRIVATE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +48,15 @@ class Node:
         words = ("_autoremap", "__autoremap", "__shared_blackboard")
         values = (self.own[word].value for word in words if word in self.own)
         return any(value.lower() in ("true", "1") for value in values)
+
+    def shares(self, variable: str) -> bool:
+        """Whether a subtree has that variable of the tree around it because it shares names."""
+        return (
+            self.is_subtree
+            and self.shares_names
+            and variable not in self.ports
+            and not variable.startswith(PRIVATE)
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -138,7 +138,10 @@ def _uses(forest: Forest, kinds: Mapping[str, Kind], tree: str, name: str, level
 
 
 def _given(node: Node, variable: str) -> Iterator[str]:
+    """The names under which a node has a variable."""
     for name, attribute in node.ports.items():
         said = values.read(name, attribute.value)
         if isinstance(said, Variable) and said.name == variable:
             yield name
+    if node.shares(variable):
+        yield variable

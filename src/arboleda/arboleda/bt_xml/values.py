@@ -10,6 +10,7 @@ INT = re.compile(r"[+-]?[0-9]{1,18}|0[xX][0-9a-fA-F]{1,15}")
 BOOLS = ("true", "false", "True", "False", "TRUE", "FALSE", "0", "1")
 STATUSES = ("SUCCESS", "FAILURE", "RUNNING", "SKIPPED", "IDLE")
 OUTER = "@"  # begins the name of a variable of the outermost tree
+PRIVATE = "_"  # begins the name of one that no other tree shares
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,7 @@ class Builder:
     def _subtree(self, node: Written, scope: Scope) -> Node:
         name = node.own["ID"].value
         given: dict[str, Value | Variable] = {}
-        model = self.forest.models.get(name)
+        model = None if node.shares_names else self.forest.models.get(name)
         for port in (model.ports or {}).values() if model is not None else ():
             if port.default is not None:
                 given[port.name] = values.read(port.name, port.default)

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.bt_xml.values import OUTER
+from arboleda.bt_xml.values import OUTER, PRIVATE
 
 Value = float | int | str
-PRIVATE = "_"
 
 
 @dataclass(eq=False)
 class Scope:
     """The variables of one tree. `names`: those that are another variable of the tree around it. `shares`: so
-    are all others, but for private ones. `changes`: how often each was set, where a node asks for that.
+    are all others, but for private ones and those that have a value here, which the tree was given.
+    `changes`: how often each was set, where a node asks for that.
     """
 
     around: Scope | None = None
@@ -34,9 +34,11 @@ class Scope:
                     scope = scope.around
                 return scope, name.removeprefix(OUTER)
             around = scope.around
-            if around is not None and name in scope.names:
+            if around is None or name in scope.values:
+                return scope, name
+            if name in scope.names:
                 scope, name = around, scope.names[name]
-            elif around is not None and scope.shares and not name.startswith(PRIVATE):
+            elif scope.shares and not name.startswith(PRIVATE):
                 scope = around
             else:
                 return scope, name
