@@ -28,8 +28,6 @@ MODEL = (
         ('<A _skipIf="1 +"/>', "3:4", "a value or a variable is expected"),
         ('<A _skipIf="{x}"/>', "3:4", "is nothing here"),
         ('<SubTree ID="Main2" _autoremap="yes"/>', "3:21", "_autoremap must be true or false, is 'yes'"),
-        ("<Sequnce><A/></Sequnce>", "3:1", "did you mean Sequence?"),
-        ("<Mine><A/></Mine>", "3:1", "declare it"),
         ("<Main/>", "3:1", 'Main is a tree; write <SubTree ID="Main"/>'),
         ('<SubTree name="x"/>', "3:1", "which?"),
         ("<Action/>", "3:1", "which?"),
@@ -58,6 +56,16 @@ def test_of_very_many_mistakes_the_rest_is_counted() -> None:
     assert len(found) == 201 and found[-1] == "and 5 mistakes more"
 
 
+def test_a_node_with_more_children_than_any_can_have_is_told_how_many_it_can_have() -> None:
+    (found,) = mistakes(tree("<Sequence>" + "<A/>" * 1001 + "</Sequence>"))
+    assert found.endswith("Sequence has 1001 children; it needs at most 1000")
+
+
+def test_a_node_with_children_that_nobody_knows_is_warned_of_once() -> None:
+    found = warnings(tree("<Sequence><Mine><A/></Mine>\n<Mine><Mine><B/></Mine></Mine></Sequence>"))
+    assert [each.split(": ")[0] for each in found] == ["t.xml:3:11"]
+
+
 def test_leaves_that_nobody_knows_are_listed_and_not_refused() -> None:
     _, findings, leaves = looked_at(tree('<Sequence><Zap x="{y}"/><Action ID="Beep"/><Zap/></Sequence>'))
     assert findings.mistakes == () and findings.warnings == () and leaves == ["Beep", "Zap"]
@@ -74,6 +82,10 @@ def test_leaves_that_nobody_knows_are_listed_and_not_refused() -> None:
         ("<ScriptCondition code='a &amp;&amp; b && c == 1'/>", "3:40", "a raw & is no XML"),
         ('<ScriptCondition code="door == 1"/>', "3:18", "the variable 'door' is read, and nothing"),
         ('<Sleep msec="{pause}"/>', "3:8", "the variable 'pause' is read"),
+        ("<Sequnce><A/></Sequnce>", "3:1", "nobody here knows Sequnce, which has children; did you mean S"),
+        ("<Mine><A/></Mine>", "3:1", '<Decorator ID="Mine"/> in the TreeNodesModel'),
+        ("<Mine><A/><B/></Mine>", "3:1", "Mine, which has children; to have it run, declare <Control ID="),
+        ("<ForEachUntilSuccess vector_in='1' out='{x}'><A/></ForEachUntilSuccess>", "3:1", "nobody here kn"),
         ("<Sequnce/>", "3:1", "nobody here knows Sequnce; did you mean Sequence?"),
         ('<SubTree ID="Elsewhere"/>', "3:10", "is in none of these files"),
         ('<Action ID="Open the door"/>', "3:1", "newer editors refuse 'Open the door'"),
@@ -101,7 +113,7 @@ def test_what_may_be_wrong_is_a_warning(body: str, place: str, words: str) -> No
         "<Sequence><SetBlackboard value='1' output_key='x'/><Sleep msec='{x}'/></Sequence>",
         "<Sequence><Script code='x:=1'/><Sleep msec='{x}'/></Sequence>",
         "<Sequence><Zap any='{x}'/><Sleep msec='{x}'/></Sequence>",
-        "<ForEachPose vector_in='1;2' out='{x}'><Sleep msec='{x}'/></ForEachPose>",
+        "<ForEach vector_in='1;2' out='{x}'><Sleep msec='{x}'/></ForEach>",
     ],
 )
 def test_what_can_be_is_not_warned_of(body: str) -> None:

@@ -26,6 +26,12 @@ WRONG = (
     ),
     (CLOSE, "<mill_clos/>", "did you mean mill_close?"),
     (CLOSE, f'<Decorator ID="Mine">{CLOSE}</Decorator>', AT_CLOSE + "tend: Mine has children and is no node"),
+    (CLOSE, f"<Mine>{CLOSE}</Mine>", AT_CLOSE + "tend: Mine has children and is no node that Arboleda runs"),
+    (
+        CLOSE,
+        f'<ForEachUntilSuccess vector_in="1" out="{{x}}">{CLOSE}</ForEachUntilSuccess>',
+        AT_CLOSE + "tend: ForEachUntilSuccess has children and is no node that Arboleda runs",
+    ),
     (CLOSE, "<mill_close><mill_open/></mill_close>", AT_CLOSE + "mill_close has 1 child; it needs none"),
     (CLOSE, '<mill_close speed="1"/>', "11:19: mill_close has no port 'speed'"),
     (CLOSE, f'<Precondition if="{{seen}}">{CLOSE}</Precondition>', "if of Precondition is a variable"),

@@ -64,6 +64,7 @@ class _Checker:
     is_open: bool = False
     number: int = 0
     unknown: dict[str, Place] = field(default_factory=dict)
+    around: set[str] = field(default_factory=set)  # kinds with children that nobody knows
 
     def kind(self, node: Node) -> Kind | None:
         """What is known of the kind of a node; of a subtree what its model says."""
@@ -128,13 +129,22 @@ class _Checker:
             how = "; `arboleda nodes` lists what this plant has"
             self._mistake(node, f"no device of this plant makes a node {node.kind}{hint or how}")
         elif node.children:
-            how = f'; if it is one of your own, declare it: <Decorator ID="{node.kind}"/>'
-            self._mistake(node, f"nobody knows a node {node.kind} with children{hint or how}")
+            self._warn_of_unknown(node, hint)
         elif near:
             self.findings.warning(node.place, f"nobody here knows {node.kind}{hint}")
             self.unknown.setdefault(node.kind, node.place)
         else:
             self.unknown.setdefault(node.kind, node.place)
+
+    def _warn_of_unknown(self, node: Node, hint: str) -> None:
+        """Once of each kind: a node with children can be read and drawn by anybody."""
+        if node.kind in self.around:
+            return
+        self.around.add(node.kind)
+        category = Category.DECORATOR if len(node.children) == 1 else Category.CONTROL
+        declared = f'<{category.value} ID="{node.kind}"/> in the TreeNodesModel'
+        how = f"; to have it run, declare {declared} and bring it along"
+        self.findings.warning(node.place, f"nobody here knows {node.kind}, which has children{hint or how}")
 
     def _check_children(self, node: Node, kind: Kind) -> None:
         there = len(node.children)
@@ -142,8 +152,10 @@ class _Checker:
             return
         if kind.fewest == kind.most:
             needed = f"{kind.fewest}" if kind.most else "none"
+        elif kind.most < nodes.MANY:
+            needed = f"{kind.fewest} to {kind.most}"
         else:
-            needed = f"{kind.fewest} or more" if kind.most == nodes.MANY else f"{kind.fewest} to {kind.most}"
+            needed = f"{kind.fewest} or more" if there < kind.fewest else f"at most {kind.most}"
         word = "child" if there == 1 else "children"
         self._mistake(node, f"{_named(node)} has {there or 'no'} {word}; it needs {needed}")
 

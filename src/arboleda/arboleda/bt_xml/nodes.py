@@ -1,7 +1,7 @@
 """The kinds of nodes that BehaviorTree.CPP and Nav2 bring along: their ports, how many children they have.
 
 The names, ports and defaults are those of BehaviorTree.CPP 4.10 and 3.8, of Nav2 for ROS 2 Jazzy, and of the
-ForEach decorators of MoveIt Pro, as their headers and documentation give them.
+decorator ForEach of MoveIt Pro, as their headers and documentation give them.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-MANY = 1000
+MANY = 1000  # children that a node has at most
 
 
 class Category(str, Enum):
@@ -115,7 +115,6 @@ _THRESHOLDS = ("success_count:int=-1", "failure_count:int=1")
 _OLD_THRESHOLDS = ("success_threshold?:int", "failure_threshold?:int", "threshold?:int")
 _SPEEDS = ("min_rate:double=0.1", "max_rate:double=1.0", "min_speed:double=0.0", "max_speed:double=0.5")
 _CHECKED = ("value_A:", "value_B:", "return_on_mismatch:status=FAILURE")
-FOR_EACH = "ForEach"
 OF_LIBRARY: Mapping[str, Kind] = {
     each.name: each
     for each in (
@@ -178,7 +177,8 @@ OF_NAV2: Mapping[str, Kind] = {
         _control("PauseResumeController", "pause_service_name?:", "resume_service_name?:"),
     )
 }
-BUILT_IN: Mapping[str, Kind] = {**OF_LIBRARY, **OF_NAV2}
+OF_MOVEIT: Mapping[str, Kind] = {"ForEach": _decorator("ForEach", "vector_in:", ">out:", ">index?:int")}
+BUILT_IN: Mapping[str, Kind] = {**OF_LIBRARY, **OF_NAV2, **OF_MOVEIT}
 OTHER_SPELLINGS: Mapping[str, str] = {
     "RetryUntilSuccesful": "RetryUntilSuccessful",
     "SequenceStar": "SequenceWithMemory",
@@ -189,9 +189,5 @@ OTHER_SPELLINGS: Mapping[str, str] = {
 
 
 def built_in(name: str) -> Kind | None:
-    """The kind of that name, in any spelling; a decorator ForEach... goes through a list of anything."""
-    known = BUILT_IN.get(OTHER_SPELLINGS.get(name, name))
-    if known is None and name.startswith(FOR_EACH):
-        ports = by_name(map(_port, ("vector_in:", ">out:", ">index?:int")))
-        return Kind(name=name, category=Category.DECORATOR, ports=ports, fewest=1, most=1)
-    return known
+    """The kind of that name, in any spelling."""
+    return BUILT_IN.get(OTHER_SPELLINGS.get(name, name))

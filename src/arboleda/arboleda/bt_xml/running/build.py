@@ -9,7 +9,7 @@ from functools import partial
 from arboleda.bt_xml import names, nodes, script, values
 from arboleda.bt_xml.forest import Forest
 from arboleda.bt_xml.forest import Node as Written
-from arboleda.bt_xml.nodes import FOR_EACH, Kind, Way
+from arboleda.bt_xml.nodes import Kind, Way
 from arboleda.bt_xml.values import Variable
 
 from . import controls, decorators, leaves, nav2, watching
@@ -52,8 +52,6 @@ class Builder:
     def _made(self, node: Written, scope: Scope) -> Node:
         below = [self._node(child, scope) for child in node.children]
         make = MAKERS.get(node.kind)
-        if make is None and node.kind.startswith(FOR_EACH):
-            make = _for_each
         if make is not None:
             said = {name: attribute.value for name, attribute in node.ports.items()}
             return make(node.name or node.kind, below, Given(node.kind, said))
@@ -168,6 +166,7 @@ MAKERS: Mapping[str, Make] = {
     "Delay": lambda name, below, given: decorators.Delay(name, below[0], given, "delay_msec"),
     "RunOnce": _around(decorators.RunOnce),
     "Precondition": _around(decorators.Precondition),
+    "ForEach": _for_each,
     **dict.fromkeys(("LoopInt", "LoopBool", "LoopDouble", "LoopString"), _loop),
     "SkipUnlessUpdated": lambda name, below, given: watching.WhenUpdated(name, below[0], given, SKIPPED),
     "WaitValueUpdate": lambda name, below, given: watching.WhenUpdated(name, below[0], given, RUNNING),
