@@ -77,3 +77,60 @@ def test_of_several_trees_one_has_to_be_the_main_one(file: Path) -> None:
     file.write_text(GOOD.replace(' main_tree_to_execute="Main"', ""))
     refused = run("tree", file).exception
     assert isinstance(refused, ConfigError) and "which tree?" in str(refused) and "Load, Main" in str(refused)
+
+
+@pytest.fixture
+def sourced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of what a ROS package `pick` shares, where ROS 2 is sourced."""
+    first, second = tmp_path / "first", tmp_path / "second"
+    (first / "share/ament_index/resource_index/packages").mkdir(parents=True)
+    packages = second / "share/ament_index/resource_index/packages"
+    packages.mkdir(parents=True)
+    (packages / "pick").touch()
+    (second / "share/pick").mkdir()
+    (second / "share/pick/load.xml").write_text(LOAD)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{first}:{second}")
+    return second / "share/pick"
+
+
+IN_PACKAGE = GOOD.replace('path="parts/load.xml"', 'ros_pkg="pick" path="load.xml"')
+
+
+def test_what_lies_in_a_ros_package_is_found_where_that_is_sourced(file: Path, sourced: Path) -> None:
+    file.write_text(IN_PACKAGE)
+    assert run("check", file).output.splitlines()[-1] == f"{file}: good: 5 nodes; trees Load, Main"
+    (sourced / "load.xml").write_text(LOAD.replace("Action ID", "Action id"))
+    assert f"{sourced / 'load.xml'}:1:48: which?" in str(run("check", file).exception)
+    (sourced / "load.xml").unlink()
+    assert f"{file}:2:25: {sourced / 'load.xml'}: there is no such file" in str(run("check", file).exception)
+
+
+@pytest.mark.parametrize("package", ["place", "../pick", "pick/.."])
+def test_a_package_that_is_not_there_is_said_and_its_trees_are_not_missed(
+    file: Path, sourced: Path, package: str
+) -> None:
+    file.write_text(IN_PACKAGE.replace('ros_pkg="pick"', f'ros_pkg="{package}"'))
+    said = run("check", file)
+    assert said.exit_code == 0
+    assert f"the ROS package '{package}', which is not among those that are sourced here" in said.output
+    assert "is in none of these files" not in said.output
+
+
+def test_where_no_ros_is_sourced_that_is_said(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    file.write_text(IN_PACKAGE)
+    assert run("check", file).output.splitlines()[0] == (
+        f"{file}:2:25: warning: 'load.xml' lies in the ROS package 'pick', which cannot be found: "
+        "no ROS 2 is sourced here; it was not looked into; name it by its path from this file to have it read"
+    )
+
+
+@pytest.mark.parametrize("package", ["", 'ros_pkg="pick" '])
+def test_an_absolute_path_counts_where_it_leads_to_a_file(file: Path, package: str) -> None:
+    there = file.parent / "parts/load.xml"
+    file.write_text(GOOD.replace('path="parts/load.xml"', f'{package}path="{there}"'))
+    assert run("check", file).output.splitlines()[-1] == f"{file}: good: 5 nodes; trees Load, Main"
+    there.unlink()
+    said = run("check", file)
+    assert said.exit_code == 0 and "is an absolute path, and there is no such file here" in said.output
+    assert "'Load' is in none of these files" not in said.output

@@ -112,3 +112,13 @@ def test_every_known_node_runs_or_is_refused_with_another_one() -> None:
 def test_the_reference_says_which_nodes_do_not_run() -> None:
     part = PAGE.read_text("utf-8").split("## Which nodes run")[1].split("\n## ")[0]
     assert [name for name in sorted(INSTEAD) if f"`{name}`" not in part] == []
+
+
+def test_a_tree_of_a_file_that_is_not_here_is_refused_with_how_to_find_that(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    copytree(EXAMPLE, tmp_path, dirs_exist_ok=True)
+    body = '<include ros_pkg="pick" path="a.xml"/><BehaviorTree ID="T"><SubTree ID="Far"/></BehaviorTree>'
+    (tmp_path / "tend.xml").write_text(f'<root BTCPP_format="4" main_tree_to_execute="T">{body}</root>')
+    assert "the tree 'Far' is in none of these files; one that they include is not here" in refusal(tmp_path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from arboleda.bt_xml import checking, reading
 from arboleda.bt_xml.findings import Findings
 from arboleda.bt_xml.forest import Forest
+from arboleda.bt_xml.reading import NotHere
 from arboleda.model.errors import ConfigError
 
 HEAD = '<root BTCPP_format="4">'
@@ -13,7 +14,9 @@ HEAD = '<root BTCPP_format="4">'
 def looked_at(text: str | bytes, **beside: str) -> tuple[Forest, Findings, list[str]]:
     """The forest of a file t.xml, what was found, and its unknown leaves; `beside`: other files, by name."""
 
-    def fetch(file: str, path: str) -> tuple[str, bytes]:
+    def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
+        if package:
+            raise NotHere((f"there is no package {package}",))
         if path.removesuffix(".xml") not in beside:
             raise ConfigError((f"{path}: there is no such file",))
         return path, beside[path.removesuffix(".xml")].encode()

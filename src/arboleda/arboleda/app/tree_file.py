@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from arboleda.bt_xml.nodes import Kind
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 
-from . import user_file
+from . import tree_includes, user_file
 
 ENDING = ".xml"
 MOST = 10  # unknown leaves that are named
@@ -43,7 +42,7 @@ def load(path: Path, known: Mapping[str, Kind] | None = None) -> TreeFile:
     `known`: the kinds of leaves that there are, and no others; None: there may be any.
     """
     findings = Findings()
-    forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, _included)
+    forest = reading.read(str(path), user_file.read_bytes(path, LARGEST), findings, tree_includes.read)
     checked = checking.check(forest, findings, known)
     if findings.mistakes:
         raise ConfigError(findings.mistakes)
@@ -66,10 +65,3 @@ def _unknown(path: Path, checked: Checked) -> list[str]:
     more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
     why = "which a plant or a program has to bring"
     return [f"{path}: note: {len(names)} kinds of leaves, {why}: {', '.join(names[:MOST])}{more}"]
-
-
-def _included(file: str, path: str) -> tuple[str, bytes]:
-    if "\0" in path:
-        raise ConfigError(("this is not the name of a file",))
-    found = os.path.normpath(Path(file).parent / path)
-    return found, user_file.read_bytes(Path(found), LARGEST)

@@ -20,12 +20,16 @@ MOST_FILES = 50
 ROOT, TREE, MODELS, INCLUDE = "root", "BehaviorTree", "TreeNodesModel", "include"
 TAGS = {each.value: each for each in Category}
 FORMATS = ("3", "4")
-Fetch = Callable[[str, str], tuple[str, bytes]]
-"""The file of an `include`, by the name of the file that has it and the path it names: its own name and what
-is in it; ConfigError where it cannot be read."""
+Fetch = Callable[[str, str, str], tuple[str, bytes]]
+"""The file of an `include`, by the name of the file that has it, the path it names and the ROS package in
+which that lies, "" for none: its own name and its content; NotHere or ConfigError where it cannot be read."""
 
 
-def nothing_beside(file: str, path: str) -> tuple[str, bytes]:
+class NotHere(ConfigError):
+    """A file of another machine, or of a package that is not installed: what is in it is not missed."""
+
+
+def nothing_beside(file: str, path: str, package: str) -> tuple[str, bytes]:
     """For text that lies in no folder."""
     raise ConfigError((f"{path}: there are no files beside this one",))
 
@@ -105,15 +109,12 @@ class _Reader:
         if path is None:
             page.mistake(element.mark, 'which file? <include path="..."/>')
             return
-        if package is not None:
-            where = f"{quoted(path.value)} lies in the ROS package {quoted(package.value)}"
-            page.warning(
-                path.mark, f"{where} and was not looked into; name it without ros_pkg to have it read"
-            )
+        try:
+            file, content = self.fetch(page.file, path.value, "" if package is None else package.value)
+        except NotHere as error:
+            page.warning(path.mark, str(error))
             self.is_whole = False
             return
-        try:
-            file, content = self.fetch(page.file, path.value)
         except ConfigError as error:
             page.mistake(path.mark, str(error))
             self.is_whole = False

@@ -96,7 +96,8 @@ def _check_node(forest: Forest, node: Node, findings: Findings) -> None:
         name = node.own["ID"].value
         if name not in forest.trees:
             place = Place(node.place.file, node.own["ID"].mark)
-            findings.mistake(place, f"the tree {quoted(name)} is in none of these files")
+            why = "" if forest.is_whole else "; one that they include is not here: `arboleda check` names it"
+            findings.mistake(place, f"the tree {quoted(name)} is in none of these files{why}")
         return
     kind = nodes.built_in(node.kind)
     if kind is None:

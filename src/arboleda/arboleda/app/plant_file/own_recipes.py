@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
-import os
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,7 +26,7 @@ from arboleda.model.recipe import Recipe
 from arboleda.recipes import WrittenNode
 from arboleda.recipes.storage import RECIPES
 
-from .. import user_file
+from .. import tree_includes, user_file
 from .document import Document, Place, nearest, shown
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
@@ -105,11 +104,8 @@ def _trees(document: Document, place: Place, word: str, used: Used) -> None:
         return
     known_as = str(document.folder / word)
 
-    def fetch(file: str, path: str) -> tuple[str, bytes]:
-        if "\0" in path:
-            raise ConfigError(("this is not the name of a file",))
-        found = os.path.normpath(Path(file).parent / path)
-        content = user_file.read_bytes(Path(found), LARGEST)
+    def fetch(file: str, path: str, package: str) -> tuple[str, bytes]:
+        found, content = tree_includes.read(file, path, package)
         document.files[Path(found).absolute()] = content
         return found, content
 
