@@ -140,6 +140,51 @@ def test_names_that_are_shared_are_not_missed_and_those_of_the_outermost_tree_ar
     assert "'@b' is read" in found
 
 
+REPEATS, SLEEPS = '<Repeat num_cycles="{n}"><A/></Repeat>', '<Sleep msec="{n}"/>'
+ASKS = '<Switch2 variable="{n}" case_1="1" case_2="2"><A/><A/><A/></Switch2>'
+WITHIN = '<SubTree ID="In" {}/>'
+CLASHES = [
+    (
+        REPEATS + SLEEPS,
+        "3:56: {n} is given to num_cycles of Repeat (int) at t.xml:3:19 and to msec of Sleep (",
+    ),
+    (
+        SLEEPS + REPEATS,
+        "3:38: {n} is given to msec of Sleep (unsigned) at t.xml:3:18 and to num_cycles of Re",
+    ),
+    (REPEATS + ASKS, "(string); BehaviorTree.CPP refuses a variable of two types; take one for each"),
+    (REPEATS + SLEEPS.replace("{n}", "{@n}"), None),
+    (REPEATS + WITHIN.format('k="{n}"'), "5:40: {n} is given to"),
+    (
+        WITHIN.format('k="{n}"') + REPEATS,
+        "{n} is given to msec of Sleep (unsigned) at t.xml:5:40 and to num_c",
+    ),
+    (REPEATS.replace("{n}", "{k}") + WITHIN.format('_autoremap="true"'), "5:40: {k} is given"),
+    (REPEATS + WITHIN.format(""), "5:40: {n} is given"),
+    (ASKS + REPEATS, None),
+    ('<SetBlackboard value="1" output_key="{n}"/>' + REPEATS + SLEEPS, None),
+    (REPEATS + WITHIN.format('k="5"'), None),
+    (REPEATS + WITHIN.format('k="{m}"'), None),
+    (REPEATS + WITHIN.format('k="5" _autoremap="true"'), None),
+    (REPEATS + REPEATS, None),
+]
+
+
+@pytest.mark.parametrize(("body", "words"), CLASHES)
+def test_a_variable_of_two_types_is_refused_where_the_original_does(body: str, words: str | None) -> None:
+    """What is expected here is what version 4.10 says of these trees."""
+    inner = '<BehaviorTree ID="In"><Sequence><Sleep msec="{k}"/></Sequence></BehaviorTree>'
+    model = '<TreeNodesModel><SubTree ID="In"><input_port name="k" default="{n}"/></SubTree></TreeNodesModel>'
+    found = mistakes(tree(f"<Sequence>{body}</Sequence>", inner + model))
+    assert len(found) == (words is not None) and (words or "") in "".join(found)
+
+
+def test_a_variable_of_two_types_is_a_warning_where_a_model_says_one_of_them() -> None:
+    body = '<Sequence><Go to="{n}" at="{m}"/><Sleep msec="{n}"/></Sequence>'
+    assert mistakes(tree(body, MODEL)) == ()
+    assert any("to of Go (int)" in each for each in warnings(tree(body, MODEL)))
+
+
 def test_a_tree_that_contains_itself_is_told_once_with_the_way() -> None:
     more = '\n<BehaviorTree ID="B">\n<Sequence><SubTree ID="Main"/></Sequence></BehaviorTree>'
     (found,) = mistakes(tree('<SubTree ID="B"/>', more))

@@ -9,7 +9,7 @@ from graphlib import CycleError, TopologicalSorter
 
 from arboleda.model.outside import among, quoted
 
-from . import endings, names, nodes, script, values, variables
+from . import endings, names, nodes, script, values, variable_types, variables
 from .findings import Findings, Place
 from .forest import Forest, Node
 from .markup import Attribute
@@ -49,6 +49,9 @@ def check(
     _check_loops(forest, findings)
     for place, name in variables.unwritten(forest, checker.kind):
         findings.warning(place, f"the variable {quoted(name)} is read, and nothing in these files writes it")
+    for clash in variable_types.clashes(forest, checker.kind):
+        is_sure = all(checker.knows(use.node) for use in (clash.first, clash.other))
+        (findings.mistake if is_sure else findings.warning)(clash.other.place, str(clash))
     return Checked(nodes=checker.number, unknown=checker.unknown)
 
 
@@ -76,6 +79,10 @@ class _Checker:
             fewest, most = nodes.children(node.tag)
             known = Kind(name=node.kind, category=node.tag, ports=None, fewest=fewest, most=most)
         return known
+
+    def knows(self, node: Node) -> bool:
+        """Whether the kind of a node is more than what a file says of a node of its own."""
+        return self.known is not None or nodes.built_in(node.kind) is not None
 
     def _model_of(self, node: Node) -> Kind | None:
         model = self.forest.models.get(node.own["ID"].value)
@@ -165,11 +172,10 @@ class _Checker:
                 self._unknown_port(node, name, attribute, ports)
             else:
                 self._check_value(node, ports[name], attribute)
-        is_ours = self.known is not None or nodes.built_in(node.kind) is not None
         for port in ports.values():
             if port.is_needed and port.name not in node.ports:
                 sentence = f"{_named(node)} needs {port.name}{_what(port)}"
-                if is_ours:
+                if self.knows(node):
                     self._mistake(node, sentence)
                 elif port.way is not Way.OUT:
                     self.findings.warning(node.place, sentence)

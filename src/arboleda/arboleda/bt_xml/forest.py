@@ -80,3 +80,8 @@ class Forest:
     models: Mapping[str, Kind]
     main: str | None
     is_whole: bool = True
+
+    def inside(self, tree: str) -> list[str]:
+        """The trees that one contains, as often as it does."""
+        names = (node.own["ID"].value for node in self.trees[tree].root.iterate() if node.is_subtree)
+        return [name for name in names if name in self.trees]

@@ -33,9 +33,8 @@ def part_of(forest: Forest, main: str) -> Forest:
     """The trees that the main tree is made of."""
     found, waiting = {main: forest.trees[main]}, [main]
     while waiting:
-        for node in found[waiting.pop()].root.iterate():
-            name = node.own["ID"].value if node.is_subtree else ""
-            if name in forest.trees and name not in found:
+        for name in forest.inside(waiting.pop()):
+            if name not in found:
                 found[name] = forest.trees[name]
                 waiting.append(name)
     return replace(forest, trees=found, main=main)

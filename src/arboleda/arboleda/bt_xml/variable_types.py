@@ -1,0 +1,135 @@
+"""Variables that ports of two types are given, which BehaviorTree.CPP refuses when it makes a tree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from . import values
+from .findings import Place
+from .forest import Forest, Node, Tree
+from .nodes import Kind
+from .values import OUTER, Variable
+
+KindOf = Callable[[Node], "Kind | None"]
+SAME: Mapping[str, str] = {"msec": "unsigned", "script": "string", "status": "NodeStatus"}
+TEXT = "string"
+MOST_PASSED = 100_000  # variables of trees that trees around them are held against
+
+
+@dataclass(frozen=True, kw_only=True)
+class Use:
+    """A port that is given a variable; `type` is "" where nobody here knows it, or it takes any."""
+
+    node: Node
+    port: str
+    type: str
+
+    @property
+    def place(self) -> Place:
+        return Place(self.node.place.file, self.node.ports[self.port].mark)
+
+    def __str__(self) -> str:
+        return f"{self.port} of {self.node.kind} ({self.type})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clash:
+    """A variable with the use that gives it its type, and one of another type."""
+
+    variable: str
+    first: Use
+    other: Use
+
+    def __str__(self) -> str:
+        there = f"{self.first} at {self.first.place}"
+        why = "BehaviorTree.CPP refuses a variable of two types; take one for each"
+        return f"{{{self.variable}}} is given to {there} and to {self.other}; {why}"
+
+
+@dataclass
+class _Uses:
+    """The first use of a variable, which decides what it is, and the first of each type."""
+
+    first: Use
+    typed: dict[str, Use] = field(default_factory=dict)
+
+    def all(self) -> Iterator[Use]:
+        yield self.first
+        yield from self.typed.values()
+
+    def add(self, use: Use) -> None:
+        if use.type:
+            self.typed.setdefault(use.type, use)
+
+    def clashes(self, use: Use) -> bool:
+        """BehaviorTree.CPP takes anything where a text, or a port of any type, came first."""
+        return bool(self.first.type and use.type) and self.first.type not in (TEXT, use.type)
+
+
+def clashes(forest: Forest, kind: KindOf) -> list[Clash]:
+    """Those of all trees; a tree is also given to what each tree around it gives to the same variable."""
+    found: list[Clash] = []
+    known: dict[str, Mapping[str, _Uses]] = {}
+    passed = 0
+    for name in _inner_first(forest):
+        there: dict[str, _Uses] = {}
+        for variable, use in _in_order(forest.trees[name], forest, kind, known):
+            uses = there.setdefault(variable, _Uses(use))
+            if uses.clashes(use):
+                found.append(Clash(variable=variable, first=uses.first, other=use))
+            uses.add(use)
+        passed += len(there)
+        known[name] = there if passed <= MOST_PASSED else {}
+    return found
+
+
+def _inner_first(forest: Forest) -> list[str]:
+    """The trees, each after those that it contains; of a ring, told elsewhere, one comes too early."""
+    found: dict[str, None] = {}
+    begun: set[str] = set()
+    waiting = list(forest.trees)
+    while waiting:
+        name = waiting[-1]
+        inner = [] if name in begun else forest.inside(name)
+        begun.add(name)
+        if more := [each for each in inner if each not in begun]:
+            waiting += more
+        else:
+            found.setdefault(waiting.pop())
+    return list(found)
+
+
+def _in_order(
+    tree: Tree, forest: Forest, kind: KindOf, known: Mapping[str, Mapping[str, _Uses]]
+) -> Iterator[tuple[str, Use]]:
+    """Each use of a variable of a tree in the order in which BehaviorTree.CPP makes the nodes."""
+    for node in tree.root.iterate():
+        if not node.is_subtree:
+            yield from sorted(_of_node(node, kind(node)), key=lambda row: row[1].type != TEXT)
+            continue
+        for inner, uses in known.get(node.own["ID"].value, {}).items():
+            outer = _outside(node, inner, forest)
+            if outer is not None:
+                yield from ((outer, use) for use in uses.all())
+
+
+def _of_node(node: Node, kind: Kind | None) -> Iterator[tuple[str, Use]]:
+    ports = {} if kind is None or kind.ports is None else kind.ports
+    for name, attribute in node.ports.items():
+        said = values.read(name, attribute.value)
+        if isinstance(said, Variable):
+            type = ports[name].type if name in ports else ""
+            yield said.name, Use(node=node, port=name, type=SAME.get(type, type))
+
+
+def _outside(node: Node, inner: str, forest: Forest) -> str | None:
+    """The name that a variable of a subtree has in the tree around it; None where that has no such one."""
+    if inner.startswith(OUTER) or node.shares(inner):
+        return inner
+    written = node.port(inner)
+    model = None if node.shares_names else forest.models.get(node.own["ID"].value)
+    if written is None and model is not None and inner in (model.ports or {}):
+        written = (model.ports or {})[inner].default
+    said = None if written is None else values.read(inner, written)
+    return said.name if isinstance(said, Variable) else None
