@@ -104,6 +104,10 @@ SKIPS = (
     '<AlwaysSuccess _skipIf="true"/><Sleep msec="500"/></Parallel>'
 )
 FAILS = '<ScriptCondition code="1 / 0 == 1"/>'
+MORE = (
+    '<Script code="most := 3"/><ParallelAll max_failures="{most}"><mill_open/><AlwaysSuccess/></ParallelAll>'
+)
+MORE_PARALLEL = MORE.replace("All max_failures", " success_count").replace("All>", ">")
 
 
 @pytest.mark.parametrize(
@@ -112,6 +116,8 @@ FAILS = '<ScriptCondition code="1 / 0 == 1"/>'
         (LOOP, TaskState.DONE, ""),
         (SKIPS, TaskState.DONE, ""),
         (FAILS, TaskState.FAILED, "a division by zero"),
+        (MORE, TaskState.FAILED, "max_failures of ParallelAll is 3, and it has 2 children"),
+        (MORE_PARALLEL, TaskState.FAILED, "success_count of Parallel is 3, and it has 2 children"),
         ("<AlwaysFailure/>", TaskState.FAILED, "the tree tend has failed"),
     ],
 )

@@ -19,6 +19,8 @@ from .values import Variable
 MOST_LOOPS = 20
 SHARING = ("_autoremap", "__autoremap", "__shared_blackboard")
 OLD_PARALLEL = ("success_threshold", "failure_threshold", "threshold")
+THRESHOLDS = ("success_count", "failure_count", "max_failures", *OLD_PARALLEL)
+PARALLELS = ("Parallel", "ParallelAll")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +115,8 @@ class _Checker:
         self._check_children(node, kind)
         if kind.ports is not None:
             self._check_ports(node, kind, kind.ports)
+        if node.kind in PARALLELS:
+            self._check_thresholds(node)
 
     def _check_names(self, node: Node) -> None:
         if (why := names.of_one_node(node.name)) is not None:
@@ -179,6 +183,16 @@ class _Checker:
                     self._mistake(node, sentence)
                 elif port.way is not Way.OUT:
                     self.findings.warning(node.place, sentence)
+
+    def _check_thresholds(self, node: Node) -> None:
+        """BehaviorTree.CPP refuses those that the children cannot reach when the node is ticked."""
+        many = len(node.children)
+        for name in THRESHOLDS:
+            text = node.port(name) or ""
+            if values.INT.fullmatch(text) and values.number(text) > many > 0:
+                place = Place(node.place.file, node.ports[name].mark)
+                children = f"it has {many} {'child' if many == 1 else 'children'}"
+                self.findings.mistake(place, f"{name} of {node.kind} is {text}, and {children}")
 
     def _unknown_port(self, node: Node, name: str, attribute: Attribute, ports: Collection[str]) -> None:
         shown = [each for each in ports if node.kind != "Parallel" or each not in OLD_PARALLEL]

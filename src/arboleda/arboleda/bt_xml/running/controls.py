@@ -8,7 +8,8 @@ from typing import ClassVar
 from py_trees.common import Status
 
 from .node import ENDED, FAILURE, PAUSE_S, RUNNING, SKIPPED, SUCCESS, Node, Result
-from .ports import Given
+from .ports import THRESHOLD, Given
+from .scripts import ScriptError
 
 
 class Ordered(Node):
@@ -170,8 +171,13 @@ class ReactiveFallback(Reactive):
     stops, ends = SUCCESS, FAILURE
 
 
-def _threshold(number: float, many: int) -> int:
-    """How many children a threshold means; a negative one counts from all of them."""
+def _threshold(given: Given, port: str, number: float, many: int) -> int:
+    """How many of so many children a threshold means; a negative one counts from all of them.
+
+    BehaviorTree.CPP refuses one that cannot be reached, though the node might end all the same.
+    """
+    if number > many:
+        raise ScriptError(THRESHOLD(port=port, node=given.node, number=int(number), many=many))
     return max(many + int(number) + 1, 0) if number < 0 else int(number)
 
 
@@ -195,7 +201,8 @@ class Parallel(Node):
         success = self.given.number("success_count", self.scope, self._old("success_threshold", "-1"))
         failure = self.given.number("failure_count", self.scope, self._old("failure_threshold", "1"))
         many = len(self.below)
-        enough, too_many = _threshold(success, many), _threshold(failure, many)
+        enough = _threshold(self.given, "success_count", success, many)
+        too_many = _threshold(self.given, "failure_count", failure, many)
         self.begin()
         skipped = 0
         for number, child in enumerate(self.below):
@@ -246,7 +253,8 @@ class ParallelAll(Node):
 
     def work(self) -> Result:
         many = len(self.below)
-        too_many = _threshold(self.given.number("max_failures", self.scope, "1"), many)
+        most = self.given.number("max_failures", self.scope, "1")
+        too_many = _threshold(self.given, "max_failures", most, many)
         self.begin()
         skipped = 0
         for number, child in enumerate(self.below):

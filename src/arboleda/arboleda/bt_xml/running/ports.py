@@ -17,6 +17,7 @@ NEEDED = Phrase("xml.needed", "{node} needs {port}")
 UNSET_AT = Phrase("xml.unset", "{port} of {node} is the variable {variable}, which has no value")
 WANTED = Phrase("xml.wanted", "{port} of {node} must be {wanted}, is {value}")
 LISTED = Phrase("xml.listed", "{port} of {node} is {value}; there are {known}")
+THRESHOLD = Phrase("xml.threshold", "{port} of {node} is {number}, and it has {many} children")
 BETWEEN = Phrase("xml.between", "from {lower:g} to {upper:g}")
 TYPES = {
     "int": Phrase("xml.int", values.TYPES["int"][0]),
