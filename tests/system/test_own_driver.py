@@ -49,6 +49,26 @@ def test_a_controller_that_ends_at_work_fails_the_task_with_the_reason(
     assert "Traceback" not in up.output
 
 
+def test_a_controller_that_is_not_there_is_named_after_a_time(
+    arboleda: Callable[..., Any], plant: tuple[str, int]
+) -> None:
+    real = ("run", "shop form 2", "--plant", plant[0], "--boards", "real", "--no-ros")
+    run = arboleda(*real, "--wait-for-devices", "1")
+    assert run.wait() == 1, run.output
+    assert f"  press is offline: 127.0.0.1:{plant[1]}: " in run.output
+    assert "After 1 s no task can begin" in run.output and "cancelled shop 2" in run.output
+    assert "Traceback" not in run.output
+
+
+def test_ctrl_c_ends_the_wait_for_a_controller(arboleda: Callable[..., Any], plant: tuple[str, int]) -> None:
+    run = arboleda(
+        "run", "shop form 2", "--plant", plant[0], "--boards", "real", "--no-ros", "--wait-for-devices", "900"
+    )
+    run.wait_for("queued    shop 2")
+    assert run.interrupt() == 1, run.output
+    assert "cancelled shop 2" in run.output and "After 900 s" not in run.output
+
+
 def test_without_real_boards_the_press_is_simulated(
     arboleda: Callable[..., Any], plant: tuple[str, int]
 ) -> None:

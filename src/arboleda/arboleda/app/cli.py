@@ -193,6 +193,15 @@ BoardsOption = Annotated[
 Rate = Annotated[
     float, typer.Option(metavar="X", callback=_rate, help="Make the virtual robots X times as fast.")
 ]
+Patience = Annotated[
+    float,
+    typer.Option(
+        "--wait-for-devices",
+        metavar="SECONDS",
+        min=1.0,
+        help="Wait so long for devices that are offline, then end and name them.",
+    ),
+]
 Host = Annotated[
     str,
     typer.Option(
@@ -295,8 +304,10 @@ def run(
     groot2: Groot2 = None,
     state: StateFolder = None,
     store: StoreAddress = "",
+    wait_for_devices: Patience = 10.0,
 ) -> None:
-    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed, 2 bad input.
+    """Start the plant, do the tasks, end. Exit status: 0 all done, 1 a task failed or could not begin, 2 bad
+    input.
 
     Not for a plant that is up already: that takes tasks by `arboleda submit`.
     """
@@ -306,7 +317,7 @@ def run(
     web = WebOptions(host=host, port=port, public_url=public_url, tls=shown.by_web)
     options = _options(broker, broker_host, broker_users, shown, rate, state, store, web, recording)
     options = replace(options, groot2=groot2)
-    _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False)
+    _run(model, tasks, options, boards=boards, ros=ros, lan=ros_lan, stay=False, patience_s=wait_for_devices)
 
 
 @cli.command()
@@ -584,6 +595,7 @@ def _run(
     lan: bool,
     stay: bool,
     standby: bool = False,
+    patience_s: float | None = None,
 ) -> None:
     from . import session
     from .build import OF_BOARDS, PARTS, build
@@ -618,7 +630,7 @@ def _run(
             raise typer.Exit from None
     else:
         app = build(model, parts, options)
-    raise typer.Exit(session.Session(app, tasks, console, stay=stay).run())
+    raise typer.Exit(session.Session(app, tasks, console, stay=stay, patience_s=patience_s).run())
 
 
 def _ros(model: PlantModel, wanted: bool | None, *, lan: bool) -> tuple[Any, tuple[str, ...]]:

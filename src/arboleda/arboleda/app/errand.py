@@ -6,18 +6,44 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass, replace
 from typing import Any
 
 from arboleda.model.messages import TaskChanged, TaskState
+from arboleda.model.sentence import Sentence
 
 ENDED = frozenset({TaskState.DONE, TaskState.FAILED, TaskState.CANCELLED, TaskState.REFUSED})
 
 
-class Errand:
-    """Ask `submit` for every text; `finished` is called once, in the plant's thread, at the end of all."""
+@dataclass(frozen=True, kw_only=True)
+class Absence:
+    """A cell that begins no task because devices of it are offline, since a moment of the clock."""
 
-    def __init__(self, texts: Sequence[str], finished: Callable[[], None]) -> None:
+    since: float
+    why: tuple[Sentence, ...]  # for each device
+
+
+class Errand:
+    """Ask `submit` for every text; `finished` is called once, in the plant's thread, at the end of all.
+
+    What waits for a device that was offline for `patience_s` counts as over, with all others; None: it is
+    waited for.
+    """
+
+    def __init__(
+        self,
+        texts: Sequence[str],
+        finished: Callable[[], None],
+        *,
+        patience_s: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self.texts = tuple(texts)
+        self._patience_s = patience_s
+        self._clock = clock
+        self.missing: tuple[Sentence, ...] = ()  # what is said of devices that were waited for in vain
+        self._cells: set[str | None] = set()
+        self._absent: dict[str | None, Absence] = {}
         self.results: dict[str, TaskChanged] = {}
         self.seconds: dict[str, float] = {}
         self._finished = finished
@@ -46,10 +72,18 @@ class Errand:
         self._finish_if_over()
 
     def seen(self, snapshot: dict[str, Any]) -> None:
-        """Look at every snapshot of the plant: which cells start no task before an operator acts."""
+        """Look at every snapshot of the plant: which cells start no task before an operator acts, or before
+        a device is there."""
         blocked = [cell["name"] for cell in snapshot["cells"] if cell["paused"] and not cell["task"]]
+        absent = _absent(snapshot)
         with self._lock:
+            now = self._clock()
+            known = {cell: each.since for cell, each in self._absent.items()}
+            self._cells = {cell["name"] for cell in snapshot["cells"]}
             self._blocked = set(blocked)
+            self._absent = {
+                cell: Absence(since=known.get(cell, now), why=why) for cell, why in absent.items()
+            }
         self._finish_if_over()
 
     def _answered(self, change: TaskChanged) -> None:
@@ -63,6 +97,8 @@ class Errand:
         with self._lock:
             over = self._over() and not self._told
             self._told = self._told or over
+            if over:
+                self._say_what_is_missing()
         if over:
             self._finished()
 
@@ -76,5 +112,46 @@ class Errand:
     def _over(self) -> bool:
         if self._asked < len(self.texts):
             return False
-        waiting = [change for change in self.results.values() if change.state not in ENDED]
-        return all(change.state is TaskState.QUEUED and change.cell in self._blocked for change in waiting)
+        return all(
+            change.state is TaskState.QUEUED and self._is_stuck(change.cell) for change in self._waiting()
+        )
+
+    def _say_what_is_missing(self) -> None:
+        """Put what is so now in the place of what was said of tasks when they began to wait."""
+        gone = {cell: each for cell, each in self._absent.items() if self._is_given_up(cell)}
+        for task, change in self.results.items():
+            found = [each for cell, each in gone.items() if change.cell in (cell, None)]
+            if change.state is TaskState.QUEUED and found:
+                said = [why for absence in found for why in absence.why]
+                self.results[task] = replace(change, sentence=said[0])
+                self.missing = tuple(dict.fromkeys((*self.missing, *said)))
+
+    def _waiting(self) -> list[TaskChanged]:
+        return [change for change in self.results.values() if change.state not in ENDED]
+
+    def _is_stuck(self, cell: str | None) -> bool:
+        """Whether a cell starts no task; of None, whether none does."""
+        if cell is None:
+            return bool(self._cells) and all(map(self._is_stuck, self._cells))
+        return cell in self._blocked or self._is_given_up(cell)
+
+    def _is_given_up(self, cell: str | None) -> bool:
+        absence = self._absent.get(cell)
+        if absence is None or self._patience_s is None:
+            return False
+        return self._clock() - absence.since >= self._patience_s
+
+
+def _absent(snapshot: dict[str, Any]) -> dict[str, tuple[Sentence, ...]]:
+    """The cells that begin no task because devices are offline, with what is said of each of these."""
+    offline = {
+        robot["name"]: robot["obstacle"]
+        for robot in snapshot["robots"]
+        if not robot["online"] and robot["obstacle"]
+    }
+    found = {}
+    for cell in snapshot["cells"]:
+        why = tuple(offline[each["name"]] for each in cell["devices"] if each["name"] in offline)
+        if why and cell["not_ready"] and not cell["task"]:
+            found[cell["name"]] = why
+    return found

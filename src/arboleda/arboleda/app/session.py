@@ -15,13 +15,14 @@ from rich.console import Console
 from rich.text import Text
 
 from arboleda.model.errors import StartError
+from arboleda.model.outside import plain
 
 from . import invocation
 from .build import App
 from .errand import Errand
 from .log_file import LogFile
 from .log_queue import LogQueue, log_to
-from .screen import Screen, logged, parting, summary
+from .screen import LONGEST, Screen, logged, parting, summary
 from .waiting import interruptible, taken_from, until_interrupted
 
 NO_ROS = (
@@ -50,12 +51,25 @@ class Session:
     """A plant in a terminal. Whatever is printed is printed by the thread that calls `run`: no trouble with
     the terminal can reach the plant."""
 
-    def __init__(self, app: App, texts: Sequence[str], console: Console, *, stay: bool) -> None:
+    def __init__(
+        self,
+        app: App,
+        texts: Sequence[str],
+        console: Console,
+        *,
+        stay: bool,
+        patience_s: float | None = None,
+    ) -> None:
         self._app = app
         self._console = console
         self._stay = stay
         self._news: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
-        self._errand = Errand(texts, lambda: self._log.then(lambda: self._news.put(self._finished)))
+        self._patience_s = patience_s  # for devices that are offline, where it does not stay
+        self._errand = Errand(
+            texts,
+            lambda: self._log.then(lambda: self._news.put(self._finished)),
+            patience_s=patience_s,
+        )
         self._screen = Screen(console, app.snapshot, app.log_file)
         self._stopping = False
 
@@ -112,6 +126,11 @@ class Session:
         if not self._errand.texts or self._stopping:
             return
         self._console.print(summary(self._errand.results, self._errand.seconds))
+        if self._errand.missing:
+            waited = f"After {self._patience_s:g} s no task can begin without devices that are offline"
+            self._console.print(Text(f"{waited}; --wait-for-devices SECONDS waits longer:", style="red"))
+        for line in self._errand.missing:
+            self._console.print(Text(f"  {plain(str(line), LONGEST)}", style="red"), soft_wrap=True)
         if not self._stay:
             self._app.end()
             return
