@@ -92,3 +92,55 @@ def test_what_runs_is_halted_when_its_task_fails(
     sim.fault("reboot", "mill", word="will")
     sim.run(20.0)
     assert (task.state, task.reason) == ("failed", "part_lost") or cause != "final"
+
+
+IN_PYTHON = """
+from py_trees.behaviour import Behaviour
+from arboleda.recipes import parallel, recipe, work
+
+
+class Breaks(Behaviour):
+    def update(self):
+        raise ValueError("it breaks")
+
+
+@recipe("t")
+def t(cell):
+    mill, two = cell.devices("mill", "two")
+    cause = {{"final": mill.run(), "ordinary": cell.fail("no"), "raises": Breaks("breaks")}}[{cause!r}]
+    return work(mill.clamp(on=True), {frame})
+"""
+AT_ONCE_IN_PYTHON = "parallel(two.close(), work(cell.wait(1), cause))"
+FRAMES = {
+    "work": "work({at_once})",
+    "parallel": "parallel({at_once}, cell.wait(90))",
+    "fallback": "cell.fallback({at_once}, cell.fail('the other way, too'))",
+    "retry": "cell.retry({at_once}, causes=['deadline'])",
+    "repeat": "cell.repeat({at_once}, 2)",
+    "timeout": "cell.timeout({at_once}, 300)",
+    "invert": "cell.invert({at_once})",
+}
+
+ANSWERED = {"fallback": ("failed", "rejected"), "invert": ("done", None)}  # what has an answer to a failure
+
+
+@pytest.mark.parametrize("cause", ["final", "ordinary", "raises"])
+@pytest.mark.parametrize("frame", FRAMES)
+def test_what_runs_is_halted_in_python_too(tmp_path: Path, frame: str, cause: str) -> None:
+    """The simulator judges each step: `halted_moves_sent_halt`."""
+    written = IN_PYTHON.format(cause=cause, frame=FRAMES[frame].format(at_once=AT_ONCE_IN_PYTHON))
+    (tmp_path / "r.py").write_text(written)
+    (tmp_path / "plant.yaml").write_text(PLANT.replace("[t.xml, own.py]", "[r.py]"))
+    sim = Sim(tmp_path)
+    sim.plant("plant.yaml")
+    sim.without("no_internal_failure")  # a step that raises is one
+    sim.run(3.0)
+    task = sim.submit("c t #one")
+    sim.run(4.0)
+    sim.fault("reboot", "mill", word="will")
+    sim.run(20.0)
+    expected = {"final": "part_lost", "ordinary": "rejected", "raises": "internal"}[cause]
+    if frame in ANSWERED and cause != "raises":
+        assert (task.state, task.reason) == ANSWERED[frame]
+    else:
+        assert (task.state, task.reason) == ("failed", expected)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -74,12 +75,19 @@ class Main(Node):
         return result
 
     def _halt_all(self) -> None:
-        """Halt whatever runs, also below nodes that have ended: an error comes in the middle of a tick."""
-        for node in list(self.below[0].iterate()):
+        """Halt whatever runs, also below nodes that have ended: an error comes in the middle of a tick.
+
+        A script that breaks while its node is halted keeps nothing else from being halted: what that left
+        is halted from the innermost node on.
+        """
+        nodes = list(self.below[0].iterate())
+        for node in (*nodes, *reversed(nodes)):
             if node.status is Status.RUNNING:
-                node.stop(Status.INVALID)
+                with suppress(ScriptError):
+                    node.stop(Status.INVALID)
 
     def halt(self) -> None:
+        self._halt_all()
         self.below[0].reset()
         self.status = Status.INVALID
 
