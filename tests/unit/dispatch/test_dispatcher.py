@@ -57,6 +57,17 @@ def test_what_nobody_can_judge_any_more_has_failed(dispatcher: Dispatcher, *, ca
     assert move.state is State.FAILED and move.failure and move.failure.reason is Reason.INTERNAL
 
 
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_what_did_not_leave_has_failed_or_has_ended_as_it_was_told_to(
+    dispatcher: Dispatcher, *, cancelled: bool
+) -> None:
+    move = dispatcher.send(partial(MoveJoints, robot="ra1", q=(0.5, 0.0, 0.0)), "sis_a", "moving", 100.1)
+    if cancelled:
+        dispatcher.cancel(move, 100.1)
+    dispatcher.undelivered(move.command.id, "ra1", "a stop left before it", 100.2)
+    assert move.state is (State.CANCELLED if cancelled else State.FAILED)
+
+
 @pytest.mark.parametrize(
     ("make", "settles"),
     [(partial(SetEffector, on=True), False), (Switch, True)],

@@ -412,12 +412,13 @@ class Dispatcher:
         self.reached.pop(robot, None)
 
     def undelivered(self, id: str, robot: str, sentence: Sentence, now: float) -> None:
-        """Fail a command that could not leave this process."""
+        """Fail a command that could not leave this process; one that was being cancelled has ended so."""
         failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
         for entry in self.ledger.of_robot(robot):
             if entry.command.id == id:
                 self.grips.will_not_open(robot, id)
-                self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+                feed = Feed.HALTED if entry.state is State.CANCELLING else Feed.FAILED
+                self._book(entry, Verdict(feed=feed, failure=failure), now)
 
     def expire(self, limit: float, now: float, guard: Guard = unguarded) -> None:
         """End what is due up to and including `limit`: settling times, deadlines, silence."""
