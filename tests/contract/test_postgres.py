@@ -91,7 +91,9 @@ def test_a_leader_that_was_away_finds_out_that_it_is_none_any_more(
         take_over(postgres, plant)
         memory.confirm()  # its lease has not ended: nobody can have taken over but by a look into the tables
         now = time.clock_gettime(time.CLOCK_BOOTTIME)
+        assert memory.leads_for_certain
         monkeypatch.setattr("arboleda.adapters.clock.seconds", lambda: now + LEASE_S)
+        assert not memory.leads_for_certain
         with pytest.raises(Superseded):
             memory.confirm()
 

@@ -25,6 +25,9 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float32MultiArray, MultiArrayDimension, String, UInt8, UInt32
 from std_srvs.srv import Trigger
 
+from arboleda.adapters.store import Store
+from arboleda.app.parts.orchestrator import Orchestrator
+from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.kinds.arm import MoveJoints, SetEffector
 from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Home, Stop, StopMode
@@ -504,6 +507,46 @@ def test_a_refused_verb_says_why(links):
     answered(side, refusal="ra1 still moves")
     eventually(call.done)
     assert (call.result().success, call.result().message) == (False, "ra1 still moves")
+
+
+def test_a_stop_that_has_left_and_is_not_kept_says_so(links):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    call = operator.call("/plant/stop")
+    asked = eventually(lambda: side.events.pop() if side.events else None)
+    side.port.send(stop_left(asked, STILL_WAITS()))
+    eventually(call.done)
+    assert call.result().success
+    assert "left for the whole plant, and the plant has not kept it" in call.result().message
+
+
+def test_a_service_stops_robots_while_the_plant_waits_for_its_disk(links, tmp_path, monkeypatch):
+    """Also where the publication of what happened hangs: it is the same thread."""
+    reached, let_go, told = threading.Event(), threading.Event(), set()
+    bridge, operator = links(), Operator(links(), "operator")
+    bridge.bridge(PLANT, lambda event: told.add(type(event.message)), time.monotonic)
+    bridge.start()
+    with Store(tmp_path / "plant.sqlite") as store:
+        plant, link = Orchestrator(PLANT, 7, pytest.fail, store), links()
+        port = link.orchestrator(PLANT, plant.hear, time.monotonic)
+        plant.connect(port)
+        plant.connect_ros(port)
+        link.start()
+        for publisher in port._labelled.values():
+            eventually(publisher.get_subscription_count)
+        hang = lambda *_: (reached.set(), let_go.wait(PATIENCE_S))  # noqa: E731
+        monkeypatch.setattr(store, "task", hang)
+        plant.start()
+        try:
+            plant.submit("sis_a 0B 1")
+            assert reached.wait(PATIENCE_S)
+            call = operator.call("/plant/stop")
+            eventually(lambda: Stop in told)
+            eventually(call.done)
+            assert not let_go.is_set()
+        finally:
+            let_go.set()
+            plant.stop()
+    assert call.result().success and "has not kept it" in call.result().message
 
 
 def test_answers_to_others_are_passed_over(links):

@@ -6,9 +6,10 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotInTime
-from typing import Any
+from typing import Any, NamedTuple
 from uuid import uuid4
 
+from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
 
@@ -20,6 +21,14 @@ Answer = OperatorAnswer | TaskChanged
 
 class NoAnswer(ArboledaError):
     """The plant did not answer in time; what was asked may still be done."""
+
+
+class Outcome(NamedTuple):
+    """What a service answers: whether a verb was done, and why not. Of a stop that has left and is not kept
+    the message says that."""
+
+    success: bool
+    message: str
 
 
 class Asker:
@@ -34,21 +43,23 @@ class Asker:
         self._clock = clock
         self._waiting: dict[str, Future[Any]] = {}
 
-    def refusal(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> str | None:
-        """Have an operator's verb done; why it was not, None where it was."""
-        return self._refusal(verb, scope, by_hand=by_hand)
+    def outcome(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Outcome:
+        """Have an operator's verb done."""
+        return self._outcome(verb, scope, by_hand=by_hand)
 
-    def _refusal(self, verb: Verb, scope: str, **more: bool) -> str | None:
+    def _outcome(self, verb: Verb, scope: str, **more: bool) -> Outcome:
         try:
             answer = self._ask(
                 lambda token: OperatorRequest(at=self._clock(), verb=verb, scope=scope, request=token, **more)
             )
         except NoAnswer as error:
-            return str(error)
+            return Outcome(success=False, message=str(error))
         except Exception:  # a caller must not wait for an answer that never comes
             LOG.exception("%s %s failed", verb.value, scope or "plant")
-            return "internal error"
-        return None if answer.refusal is None else str(answer.refusal)
+            return Outcome(success=False, message="internal error")
+        if answer.refusal is not None:
+            return Outcome(success=False, message=str(answer.refusal))
+        return Outcome(success=True, message=str(answer.sentence) if isinstance(answer, StopLeft) else "")
 
     def submit(self, text: str) -> TaskChanged:
         """Ask for a task; what became of it first, refused too, or NoAnswer."""
@@ -60,7 +71,8 @@ class Asker:
 
     def cancellation_refusal(self, task: str) -> str | None:
         """Have a task cancelled for its client; why it was not, None where it was."""
-        return self._refusal(Verb.CANCEL, task, client=True)
+        outcome = self._outcome(Verb.CANCEL, task, client=True)
+        return None if outcome.success else outcome.message
 
     def cancel_later(self, task: str) -> None:
         """Ask for a task to be cancelled for its client; its changes tell what came of it."""

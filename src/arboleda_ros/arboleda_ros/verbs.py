@@ -21,6 +21,5 @@ class VerbServices:
             node.create_service(Trigger, f"plant/{verb.value}", partial(self._serve, verb))
 
     def _serve(self, verb: Verb, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        refusal = self._asker.refusal(verb)
-        response.success, response.message = refusal is None, refusal or ""
+        response.success, response.message = self._asker.outcome(verb)
         return response

@@ -21,9 +21,10 @@ from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
+from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled
 from arboleda.model.messages import OperatorAnswer, Verb
-from arboleda.model.sentence import Phrase
+from arboleda.model.sentence import Phrase, Sentence
 from arboleda.testing import shipped
 from arboleda.views.oee import Kept, Oee, Run, Work, oee
 
@@ -82,6 +83,7 @@ class Plant:
         self.view: dict | Exception = VIEW
         self.acts: list[tuple[Verb, str, bool]] = []
         self.refusal: str | None = None
+        self.unkept: Sentence | None = None  # why a stop that has left is not kept
         self.unanswered: list[Future] | None = None
         self.watchers: list[Callable[[dict], None]] = []
 
@@ -131,7 +133,8 @@ class Plant:
         if self.unanswered is not None:
             self.unanswered.append(future)
         else:
-            future.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal))
+            answer = OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal)
+            future.set_result(answer if self.unkept is None else stop_left(answer, self.unkept))
         return future
 
     def watch(self, callback: Callable[[dict], None]) -> Callable[[], None]:

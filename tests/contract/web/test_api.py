@@ -6,6 +6,7 @@ import pytest
 
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery
+from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase
@@ -268,6 +269,17 @@ def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
     assert answer.status_code == 503
     assert "did not answer in time" in answer.json()["sentence"]
     plant.unanswered[0].set_result(OperatorAnswer(verb=Verb.STOP, scope=""))
+
+
+def test_a_stop_that_has_left_and_is_not_kept_is_said_to(web, plant):
+    plant.unkept = STILL_WAITS()
+    answer = web.post("/api/cells/sis_a/stop")
+    assert answer.status_code == 202
+    said = answer.json()
+    assert (said["verb"], said["scope"], said["key"]) == ("stop", "sis_a", "stop.left_unkept")
+    assert said["sentence"] == str(
+        stop_left(OperatorAnswer(verb=Verb.STOP, scope="sis_a"), plant.unkept).sentence
+    )
 
 
 @pytest.mark.parametrize(

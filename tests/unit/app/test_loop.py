@@ -256,14 +256,23 @@ def test_without_a_handler_a_crash_is_one_line(make, caplog):
     assert caplog.messages == ["echo has stopped on an internal error: ZeroDivisionError('by design')"]
 
 
-def test_what_comes_out_of_a_step_is_seen_before_it_is_sent(make, sent):
-    seen = []
-    loop = make(before_send=lambda messages: seen.append((list(messages), list(sent))))
+def test_what_comes_out_of_a_step_is_sent_in_the_order_that_is_wanted(make, sent):
+    steps = []
+    loop = make(arrange=lambda messages: messages[::-1], on_step=lambda *step: steps.append(step))
     loop.post("a")
     loop.post("b")
     loop.turn()
-    assert seen == [(["a", "b"], [])]
-    assert sent == ["a", "b"]
+    assert sent == ["b", "a"]
+    assert steps == [(10.0, ("a", "b"), ["a", "b"])]
+
+
+def test_it_is_busy_from_the_taking_in_to_the_end_of_what_follows_a_step(make):
+    seen = []
+    loop = make(send=lambda message: seen.append(loop.busy), on_step=lambda *_: seen.append(loop.busy))
+    assert not loop.busy
+    loop.post("a")
+    loop.turn()
+    assert seen == [True, True] and not loop.busy
 
 
 def test_an_observer_sees_every_step(make):

@@ -159,14 +159,26 @@ def commits(store: Store, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Remembe
     return told
 
 
-def test_the_latches_of_one_stop_are_kept_by_one_commit_before_the_first_leaves(plant, store, monkeypatch):
+def test_stops_leave_before_any_commit_and_their_latches_are_kept_by_one(plant, store, monkeypatch):
     (first, stop_one), (second, stop_two) = latched("ra1"), latched("rm_sis_a")
-    told = commits(store, monkeypatch)
+    keep, told = store.keep, []
+    monkeypatch.setattr(
+        store, "keep", lambda *facts: (told.append((facts, plant.robots.messages)), keep(*facts))
+    )
     turn(plant, GRIP, first, stop_one, second, stop_two)
-    assert told == [(first, second), (GRIP,)]
-    assert plant.robots.messages == [stop_one, stop_two]
-    turn(plant, first)
-    assert told[2:] == [(first,)]
+    assert told == [((GRIP, first, second), [stop_one, stop_two])]
+
+
+def test_what_came_before_a_stop_of_its_robot_does_not_leave_after_it(plant):
+    clear, latch = latched("ra1", "cleared"), latched("ra1")
+    drive = Home(id="7-3", robot="rm_sis_a")
+    later = replace(OFF, id="7-4")
+    turn(plant, GRIP, ON, *clear, drive, *latch, later)
+    assert plant.robots.messages == [latch[1], drive, later]
+    heard = turn(plant)
+    assert {event.id: str(event.sentence) for event in heard} == dict.fromkeys(
+        ["7-1", ""], "a stop of ra1 left before this could be sent"
+    )
 
 
 def test_facts_that_stand_side_by_side_are_kept_by_one_commit(plant, store, monkeypatch):
@@ -177,11 +189,13 @@ def test_facts_that_stand_side_by_side_are_kept_by_one_commit(plant, store, monk
     assert plant.robots.messages == [ON, OFF]
 
 
-def test_latches_of_the_same_robot_are_kept_in_their_order(plant, store, monkeypatch):
+def test_of_two_latches_of_the_same_robot_the_last_is_kept(plant, store, monkeypatch):
     (on, stop), (off, clear) = latched("ra1"), latched("ra1", "cleared")
     told = commits(store, monkeypatch)
     turn(plant, on, stop, off, clear)
-    assert told == [(on,), (off,)]
+    assert plant.robots.messages == [stop, clear]
+    assert told == [(on, off)]
+    assert store.facts(Fact.LATCH) == {"ra1": "cleared"}
 
 
 def test_stops_leave_a_plant_whose_latches_cannot_be_kept(plant, store, crashes, monkeypatch):
@@ -199,7 +213,7 @@ def test_once_something_cannot_be_kept_robots_are_only_told_to_stop(plant, store
     latch = Stop(id="7-3", robot="ra1", mode=StopMode.LATCH)
     clear = Stop(id="7-4", robot="ra1", mode=StopMode.CLEAR)
     home = Home(id="7-5", robot="ra1")
-    turn(plant, lost, ON, halt, latch, GRIP, clear)
+    turn(plant, halt, latch, lost, ON, GRIP, clear)
     turn(plant, home, Heartbeat(epoch=7))
     assert plant.robots.messages == [halt, latch, Heartbeat(epoch=7)]
     assert [str(crash) for crash in crashes] == ["The disk is full."]
@@ -451,8 +465,8 @@ def test_what_waited_too_long_for_the_disk_is_not_sent_and_a_stop_is(plant, stor
     monkeypatch.setattr(plant.loop, "_clock", lambda: now[0])
     plant.plant.now = now[0]
     halt = Stop(id="7-2", robot="ra1", mode=StopMode.HALT)
-    turn(plant, GRIP, ON, GRIP, replace(ON, id="7-3"), halt)
-    assert plant.robots.messages == [ON, halt]
+    turn(plant, halt, GRIP, ON, GRIP, replace(ON, id="7-3"))
+    assert plant.robots.messages == [halt, ON]
     (undelivered,) = turn(plant)
     assert undelivered.id == "7-3"
     assert str(undelivered.sentence) == "the plant was away for 2.0 s before it could send this"
@@ -524,7 +538,7 @@ def test_a_view_that_cannot_be_made_is_logged_once_and_does_not_end_the_plant(pl
 def test_what_a_stopped_process_had_decided_is_not_sent_when_it_goes_on(plant, monkeypatch):
     move = MoveJoints(id="7-2", robot="ra1", q=(0.0, 0.0, 0.0))
     halt = Stop(id="7-3", robot="ra1", mode=StopMode.HALT)
-    plant.plant.says = lambda events: [] if events else [ON, move, halt]
+    plant.plant.says = lambda events: [] if events else [halt, ON, move]
     stepped_at = plant.plant.now
     monkeypatch.setattr(orchestrator.clock, "seconds", lambda: stepped_at + 20.0)
     plant.loop.turn()
@@ -632,6 +646,7 @@ def test_a_leader_before_that_is_still_on_ros_keeps_no_other_from_leading(
     monkeypatch.setattr(topics, "check_alone", lambda: refuse("another node already commands"), raising=False)
     monkeypatch.setattr(store, "renew_s", renew_s, raising=False)
     monkeypatch.setattr(plant.loop, "start", lambda: started.append(plant))
+    monkeypatch.setattr(plant.stops.loop, "start", lambda: None)
     plant.connect_ros(topics)
     with nullcontext() if begins else pytest.raises(StartError, match="already commands"):
         plant.start()

@@ -60,6 +60,12 @@ def test_without_a_scope_it_is_the_whole_plant(acts: Notes, verb: Verb) -> None:
     assert said.endswith(", the whole plant\n")
 
 
+def test_a_stop_that_is_not_kept_is_said_to_have_been_sent(acts: Notes, monkeypatch) -> None:
+    left = {"verb": "stop", "scope": "", "sentence": "the stop has left"}
+    monkeypatch.setattr(acts, "operate", lambda *_, **__: left, raising=False)
+    assert arboleda("stop") == (0, "sent, not kept: stop (software), the whole plant; the stop has left\n")
+
+
 @pytest.mark.parametrize("verb", NEED_A_SCOPE, ids=str)
 def test_what_acts_on_one_thing_does_not_guess_which(acts: Notes, verb: Verb) -> None:
     assert arboleda(verb.value)[0] == 2

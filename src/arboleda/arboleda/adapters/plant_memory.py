@@ -119,6 +119,11 @@ class PlantMemory(ABC):
     def confirm(self) -> None:  # noqa: B027
         """Make sure that this process still leads; costs nothing while that is known."""
 
+    @property
+    def leads_for_certain(self) -> bool:
+        """Whether it is known, without a question to anybody, that this process leads; from any thread."""
+        return True
+
     def keep(self, *facts: Remember) -> None:
         """Commit facts, or forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()

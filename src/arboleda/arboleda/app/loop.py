@@ -42,9 +42,9 @@ class Loop(Generic[Event, Message]):
     """Sleeps until an event arrives or a deadline passes, steps once, sends what comes out.
 
     A `step` (or an error handler) that raises ends the loop: `on_crash(name, error)`. A `send` that raises
-    does not: `on_send_error(message, error)`. `before_send(messages)` sees what comes out of a step before it
-    is sent, `on_step(now, events, messages)` every step after that. All of them are called in the loop's
-    thread. `wait(condition, timeout_s)` is there for tests that move time by hand.
+    does not: `on_send_error(message, error)`. `arrange(messages)` gives what comes out of a step in the order
+    in which it is sent, `on_step(now, events, messages)` sees every step after that. All of them are called
+    in the loop's thread. `wait(condition, timeout_s)` is there for tests that move time by hand.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class Loop(Generic[Event, Message]):
         clock: Callable[[], float] = seconds,
         on_crash: Callable[[str, BaseException], None] = log_crash,
         on_send_error: Callable[[Any, Exception], None] = log_send_error,
-        before_send: Callable[[Sequence[Any]], None] | None = None,
+        arrange: Callable[[Sequence[Any]], Sequence[Any]] | None = None,
         on_step: Callable[[float, Sequence[Any], Sequence[Any]], None] | None = None,
         wait: Callable[[threading.Condition, float | None], object] = threading.Condition.wait,
     ) -> None:
@@ -66,7 +66,7 @@ class Loop(Generic[Event, Message]):
         self._clock = clock
         self._on_crash = on_crash
         self._on_send_error = on_send_error
-        self._before_send = before_send
+        self._arrange = arrange
         self._on_step = on_step
         self._wait = wait
         self._inbox: deque[Event] = deque()
@@ -76,6 +76,7 @@ class Loop(Generic[Event, Message]):
         self._sleeps_until = math.inf
         self._step_by: float | None = None
         self._between_steps = threading.Lock()
+        self.busy = False  # from the moment in which a step takes what waits to the end of what follows it
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
@@ -118,6 +119,7 @@ class Loop(Generic[Event, Message]):
 
     def turn(self) -> None:
         """One step with everything that waits; `start` calls it, tests may."""
+        self.busy = True
         with self._awake:
             events = tuple(self._inbox)
             self._inbox.clear()
@@ -125,12 +127,12 @@ class Loop(Generic[Event, Message]):
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
-        if messages and self._before_send is not None:
-            self._before_send(messages)
-        for message in messages:
-            self._deliver(message)
+        if messages:
+            for message in messages if self._arrange is None else self._arrange(messages):
+                self._deliver(message)
         if self._on_step is not None:
             self._on_step(now, events, messages)
+        self.busy = False
 
     def _deliver(self, message: Message) -> None:
         try:

@@ -120,9 +120,11 @@ def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
 
 def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool = False) -> None:
     try:
-        reached.operate(verb, scope or "", by_hand=by_hand)
+        answer = reached.operate(verb, scope or "", by_hand=by_hand)
     except ArboledaError as error:
         if verb is not Verb.STOP or isinstance(error, Refused | TextError):
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
-    print(f"done: {LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}")
+    unkept = answer.get("sentence")
+    what = f"{LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}"
+    print(f"sent, not kept: {what}; {plain(unkept)}" if unkept else f"done: {what}")

@@ -1,14 +1,66 @@
-"""Which messages of a plant may leave it although they are late, or once it can keep nothing more."""
+"""Which messages of a plant leave first, may leave late, or leave a plant that can keep nothing more."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Notice
-from arboleda.model.sentence import Phrase
+from arboleda.model.messages import Heartbeat, Notice, OperatorAnswer, OperatorRequest
+from arboleda.model.sentence import Phrase, Sentence
 
 from .plant import Plant
 
 SENT_TOO_LATE = Phrase("command.too_late", "the plant was away for {seconds:.1f} s before it could send this")
+OVERTAKEN = Phrase("command.overtaken", "a stop of {robot} left before this could be sent")
+STILL_WAITS = Phrase("stop.still_waits", "its disk, its database or something else keeps it waiting")
+LEFT_UNKEPT = Phrase(
+    "stop.left_unkept",
+    "the stop has left for {scope}, and the plant has not kept it ({why}); a restart would not know of it",
+)
+EVERYTHING = Phrase("stop.everything", "the whole plant")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopLeft(OperatorAnswer):
+    """Answer to a stop that has left for its robots and is not kept; `sentence` says why."""
+
+    sentence: Sentence
+
+
+class Departure(NamedTuple):
+    """Order in which the messages of a step leave: `stops` before the `others`.
+
+    `overtaken` are commands that came before a stop of their robot. They must not leave after it.
+    """
+
+    stops: Sequence[Command | Notice]
+    others: Sequence[Command | Notice]
+    overtaken: Sequence[Command]
+
+
+def departure(messages: Sequence[Command | Notice]) -> Departure:
+    """Parts the messages of a step by when they leave."""
+    stops, others, overtaken = list[Command | Notice](), list[Command | Notice](), list[Command]()
+    stopped: set[str] = set()
+    for message in reversed(messages):
+        if not isinstance(message, Command):
+            others.append(message)
+        elif ends_motion(message):
+            stops.append(message)
+            stopped.add(message.robot)
+        elif message.robot in stopped:
+            overtaken.append(message)
+        else:
+            others.append(message)
+    return Departure(stops[::-1], others[::-1], overtaken[::-1])
+
+
+def stop_left(request: OperatorRequest | OperatorAnswer, why: Sentence) -> StopLeft:
+    """Answer to a request for a stop that is not kept because of `why`."""
+    sentence = LEFT_UNKEPT(scope=request.scope.strip() or EVERYTHING(), why=why)
+    return StopLeft(verb=request.verb, scope=request.scope, request=request.request, sentence=sentence)
 
 
 def ends_motion(message: Command | Notice) -> bool:

@@ -15,7 +15,7 @@ from arboleda.model.commands import Question
 from arboleda.model.errors import ArboledaError, IllegalTransition
 from arboleda.model.messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
 from arboleda.model.outside import quoted
-from arboleda.model.plant_model import Evidence, Link
+from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
 from arboleda.model.sentence import Phrase, Sentence, Value
 
@@ -139,6 +139,7 @@ class Operator:
         self._zones = zones
         self._intake = intake
         self._clock = clock
+        self._scopes = scopes(dispatcher.model)
         self.acts: deque[OperatorAct] = deque(maxlen=ACTS_KEPT)
         reached = [robot for cell in cells.values() for robot in cell.cell.reached]
         self._reached = {robot.name for robot in reached}
@@ -146,7 +147,7 @@ class Operator:
 
     def act(self, request: OperatorRequest) -> None:
         """Do it and journal it; Refused says why nothing was done."""
-        scope = _scope(request)
+        scope = scope_of(request)
         self._planned(request, scope)()
         cell = self._cell_of(request, scope)
         sentence = self._with_shared(request.verb, scope, _did(request, scope))
@@ -158,7 +159,7 @@ class Operator:
     def refusal(self, request: OperatorRequest) -> Sentence | None:
         """Why a request would be refused now; None where it would be done."""
         try:
-            self._planned(request, _scope(request))
+            self._planned(request, scope_of(request))
         except Refused as refused:
             return refused.sentence
         return None
@@ -261,14 +262,10 @@ class Operator:
 
     def _robots(self, scope: str) -> set[str]:
         """The robots of a scope: the plant, a cell, or one robot."""
-        names = self._dispatcher.beliefs
-        if scope in ("", "plant"):
-            return set(names)
-        if scope in self._cells:
-            return {robot.name for robot in self._cells[scope].cell.robots}
-        if scope in names:
-            return {scope}
-        raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *names)))
+        robots = self._scopes.get(scope)
+        if robots is None:
+            raise Refused(NO_SCOPE(scope=quoted(scope), known=(*self._cells, *self._dispatcher.beliefs)))
+        return set(robots)
 
     def _planned_override(self, zone: str) -> Callable[[], None]:
         holder = self._zones.holder(zone)
@@ -492,7 +489,14 @@ class Operator:
                 self._dispatcher.send(make, cell.cell.name, RELEASING(), self._clock(), by_hand=True)
 
 
-def _scope(request: OperatorRequest) -> str:
+def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
+    """Names of the robots of each scope there is: the plant, a cell, one robot."""
+    robots = {name: frozenset([name]) for name in model.robots}
+    cells = {cell.name: frozenset(robot.name for robot in cell.robots) for cell in model.cells}
+    return robots | cells | dict.fromkeys(("", "plant"), frozenset(model.robots))
+
+
+def scope_of(request: OperatorRequest) -> str:
     """Whom or what a request names; only task ids tell capitals apart."""
     scope = request.scope.strip()
     return scope if request.verb is Verb.CANCEL else scope.lower()

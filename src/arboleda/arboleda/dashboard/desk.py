@@ -12,6 +12,7 @@ from nicegui import Client
 
 from arboleda.adapters.task_rows import PAGE
 from arboleda.adapters.web.auth import SUBMIT, allowed
+from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import in_json
@@ -65,6 +66,9 @@ class Desk(OpenPage):
     async def _operate(self, verb: Verb, scope: str, *, by_hand: bool) -> None:
         answer = await self._answered(self._plant.operate(verb, scope, by_hand=by_hand))
         if answer is None:
+            return
+        if isinstance(answer, StopLeft):
+            self.say(self._words.say(answer.sentence), good=False)
             return
         what = self._words.of("verb", verb.value)
         where = _without_number(scope) if verb is Verb.ANSWER else scope or self._words("panel.plant")

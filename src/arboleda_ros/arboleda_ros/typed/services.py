@@ -12,7 +12,7 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.views import view
 
-from ..asking import Asker, NoAnswer
+from ..asking import Asker, NoAnswer, Outcome
 from . import values
 
 LOG = logging.getLogger("arboleda.ros")
@@ -39,14 +39,15 @@ class Services:
         return response
 
     def _command(self, request: CellCommand.Request, response: CellCommand.Response) -> CellCommand.Response:
-        refusal = self._refusal(request)
-        response.success, response.message = refusal is None, refusal or ""
+        response.success, response.message = self._outcome(request)
         return response
 
-    def _refusal(self, request: CellCommand.Request) -> str | None:
+    def _outcome(self, request: CellCommand.Request) -> Outcome:
         verb = _VERBS.get(request.verb.strip().lower())
         if verb is None:
-            return f"{quoted(request.verb)} is no verb; there are {', '.join(_VERBS)}"
+            return Outcome(
+                success=False, message=f"{quoted(request.verb)} is no verb; there are {', '.join(_VERBS)}"
+            )
         if request.by_hand and verb is not Verb.HOME:
-            return f"by_hand is for home only, not for {verb.value}"
-        return self._asker.refusal(verb, request.scope, by_hand=request.by_hand)
+            return Outcome(success=False, message=f"by_hand is for home only, not for {verb.value}")
+        return self._asker.outcome(verb, request.scope, by_hand=request.by_hand)

@@ -128,6 +128,10 @@ class PostgresMemory(PlantMemory):
         if not self._lease.lasts(clock.seconds()):
             self._patiently(lambda db: self._renew(db))
 
+    @property
+    def leads_for_certain(self) -> bool:
+        return self._lease.lasts(clock.seconds())
+
     def _renew(self, db: Impatient) -> bool:
         """Say that it leads. Whether another leader is wanted."""
         asked_at = clock.seconds()

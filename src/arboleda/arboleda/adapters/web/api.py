@@ -19,6 +19,7 @@ from pydantic import BaseModel, ValidationError
 from starlette.exceptions import HTTPException
 
 from arboleda import __version__
+from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
 from arboleda.model.messages import Verb
 from arboleda.model.outside import plain, quoted
@@ -39,6 +40,7 @@ from .schema import (
     Promise,
     Sentence,
     Snapshot,
+    StopSent,
     Task,
     TaskForm,
     TaskText,
@@ -68,6 +70,12 @@ REFUSED: Answers = {
     503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
 }
 WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
+UNKEPT: Answers = {
+    202: {
+        "model": StopSent,
+        "description": "A stop has left for its robots, and the plant cannot keep it, or not yet.",
+    }
+}
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
@@ -182,7 +190,7 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
 def _operate(api: APIRouter, side: PlantSide) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
-        "responses": REFUSED | CONFLICT,
+        "responses": UNKEPT | REFUSED | CONFLICT,
         "openapi_extra": _body(ByHand, required=False),
     }
 
@@ -202,7 +210,10 @@ def _operate(api: APIRouter, side: PlantSide) -> None:
         answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
-        return JSONResponse({"verb": verb.value, "scope": scope})
+        done = {"verb": verb.value, "scope": scope}
+        if isinstance(answer, StopLeft):
+            return PlainJson(explained({**done, "sentence": answer.sentence}), status_code=202)
+        return JSONResponse(done)
 
 
 async def in_time(answer: Future[Answer]) -> Answer:

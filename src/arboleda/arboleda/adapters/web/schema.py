@@ -232,6 +232,10 @@ class Done(_Told):
     scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
 
 
+class StopSent(Done, Sentence):
+    """A stop that has left for its robots; why the plant has not kept it."""
+
+
 class Advice(_Told):
     """One thing to do that leads a cell out of its state."""
 

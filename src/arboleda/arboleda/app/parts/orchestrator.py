@@ -8,7 +8,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from contextlib import suppress
 from dataclasses import replace
 from itertools import groupby
 from typing import Any, NamedTuple, Protocol
@@ -18,18 +17,24 @@ from arboleda.adapters import clock
 from arboleda.adapters.plant_memory import PlantMemory, Superseded
 from arboleda.adapters.task_rows import COMMAND, ROS, History, TaskQuery
 from arboleda.core.leading import Standing, may_leave
-from arboleda.core.leaving import SENT_TOO_LATE, is_too_late, leaves_unkept
+from arboleda.core.leaving import (
+    SENT_TOO_LATE,
+    StopLeft,
+    departure,
+    is_too_late,
+    leaves_unkept,
+    stop_left,
+)
 from arboleda.core.plant import Plant
 from arboleda.core.text import spelled
 from arboleda.dispatch.dispatcher import Memory
-from arboleda.model.commands import Command
+from arboleda.model.commands import Command, Stop
 from arboleda.model.errors import ArboledaError
 from arboleda.model.facts import Value
 from arboleda.model.messages import (
     ENDED,
     Absence,
     Event,
-    Fact,
     InternalError,
     Journal,
     KeptTask,
@@ -54,6 +59,7 @@ from ..memory import kept_task, kept_tasks, remembered
 from .part import Crash
 from .router import PlantPort
 from .slices import PAUSE_S, Slices
+from .stops import Overtaken, Stops, StopsAway
 from .urgency import Urgency
 
 LOG = logging.getLogger(__name__)
@@ -107,9 +113,10 @@ class TooLate(ArboledaError):
 class Orchestrator:
     """The plant in its loop; `connect` its port before `start`.
 
-    What the plant wants remembered is in the `store` before anything after it leaves. Where that fails, the
-    plant ends: from then on robots are told to stop, nothing else. Tasks that wait at the end are left for
-    the next start, unless it `drops_waiting`.
+    What the plant wants remembered is in the `store` before anything after it leaves; only stops leave before
+    that. Where that fails, the plant ends: from then on robots are told to stop, nothing else. Tasks that
+    wait at the end are left for the next start, unless it `drops_waiting`. Where its thread is busy when
+    somebody asks for a stop, that leaves beside it, by `stops`.
     """
 
     def __init__(
@@ -132,9 +139,10 @@ class Orchestrator:
             self._send,
             on_crash=crash,
             on_send_error=self._not_sent,
-            before_send=self._prepare_to_keep,
+            arrange=self._arrange,
             on_step=self._stepped,
         )
+        self.stops = Stops(model, epoch, self._send_beside)
         self.listeners: list[Callable[[TaskChanged], None]] = []
         self.watchers: list[Callable[[dict[str, Any]], None]] = []
         self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
@@ -160,6 +168,9 @@ class Orchestrator:
 
     def hear(self, event: Event) -> None:
         """What comes in by the port, from its thread; a report that is no news may wait for others."""
+        if isinstance(event, OperatorRequest):
+            self._take(event)
+            return
         if isinstance(event, TaskRequest):
             event = self._recalled(event)
         self.loop.post(event, self._urgency.within_s(event) if isinstance(event, Report) else 0.0)
@@ -192,6 +203,7 @@ class Orchestrator:
                 TASKS.warning("%s", run.found)
             if run.left_over:
                 TASKS.warning("%s", run.why_paused)
+        self.stops.loop.start()
         self.loop.start()
 
     def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
@@ -208,8 +220,25 @@ class Orchestrator:
         """Ask for an operator's act; the future holds the answer, with a refusal where nothing was done."""
         answer, token = self._expect()
         now = clock.seconds()
-        self.loop.post(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
+        self._take(OperatorRequest(at=now, verb=verb, scope=scope, by_hand=by_hand, request=token))
         return answer
+
+    def _take(self, request: OperatorRequest) -> None:
+        """Have the plant do what an operator asks for; a stop does not wait until its thread is free."""
+        if request.verb is not Verb.STOP:
+            self.loop.post(request)
+            return
+        request = self.stops.open(request)
+        self.loop.post(request)
+        if self.loop.busy and self._leads_for_certain:  # a step that has taken it sends its stops first
+            self.stops.leave_beside(request)
+
+    @property
+    def _leads_for_certain(self) -> bool:
+        """Whether a stop may leave without a question to the store, which may hang."""
+        if self._store is None or self._amnesia is not None:
+            return self._standing is not Standing.SUPERSEDED
+        return self._store.leads_for_certain
 
     def promises(self, text: str) -> list[dict[str, Any]]:
         """What each cell that a task text names promises now; TextError, QueueFull."""
@@ -248,10 +277,14 @@ class Orchestrator:
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
+        self.stops.loop.stop()
 
-    def _send(self, message: Command | Notice) -> None:
+    def _send(self, message: Command | Notice | StopsAway) -> None:
         if isinstance(message, Remember | Journal):
             self._keep(message)
+            return
+        if isinstance(message, StopsAway):
+            self.stops.departed(message)
             return
         if isinstance(message, InternalError):
             _log_defect(message.cell or "plant", message.error)
@@ -275,6 +308,19 @@ class Orchestrator:
                 listener(message)
         if self._port is not None and self._may_leave(message):
             self._refuse_late(message)
+            if self.stops.ahead:
+                self.stops.refuse_overtaken(message)
+            self._port.send(message)
+            if self.stops.ahead:  # one may have left meanwhile
+                self.stops.stop_again(message)
+
+    def _send_beside(self, message: Stop | StopLeft) -> None:
+        """What the lane sends, in its thread."""
+        if isinstance(message, StopLeft):
+            waiting = self._waiting.pop(message.request or "", None)
+            if waiting is not None:
+                waiting.set_result(message)
+        if self._port is not None and self._standing is not Standing.SUPERSEDED:
             self._port.send(message)
 
     def _may_leave(self, message: Command | Notice) -> bool:
@@ -308,10 +354,17 @@ class Orchestrator:
         if isinstance(message, TaskChanged | OperatorAnswer):
             self._answer(message)
         if isinstance(message, OperatorAnswer):
-            refused = replace(message, refusal=message.refusal or as_sentence(amnesia))
-            _log(refused)
+            said = self._unkept(message, amnesia)
+            _log(said)
             if self._port is not None:
-                self._port.send(refused)
+                self._port.send(said)
+
+    def _unkept(self, answer: OperatorAnswer, why: Exception) -> OperatorAnswer:
+        """The answer to an act that is not kept: only a stop has left all the same."""
+        is_left = answer.verb is Verb.STOP and answer.refusal is None
+        if is_left and self._standing is not Standing.SUPERSEDED:
+            return stop_left(answer, as_sentence(why))
+        return replace(answer, refusal=answer.refusal or as_sentence(why))
 
     def _refuse_late(self, message: Command | Notice) -> None:
         """A process that was stopped in the middle of a step must not send what was right before."""
@@ -319,17 +372,17 @@ class Orchestrator:
         if is_too_late(message, self.plant, now):
             raise TooLate(SENT_TOO_LATE(seconds=now - self.plant.now))
 
-    def _prepare_to_keep(self, messages: Sequence[Any]) -> None:
-        """What is committed with which fact of a step. Its stops wait for one commit, which is made here, and
-        not each for its own and for all before it."""
-        latches = [each for each in messages if isinstance(each, Remember) and each.fact is Fact.LATCH]
-        once_each = len({each.name for each in latches}) == len(latches)  # else their order counts
-        kept: list[Remember] = []
-        if len(latches) > 1 and once_each and self._store is not None and self._amnesia is None:
-            with suppress(ArboledaError):  # then each is tried alone, and says what it is
-                self._store.keep(*latches)
-                kept = latches
-        self._writes = _writes(messages, kept)
+    def _arrange(self, messages: Sequence[Any]) -> Sequence[Any]:
+        """The messages of a step in the order in which they leave: its stops wait for no commit."""
+        stops: Sequence[Any] = ()
+        if Stop in map(type, messages):
+            stops, messages, overtaken = departure(messages)
+            for command in overtaken:
+                self._not_sent(command, Overtaken(command))
+        if self.stops.ahead and (away := self.stops.stepped(messages)) is not None:
+            stops = [*stops, away]
+        self._writes = _writes(messages)
+        return [*stops, *messages] if stops else messages
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
@@ -366,11 +419,17 @@ class Orchestrator:
 
     def _answer(self, answer: TaskChanged | OperatorAnswer) -> None:
         self._asked_by.pop(answer.request or "", None)
+        if isinstance(answer, OperatorAnswer):
+            self.stops.closed(answer)
         waiting = self._waiting.pop(answer.request or "", None)
         if waiting is None:
             return
         if self._amnesia is None:
             waiting.set_result(answer)
+            return
+        said = self._unkept(answer, self._amnesia) if isinstance(answer, OperatorAnswer) else answer
+        if isinstance(said, StopLeft):
+            waiting.set_result(said)
         else:
             waiting.set_exception(self._amnesia)
 
@@ -466,8 +525,8 @@ class Orchestrator:
             yield
 
 
-def _writes(messages: Sequence[Any], kept: Sequence[Remember]) -> deque[list[Remember]]:
-    """For each fact of a step what is committed when it comes, but for those that are `kept` already.
+def _writes(messages: Sequence[Any]) -> deque[list[Remember]]:
+    """For each fact of a step what is committed when it comes.
 
     It is all that stand side by side when the first of them comes, and nothing with the others: nothing
     leaves between them, and a commit waits for the disk, or for the database's host.
@@ -475,9 +534,9 @@ def _writes(messages: Sequence[Any], kept: Sequence[Remember]) -> deque[list[Rem
     writes: deque[list[Remember]] = deque()
     for is_fact, run in groupby(messages, lambda each: isinstance(each, Remember)):
         if is_fact:
-            first, *others = run
-            writes.append([each for each in (first, *others) if each not in kept])
-            writes.extend([] for _ in others)
+            facts = list(run)
+            writes.append(facts)
+            writes.extend([] for _ in facts[1:])
     return writes
 
 

@@ -1,0 +1,95 @@
+"""Stops on their way to the plant: they leave beside it where it is busy, and overtake older commands."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeGuard
+from uuid import uuid4
+
+from arboleda.core.leaving import OVERTAKEN, StopLeft, ends_motion
+from arboleda.core.stop_lane import Blocked, Closed, Departed, Opened, Overrun, StopLane
+from arboleda.model.commands import Command, Stop
+from arboleda.model.errors import ArboledaError
+from arboleda.model.messages import Notice, OperatorAnswer, OperatorRequest, Verb
+from arboleda.model.plant_model import PlantModel
+
+from ..loop import Loop
+
+
+class Overtaken(ArboledaError):
+    """A command was not sent: a stop of its robot left before it."""
+
+    def __init__(self, command: Command) -> None:
+        super().__init__(OVERTAKEN(robot=command.robot))
+
+
+class StopsAway(NamedTuple):
+    """Mark among the messages of a step: the stops that these requests asked for have left."""
+
+    tokens: Sequence[str]
+
+
+class Stops:
+    """Requests for stops that the plant has not stepped yet; `send` gets what leaves beside it, in a thread.
+
+    A command that the plant made before such a request, and that waits to leave, is overtaken by it.
+    """
+
+    def __init__(self, model: PlantModel, epoch: int, send: Callable[[Stop | StopLeft], None]) -> None:
+        self._lane = StopLane(model, epoch=epoch)
+        self.loop: Loop[Any, Any] = Loop("stops", self._lane, send, on_send_error=_leave_it_to_the_plant)
+        self.ahead: dict[str, frozenset[str]] = {}  # by token, their robots; never changed, only replaced
+        self._replacing = threading.Lock()
+
+    def open(self, request: OperatorRequest) -> OperatorRequest:
+        """Take in a request before the plant does, which gets what is returned; from any thread."""
+        token = request.request or uuid4().hex
+        request = replace(request, request=token)
+        self.loop.post(Opened(request=request))
+        with self._replacing:
+            self.ahead = {**self.ahead, token: self._lane.reached(request)}
+        return request
+
+    def leave_beside(self, request: OperatorRequest) -> None:
+        """Have stops leave at once for a request that the plant has, unless a step has taken it already."""
+        if request.request in self.ahead:
+            self.loop.post(Blocked(token=request.request))
+
+    def stepped(self, messages: Sequence[Any]) -> StopsAway | None:
+        """Take in the messages of a step: what it has made after a stop is not overtaken by it."""
+        tokens = [each.request for each in messages if isinstance(each, OperatorAnswer)]
+        mine = [token for token in tokens if token in self.ahead]
+        with self._replacing:
+            self.ahead = {token: robots for token, robots in self.ahead.items() if token not in mine}
+        return StopsAway(mine) if mine else None
+
+    def departed(self, stops: StopsAway) -> None:
+        """The plant has sent these stops itself."""
+        for token in stops.tokens:
+            self.loop.post(Departed(token=token))
+
+    def closed(self, answer: OperatorAnswer) -> None:
+        """Somebody is answered."""
+        if answer.verb is Verb.STOP:
+            self.loop.post(Closed(token=answer.request or ""))
+
+    def refuse_overtaken(self, message: Command | Notice) -> None:
+        """Overtaken for a command that must not leave any more."""
+        if self._overtake(message):
+            raise Overtaken(message)
+
+    def stop_again(self, message: Command | Notice) -> None:
+        """Stop a robot once more that was sent this command while a stop was leaving beside it."""
+        if self._overtake(message):
+            self.loop.post(Overrun(robot=message.robot))
+
+    def _overtake(self, message: Command | Notice) -> TypeGuard[Command]:
+        if not isinstance(message, Command) or ends_motion(message):
+            return False
+        return any(message.robot in robots for robots in self.ahead.values())
+
+
+def _leave_it_to_the_plant(_message: object, _error: Exception) -> None:
+    """The plant sends its own stop as soon as it can, and tells what becomes of that."""

@@ -1,0 +1,116 @@
+"""Stop lane: a pure machine that has stops leave while the plant is kept waiting, and answers who asked.
+
+The plant's thread may hang at a disk, a database or a log when somebody asks for a stop. The lane is driven
+by a thread of its own, and needs nothing but the plant's model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from arboleda.dispatch.dispatcher import UNSENT
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import OperatorRequest
+from arboleda.model.plant_model import PlantModel
+
+from .leaving import STILL_WAITS, StopLeft, stop_left
+from .operator import scope_of, scopes
+
+KEPT_S = 0.8  # within it a stop is kept, or whoever asked hears that it is not; a service of ROS 2 waits 1 s
+
+
+@dataclass(frozen=True, kw_only=True)
+class Opened:
+    """A request for a stop has come, and is on its way to the plant."""
+
+    request: OperatorRequest
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blocked:
+    """The plant's thread is busy with something older than the request of this token."""
+
+    token: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Departed:
+    """The plant itself has sent the stops of the request of this token."""
+
+    token: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Closed:
+    """The request of this token is answered."""
+
+    token: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Overrun:
+    """A command has left for this robot although a stop had overtaken it."""
+
+    robot: str
+
+
+Event = Opened | Blocked | Departed | Closed | Overrun
+
+
+@dataclass(kw_only=True)
+class OpenStop:
+    """A request that is not answered yet."""
+
+    request: OperatorRequest
+    due: float
+    has_left: bool = False
+
+
+class StopLane:
+    """Stops that leave beside the steps of the plant, under numbers that no step gives.
+
+    Such an id has ten digits, of a value that the plant has given already, so it is never taken for a number
+    that somebody else made up.
+    """
+
+    def __init__(self, model: PlantModel, *, epoch: int) -> None:
+        self._scopes = scopes(model)
+        self._robots = [name for name, robot in model.robots.items() if robot.link not in UNSENT]
+        self._epoch = epoch
+        self._count = 0
+        self._open: dict[str, OpenStop] = {}
+
+    @property
+    def next_deadline(self) -> float | None:
+        """When somebody is to be answered whose stop is not kept yet; None: never."""
+        return min((each.due for each in self._open.values() if each.has_left), default=None)
+
+    def reached(self, request: OperatorRequest) -> frozenset[str]:
+        """Names of the robots that a request for a stop is for; none where its scope is unknown."""
+        return self._scopes.get(scope_of(request), frozenset())
+
+    def step(self, now: float, events: Sequence[Event]) -> list[Stop | StopLeft]:
+        """Stops that must leave, then answers that are due."""
+        out = [message for event in events for message in self._take(event)]
+        due = [token for token, each in self._open.items() if each.has_left and each.due <= now]
+        return [*out, *(stop_left(self._open.pop(token).request, STILL_WAITS()) for token in due)]
+
+    def _take(self, event: Event) -> list[Stop | StopLeft]:
+        if isinstance(event, Opened):
+            token, due = event.request.request or "", event.request.at + KEPT_S
+            self._open[token] = OpenStop(request=event.request, due=due)
+        elif isinstance(event, Overrun):
+            return self._stops(frozenset([event.robot]))
+        elif isinstance(event, Closed):
+            self._open.pop(event.token, None)
+        elif (known := self._open.get(event.token)) is not None:
+            reached = self.reached(known.request)
+            known.has_left = bool(reached)
+            return self._stops(reached) if isinstance(event, Blocked) else []
+        return []
+
+    def _stops(self, names: frozenset[str]) -> list[Stop | StopLeft]:
+        """A stop for each of these robots that anything leaves for."""
+        id, self._count = f"{self._epoch}-{self._count:010d}", self._count + 1
+        return [Stop(id=id, robot=name, mode=StopMode.LATCH) for name in self._robots if name in names]

@@ -1,0 +1,91 @@
+"""A real plant with its server: a stop takes effect, and is answered, while the disk hangs."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from arboleda.adapters.store import Store
+from arboleda.app.build import App, Options, build
+from arboleda.app.client import PlantClient
+from arboleda.core.leaving import ends_motion
+from arboleda.model.messages import Verb
+from arboleda.testing import shipped
+
+PATIENCE_S = 20.0
+
+
+class Robots:
+    """The port to the robots: which of them were told to stop."""
+
+    def __init__(self) -> None:
+        self.stopped: set[str] = set()
+
+    def send(self, message: Any) -> None:
+        if ends_motion(message):
+            self.stopped.add(message.robot)
+
+
+class Disk:
+    """A store whose next write hangs until it is let go on."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.reached, self.let_go = threading.Event(), threading.Event()
+        write = Store._write
+
+        def slowly(store: Store, *statements: Any, durable: bool) -> None:
+            if statements[0][0].startswith("INSERT INTO task"):
+                self.reached.set()
+                assert self.let_go.wait(PATIENCE_S)
+            write(store, *statements, durable=durable)
+
+        monkeypatch.setattr(Store, "_write", slowly)
+
+
+@pytest.fixture
+def robots() -> Robots:
+    return Robots()
+
+
+@pytest.fixture
+def disk(monkeypatch: pytest.MonkeyPatch) -> Disk:
+    return Disk(monkeypatch)
+
+
+@pytest.fixture
+def app(tmp_path: Path, robots: Robots, disk: Disk) -> Iterator[App]:
+    made = build(shipped("sis_a"), {"orchestrator", "web"}, Options(state_dir=tmp_path, page=False))
+    assert made.orchestrator is not None
+    made.orchestrator.connect(robots)
+    made.start()
+    made.submit("sis_a 0B 1 #a")
+    assert disk.reached.wait(PATIENCE_S)
+    yield made
+    disk.let_go.set()
+    made.stop()
+
+
+def address(app: App) -> str:
+    note = next(note for note in app.notes if note.startswith("HTTP API: "))
+    return note.split()[2]  # behind it may stand that the usual port is taken
+
+
+def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
+    url = address(app)
+    with httpx.Client(trust_env=False, timeout=PATIENCE_S) as client:
+        answer = client.post(f"{url}/stop")
+        assert answer.status_code == 202 and "has not kept it" in answer.json()["sentence"]
+        assert robots.stopped == {"ra1", "rm_sis_a"}
+        assert not disk.let_go.is_set()
+
+
+def test_from_the_terminal(app: App, robots: Robots, disk: Disk, tmp_path: Path) -> None:
+    said = PlantClient(tmp_path).operate(Verb.STOP, "ra1")
+    assert "the stop has left for ra1" in said["sentence"]
+    assert robots.stopped == {"ra1"}
+    assert not disk.let_go.is_set()

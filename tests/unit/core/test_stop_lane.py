@@ -1,0 +1,121 @@
+"""Stops that leave beside the plant's steps, and what their askers hear; time is moved by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from arboleda.core.leaving import StopLeft, departure
+from arboleda.core.plant import Plant
+from arboleda.core.stop_lane import KEPT_S, Blocked, Closed, Departed, Event, Opened, Overrun, StopLane
+from arboleda.kinds.arm import SetEffector
+from arboleda.model.commands import Home, Stop, StopMode
+from arboleda.model.messages import Heartbeat, OperatorRequest, Report, Verb
+from arboleda.testing import shipped
+
+MODEL = shipped()
+EPOCH = 7
+
+
+@pytest.fixture
+def lane() -> StopLane:
+    return StopLane(MODEL, epoch=EPOCH)
+
+
+def opened(scope: str, token: str = "a", at: float = 10.0) -> Opened:
+    return Opened(request=OperatorRequest(at=at, verb=Verb.STOP, scope=scope, request=token))
+
+
+def latched_by_the_plant(scope: str) -> list[str]:
+    plant = Plant(MODEL, epoch=EPOCH, now=0.0)
+    plant.step(0.0, [])
+    said = plant.step(1.0, [OperatorRequest(at=1.0, verb=Verb.STOP, scope=scope)])
+    return [each.robot for each in said if isinstance(each, Stop)]
+
+
+@pytest.mark.parametrize("scope", ["", "plant", "sis_b", "ra1", "rm_sis_c", " SIS_A ", "sis_z"])
+def test_it_stops_those_robots_that_the_plant_will_stop(lane: StopLane, scope: str) -> None:
+    stops = lane.step(10.0, [opened(scope), Blocked(token="a")])
+    assert {stop.robot for stop in stops} == set(latched_by_the_plant(scope))
+    assert len(stops) == len({stop.robot for stop in stops})
+    assert all(stop.mode is StopMode.LATCH for stop in stops)
+
+
+def test_a_plant_that_is_free_sends_its_stops_itself(lane: StopLane) -> None:
+    assert lane.step(10.0, [opened("")]) == []
+
+
+def test_no_board_takes_one_stop_for_a_repetition_of_another_or_of_a_step(lane: StopLane) -> None:
+    stops = [*lane.step(10.0, [opened("ra1"), Blocked(token="a")])]
+    stops += lane.step(11.0, [opened("ra1", "b"), Blocked(token="b"), Overrun(robot="ra1")])
+    plant = Plant(MODEL, epoch=EPOCH, now=0.0)
+    plant.step(0.0, [])
+    ids = [each.id for each in stops if isinstance(each, Stop)]
+    for at in (1.0, 2.0):
+        said = plant.step(at, [OperatorRequest(at=at, verb=Verb.STOP, scope="ra1")])
+        ids += [each.id for each in said if isinstance(each, Stop)]
+    assert len(set(ids)) == len(ids) == 5
+
+
+def test_the_plant_takes_no_number_of_the_lane_for_that_of_a_stranger(lane: StopLane) -> None:
+    plant = Plant(MODEL, epoch=EPOCH, now=0.0)
+    plant.step(0.0, [])
+    for number in range(3):
+        at, token = 1.0 + number / 10, str(number)
+        (stop,) = lane.step(at, [opened("ra1", token, at), Blocked(token=token)])
+        said = plant.step(
+            at,
+            [
+                OperatorRequest(at=at, verb=Verb.STOP, scope="ra1"),
+                Report(at=at, robot="ra1", epoch=1, accepted=stop.id),
+            ],
+        )
+        assert {each.mode for each in said if isinstance(each, Stop)} == {StopMode.LATCH}  # else it is halted
+    assert not plant.dispatcher.interference.noticed
+
+
+def test_who_asked_hears_in_time_that_a_stop_has_left_and_is_not_kept(lane: StopLane) -> None:
+    lane.step(10.0, [opened("sis_a"), Blocked(token="a")])
+    due = lane.next_deadline
+    assert due == 10.0 + KEPT_S
+    (answer,) = lane.step(due, [])
+    assert isinstance(answer, StopLeft)
+    assert (answer.request, answer.scope, answer.refusal) == ("a", "sis_a", None)
+    assert str(answer.sentence).startswith("the stop has left for sis_a, and the plant has not kept it")
+    assert lane.next_deadline is None and lane.step(due + 10.0, []) == []
+
+
+def test_a_stop_that_the_plant_has_sent_itself_is_told_to_have_left(lane: StopLane) -> None:
+    lane.step(10.0, [opened("")])
+    lane.step(10.1, [Departed(token="a")])
+    (answer,) = lane.step(10.0 + KEPT_S, [])
+    assert "left for the whole plant" in str(answer.sentence)
+
+
+@pytest.mark.parametrize(
+    ("scope", "events"), [("", []), ("sis_z", [Blocked(token="a")]), ("sis_z", [Departed(token="a")])]
+)
+def test_nobody_hears_that_a_stop_has_left_which_may_not_have(
+    lane: StopLane, scope: str, events: list[Event]
+) -> None:
+    assert lane.step(10.0, [opened(scope), *events]) == []
+    assert lane.next_deadline is None and lane.step(20.0, []) == []
+
+
+def test_who_was_answered_hears_nothing_more(lane: StopLane) -> None:
+    lane.step(10.0, [opened(""), Departed(token="a")])
+    lane.step(10.1, [Closed(token="a"), Blocked(token="a"), Closed(token="of nobody")])
+    assert lane.step(20.0, []) == []
+
+
+def test_a_robot_that_was_sent_an_older_command_is_stopped_once_more(lane: StopLane) -> None:
+    (stop,) = lane.step(10.0, [Overrun(robot="ra2")])
+    assert stop.robot == "ra2"
+
+
+def test_stops_depart_first_and_what_they_overtake_does_not() -> None:
+    on, home = SetEffector(id="7-1", robot="ra1", on=True), Home(id="7-2", robot="ra2")
+    halt = Stop(id="7-3", robot="ra1", mode=StopMode.HALT)
+    latch = Stop(id="7-4", robot="ra1", mode=StopMode.LATCH)
+    clear = Stop(id="7-5", robot="ra1", mode=StopMode.CLEAR)
+    beat = Heartbeat(epoch=EPOCH)
+    assert departure([on, home, halt, beat, latch, clear]) == ([halt, latch], [home, beat, clear], [on])
