@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from arboleda.adapters.oee_rows import OeeQuery
@@ -11,6 +14,7 @@ from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.messages import OperatorAnswer, Verb
 from arboleda.model.sentence import Phrase
 
+from ...patience import PATIENCE_S
 from .conftest import OFFERS, QUEUED, TASK, VIEW
 
 
@@ -269,6 +273,24 @@ def test_a_verb_that_is_answered_late_is_said_to_be_so(web, plant, monkeypatch):
     assert answer.status_code == 503
     assert "did not answer in time" in answer.json()["sentence"]
     plant.unanswered[0].set_result(OperatorAnswer(verb=Verb.STOP, scope=""))
+
+
+def test_a_stop_does_not_wait_behind_a_task_whose_id_is_looked_for(web, local, plant, monkeypatch):
+    reached, let_go, submit = threading.Event(), threading.Event(), plant.submit
+
+    def look(*asked):
+        reached.set()
+        assert let_go.wait(PATIENCE_S)
+        return submit(*asked)
+
+    monkeypatch.setattr(plant, "submit", look)
+    with ThreadPoolExecutor(1) as pool:
+        task = pool.submit(lambda: local.client().post("/api/tasks", json={"text": "sis_a 0B 7 #lot42"}))
+        assert reached.wait(PATIENCE_S)
+        assert web.post("/api/plant/stop").status_code == 200
+        assert not task.done()
+        let_go.set()
+        assert task.result().status_code == 202
 
 
 def test_a_stop_that_has_left_and_is_not_kept_is_said_to(web, plant):

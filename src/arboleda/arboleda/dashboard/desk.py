@@ -8,6 +8,7 @@ from collections.abc import Awaitable
 from concurrent.futures import Future
 from typing import TypeVar
 
+from fastapi.concurrency import run_in_threadpool
 from nicegui import Client
 
 from arboleda.adapters.task_rows import PAGE
@@ -57,7 +58,8 @@ class Desk(OpenPage):
         return self._words("demo.end") if act == demo.END else self._words.of("verb", act)
 
     async def _submit(self, text: str) -> None:
-        task = await self._answered(self._plant.submit(text, PAGE))
+        # The history may be asked for its id, and a stop must not wait behind that.
+        task = await self._answered(await run_in_threadpool(self._plant.submit, text, PAGE))
         if task is not None and task["state"] == "refused":
             self.say(self._words.say(task["sentence"]), good=False)
         elif task is not None:

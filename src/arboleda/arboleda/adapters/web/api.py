@@ -183,7 +183,9 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
         text = asked.text if isinstance(asked, TaskText) else side.spelled(**asked.named())
         is_ours = request.headers.get("user-agent", "").startswith(COMMAND_LINE)
         why = asked.why if isinstance(asked, TaskText) else ""
-        task = await in_time(side.submit(text, COMMAND if is_ours else HTTP, why))
+        asked_by = COMMAND if is_ours else HTTP
+        # The history may be asked for its id, and a stop must not wait behind that.
+        task = await in_time(await run_in_threadpool(side.submit, text, asked_by, why))
         return PlainJson(explained(task), status_code=422 if task["state"] == "refused" else 202)
 
 
