@@ -69,7 +69,7 @@ class Side:
         self._layout = view.layout(rig.plant.model) | {"plant": EVIL}
         self._snapshot = poisoned(rig.snapshot())
 
-    def snapshot(self) -> dict[str, Any]:
+    def snapshot(self, within_s: float = 0.0) -> dict[str, Any]:
         return self._snapshot
 
     def layout(self) -> dict[str, Any]:

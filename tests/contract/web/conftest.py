@@ -92,6 +92,9 @@ class Plant:
             raise self.view
         return self.view
 
+    def latest(self) -> dict:
+        return self.snapshot()
+
     def offers(self) -> list[dict]:
         return OFFERS
 

@@ -81,6 +81,10 @@ def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
         answer = client.post(f"{url}/stop")
         assert answer.status_code == 202 and "has not kept it" in answer.json()["sentence"]
         assert robots.stopped == {"ra1", "rm_sis_a"}
+        seen = client.get(url).json()
+        assert seen["tasks"] == [] and not any(robot["latched"] for robot in seen["robots"])
+        unknown = client.get(url.replace("plant", "tasks/a"))
+        assert unknown.status_code == 503 and unknown.json()["key"] == "plant.not_kept"
         assert not disk.let_go.is_set()
 
 

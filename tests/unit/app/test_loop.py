@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from arboleda.app.loop import Loop
+from arboleda.app.loop import Loop, UnderWay
 from arboleda.model.errors import ArboledaError
 
 
@@ -264,6 +264,47 @@ def test_what_comes_out_of_a_step_is_sent_in_the_order_that_is_wanted(make, sent
     loop.turn()
     assert sent == ["b", "a"]
     assert steps == [(10.0, ("a", "b"), ["a", "b"])]
+
+
+def read(loop: Loop, found: list) -> None:
+    try:
+        found.append(loop.read_handed_on(lambda machine: len(machine.steps), within_s=1.0))
+    except UnderWay:
+        found.append("under way")
+
+
+def test_a_step_is_read_once_what_came_out_of_it_is_sent(make, clock):
+    found, reader = [], threading.Event()
+
+    def send(message):
+        thread = threading.Thread(target=lambda: (reader.set(), read(loop, found)))
+        thread.start()
+        threads.append(thread)
+        assert reader.wait(5)
+        assert found == []
+
+    threads: list[threading.Thread] = []
+    loop = make(send=send)
+    read(loop, found)
+    assert found.pop() == 0
+    loop.post("a")
+    loop.turn()
+    threads[0].join(5)
+    assert found == [1]
+
+
+def test_nobody_waits_for_a_step_longer_than_he_will(make, clock):
+    found = []
+
+    def send(message):
+        clock.now += 1.0
+        read(loop, found)
+
+    loop = make(send=send)
+    loop.post("a")
+    loop.turn()
+    read(loop, found)
+    assert found == ["under way", 1]
 
 
 def test_it_is_busy_from_the_taking_in_to_the_end_of_what_follows_a_step(make):

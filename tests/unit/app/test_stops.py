@@ -1,4 +1,4 @@
-"""Stops leave whatever hangs, before what is older."""
+"""Stops leave whatever hangs, before what is older; nobody is told what is not kept."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from typing import Any
 import pytest
 
 from arboleda.adapters.store import Store
+from arboleda.adapters.task_rows import TaskQuery
 from arboleda.app.parts import orchestrator
-from arboleda.app.parts.orchestrator import Orchestrator
+from arboleda.app.parts.orchestrator import NotKept, Orchestrator
 from arboleda.core import stop_lane
 from arboleda.core.leaving import StopLeft, ends_motion
 from arboleda.core.plant import Plant
@@ -355,3 +356,69 @@ def test_a_stop_that_cannot_be_kept_is_told_to_have_left(scripted, robots, store
     said = future.result(0)
     assert isinstance(said, StopLeft) and "The disk is full." in str(said.sentence)
     assert robots.messages == [stop, said]  # who asked over ROS 2 hears the same
+
+
+def states(plant: Orchestrator, task: str) -> tuple[str | None, list[str]]:
+    """A task as a client finds it, and as it is in a snapshot."""
+    found = plant.find(task)
+    return found and found["state"], [row["state"] for row in plant.snapshot()["tasks"] if row["id"] == task]
+
+
+@pytest.mark.parametrize("method", ["task", "keep"])
+def test_nobody_is_told_what_is_not_kept_yet(plant, gate, robots, store, monkeypatch, method) -> None:
+    views: list[dict[str, Any]] = []
+    shown = threading.Condition()
+
+    def watch(snapshot: dict[str, Any]) -> None:
+        with shown:
+            views.append(snapshot)
+            shown.notify_all()
+
+    plant.watchers.append(watch)
+    plant.start()
+    assert plant.submit("sis_a 0B 1 #a").result(SOON_S).state is TaskState.QUEUED
+    with shown:
+        assert shown.wait_for(lambda: views and views[-1]["tasks"], SOON_S)
+    hang_before(gate, store, method, monkeypatch)
+    gate.shut = True
+    plant.operate(Verb.CANCEL, "a") if method == "task" else plant.operate(Verb.STOP, "sis_b")
+    assert gate.reached.wait(SOON_S)
+    assert states(plant, "a") == ("queued", ["queued"])
+    assert all(robot["latched"] is False for robot in plant.snapshot()["robots"])
+    with pytest.raises(NotKept, match="ask again later"):
+        plant.find("of nobody")
+    assert {row["state"] for each in views for row in each["tasks"]} == {"queued"}
+    gate.open()
+    plant.stop()
+    assert views[-1]["ending"]
+
+
+def test_once_something_cannot_be_kept_screens_see_what_was_kept_last(
+    plant, robots, store, crashes, monkeypatch
+) -> None:
+    views: list[dict[str, Any]] = []
+    changes: list[TaskChanged] = []
+    seen_by_observers: list[str] = []
+    plant.watchers.append(views.append)
+    plant.listeners.append(changes.append)
+    published: list[dict[str, Any]] = []
+    robots.publish_view = lambda snapshot: iter(published.append(snapshot) or ())
+    plant.start()
+    plant.submit("sis_a 0B 1 #a").result(SOON_S)
+    assert plant.snapshot()["tasks"]
+    for name in ("task", "keep", "journal"):
+        monkeypatch.setattr(store, name, fail)
+    plant.observers.append(lambda each: seen_by_observers.append(each.intake.tasks["a"].state.value))
+    with pytest.raises(ArboledaError, match="The disk is full"):
+        plant.operate(Verb.CANCEL, "a").result(SOON_S)
+    assert crashes
+    found = plant.snapshot()
+    assert found["ending"]
+    assert [row["state"] for row in found["tasks"]] in ([], ["queued"])  # as it was published last
+    plant.stop()
+    told = [row["state"] for each in (*views, *published) for row in each["tasks"]]
+    assert "cancelled" not in told and "failed" not in told
+    assert [each.state for each in changes] == [TaskState.QUEUED]
+    assert views[-1]["ending"] and published[-1]["ending"]
+    assert seen_by_observers == []
+    assert [row.state for row in store.tasks(TaskQuery())] == ["queued"]

@@ -20,7 +20,7 @@ class Plant:
     def __init__(self) -> None:
         self.asked: list[Future] = []
 
-    def snapshot(self) -> dict:
+    def snapshot(self, within_s: float = 0.0) -> dict:
         return {}
 
     def offers(self) -> list[dict]:

@@ -46,7 +46,7 @@ from .parts.groot2 import Groot2Options, Groot2Part
 from .parts.handover import GoingOn, hold_all
 from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
-from .parts.orchestrator import Orchestrator
+from .parts.orchestrator import READ_S, Orchestrator
 from .parts.part import Part
 from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
@@ -224,8 +224,8 @@ class App:
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
         return self._plant.operate(verb, scope, by_hand)
 
-    def snapshot(self) -> dict[str, Any]:
-        return self._plant.snapshot()
+    def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
+        return self._plant.snapshot(within_s)
 
     def positions(self) -> dict[str, Any]:
         return self._plant.positions()

@@ -18,6 +18,10 @@ Message = TypeVar("Message")
 Result = TypeVar("Result")
 
 
+class UnderWay(Exception):
+    """What came out of the last step is still being sent."""
+
+
 class Machine(Protocol[Event, Message]):
     """What Plant, Bridge and Devices have in common."""
 
@@ -76,6 +80,9 @@ class Loop(Generic[Event, Message]):
         self._sleeps_until = math.inf
         self._step_by: float | None = None
         self._between_steps = threading.Lock()
+        self._handed_on = threading.Condition(self._between_steps)
+        self._handing_on_since: float | None = None  # while what came out of a step is being sent
+        self._readers = 0  # that wait for the end of that
         self.busy = False  # from the moment in which a step takes what waits to the end of what follows it
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
@@ -107,6 +114,21 @@ class Loop(Generic[Event, Message]):
         with self._between_steps:
             return fn(self._machine)
 
+    def read_handed_on(self, fn: Callable[[Any], Result], within_s: float) -> Result:
+        """As `read`, but of a step whose messages are all sent; not in the loop's thread.
+
+        UnderWay where that is not so `within_s` after the step.
+        """
+        with self._between_steps:
+            while (since := self._handing_on_since) is not None:
+                left_s = since + within_s - self._clock()
+                if left_s <= 0:
+                    raise UnderWay
+                self._readers += 1
+                self._handed_on.wait(left_s)
+                self._readers -= 1
+            return fn(self._machine)
+
     def wake_by(self, at: float) -> None:
         """Step by `at` at the latest, even without an event; from `on_step` only."""
         self._step_by = at
@@ -127,9 +149,15 @@ class Loop(Generic[Event, Message]):
         now = self._clock()
         with self._between_steps:
             messages = self._machine.step(now, events)
+            if messages:
+                self._handing_on_since = now
         if messages:
             for message in messages if self._arrange is None else self._arrange(messages):
                 self._deliver(message)
+            with self._between_steps:
+                self._handing_on_since = None
+                if self._readers:
+                    self._handed_on.notify_all()
         if self._on_step is not None:
             self._on_step(now, events, messages)
         self.busy = False

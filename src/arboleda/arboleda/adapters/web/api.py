@@ -120,12 +120,13 @@ def _look(api: APIRouter, side: PlantSide) -> None:
     @api.get("/plant", response_model=Snapshot)
     async def plant() -> JSONResponse:
         """The whole plant: cells with their trees, robots, tasks, zones."""
-        return PlainJson(side.snapshot())
+        return PlainJson(await run_in_threadpool(side.latest))
 
     @api.get("/tasks", response_model=list[Task])
     async def tasks() -> JSONResponse:
         """Every open task and those that ended last, in the order of their acceptance."""
-        return PlainJson([explained(task) for task in side.snapshot()["tasks"]])
+        seen = await run_in_threadpool(side.latest)
+        return PlainJson([explained(task) for task in seen["tasks"]])
 
     wanted: dict[str, Any] = {"responses": WRONG, "openapi_extra": _query(Wanted)}
 
@@ -162,7 +163,7 @@ def _look(api: APIRouter, side: PlantSide) -> None:
     @api.get("/tasks/{task_id}", response_model=Task, responses=UNKNOWN)
     async def task(task_id: str) -> JSONResponse:
         """One task."""
-        known = side.find(task_id)
+        known = await run_in_threadpool(side.find, task_id)
         if known is None:
             raise HTTPException(404, f"The plant knows no task {quoted(task_id, 80)}.")
         return PlainJson(explained(known))

@@ -18,9 +18,13 @@ Snapshot = dict[str, Any]
 
 
 class PlantSide(Protocol):
-    """The plant as the server's thread sees it; no call blocks, and all data is plain."""
+    """The plant as the server sees it; no call blocks that does not say so, and all data is plain."""
 
-    def snapshot(self) -> Snapshot: ...
+    def snapshot(self) -> Snapshot:
+        """The plant as it is kept; while it waits for its disk, as it was before."""
+
+    def latest(self) -> Snapshot:
+        """The same, with all that anybody was answered; it waits for the disk, at most for a second."""
 
     def offers(self) -> list[dict[str, Any]]:
         """By cell, its recipes with their parameters and what these can be."""
@@ -29,7 +33,7 @@ class PlantSide(Protocol):
         """The text of a task whose values are named; TextError for what is no task of this plant."""
 
     def find(self, task: str) -> dict[str, Any] | None:
-        """One task by its id, None where the plant knows none."""
+        """One task by its id, None where the plant knows none; it waits for the disk, at most a second."""
 
     def history(self, query: TaskQuery) -> list[TaskRow]:
         """Tasks of this start and of earlier ones; it waits for the disk."""

@@ -51,10 +51,10 @@ from arboleda.model.messages import (
     Verb,
 )
 from arboleda.model.plant_model import PlantModel
-from arboleda.model.sentence import as_sentence
+from arboleda.model.sentence import Phrase, as_sentence
 from arboleda.views import diagnostics, forms, twin_view, view
 
-from ..loop import Loop
+from ..loop import Loop, UnderWay
 from ..memory import kept_task, kept_tasks, remembered
 from .part import Crash
 from .router import PlantPort
@@ -72,6 +72,13 @@ SETTLE_S = 0.01
 SHARE = 0.1  # of the thread's time for snapshots, at most: one of 100 busy cells takes as long as 500 steps
 DAY_S = 86_400.0
 PATIENCE_S = 6.0  # a stop is confirmed within stop_timeout_s, 5 s in the shipped plant
+READ_S = 1.0  # counted from a step: who reads it waits so long for its commits
+GLANCE_S = 0.03  # the same in the server's thread, which waits meanwhile, and with it the next stop
+
+
+NOT_KEPT = Phrase(
+    "plant.not_kept", "the plant has not kept yet what it did last, so it cannot tell of it; ask again later"
+)
 
 
 class FlightRecorder(Protocol):
@@ -106,6 +113,13 @@ class Began(NamedTuple):
     kept: Sequence[KeptTask]
 
 
+class NotKept(ArboledaError):
+    """Nobody can say now what of the plant is kept."""
+
+    def __init__(self) -> None:
+        super().__init__(NOT_KEPT())
+
+
 class TooLate(ArboledaError):
     """A command was not sent: it is older than a robot's silence may be."""
 
@@ -113,10 +127,11 @@ class TooLate(ArboledaError):
 class Orchestrator:
     """The plant in its loop; `connect` its port before `start`.
 
-    What the plant wants remembered is in the `store` before anything after it leaves; only stops leave before
-    that. Where that fails, the plant ends: from then on robots are told to stop, nothing else. Tasks that
-    wait at the end are left for the next start, unless it `drops_waiting`. Where its thread is busy when
-    somebody asks for a stop, that leaves beside it, by `stops`.
+    What the plant wants remembered is in the `store` before anything after it leaves, and before anybody is
+    told of it; only stops leave before that. Where that fails, the plant ends: from then on robots are told
+    to stop, nothing else, and screens see what was kept last. Tasks that wait at the end are left for the
+    next start, unless it `drops_waiting`. Where its thread is busy when somebody asks for a stop, that leaves
+    beside it, by `stops`.
     """
 
     def __init__(
@@ -158,6 +173,7 @@ class Orchestrator:
         self._ros: RosPort | None = None
         self._shown = (-1, 0.0)
         self._show_after = 0.0
+        self._kept: dict[str, Any] = {}  # the last snapshot of what was kept, as screens got it
         self._blind = ""  # the defect for which screens saw nothing last
         self._show_at: float | None = None  # while there is a change that nobody was shown
         self._showing: Slices[None] | None = None  # a snapshot that is being made and shown
@@ -203,8 +219,17 @@ class Orchestrator:
                 TASKS.warning("%s", run.found)
             if run.left_over:
                 TASKS.warning("%s", run.why_paused)
+        self._kept = self._first_view()
         self.stops.loop.start()
         self.loop.start()
+
+    def _first_view(self) -> dict[str, Any]:
+        """A snapshot for those who look before the first one that screens get."""
+        try:
+            return view.snapshot(self.plant)
+        except Exception as error:  # noqa: BLE001 - a screen that cannot be drawn must not end the plant
+            _log_defect("the screens", error)
+            return {}
 
     def submit(self, text: str, asked_by: str = COMMAND, choice: str = "") -> Future[TaskChanged]:
         """Ask for a task; the future holds the answer: queued, refused, or the known task's state.
@@ -252,12 +277,35 @@ class Orchestrator:
         """The task text of named values; TextError for what is no task of this plant."""
         return spelled(self.plant.model, cell=cell, recipe=recipe, values=values, id=id)
 
-    def snapshot(self) -> dict[str, Any]:
-        """A snapshot now, made in slices between which the plant is stepped; not in the plant's thread."""
+    def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
+        """A snapshot of what is kept, made in slices between which the plant is stepped; not in its thread.
+
+        Where the plant waits for its disk for longer, it is the last one that screens got.
+        """
         slices = Slices(view.in_parts(self.plant))
-        while not self.loop.read(lambda _plant: slices.cut(clock.seconds())):
-            time.sleep(PAUSE_S)
+        try:
+            while not self._read(lambda _plant: slices.cut(clock.seconds()), within_s):
+                time.sleep(PAUSE_S)
+        except UnderWay:
+            return self._last_kept
         return slices.result
+
+    def _read(self, fn: Callable[[Plant], Any], within_s: float) -> Any:
+        """`fn(plant)` of a plant all of which is kept; UnderWay where it is not, or will not be any more."""
+
+        def look(plant: Plant) -> Any:
+            if self._amnesia is not None:
+                raise UnderWay
+            return fn(plant)
+
+        return self.loop.read_handed_on(look, within_s)
+
+    @property
+    def _last_kept(self) -> dict[str, Any]:
+        """The last snapshot that screens got; NotKept where there is none."""
+        if not self._kept:
+            raise NotKept
+        return self._kept if self._amnesia is None else {**self._kept, "ending": True}
 
     @property
     def stepped_at(self) -> float:
@@ -269,7 +317,14 @@ class Orchestrator:
         return {"now": clock.seconds(), **self.loop.read(twin_view.positions)}
 
     def find(self, task: str) -> dict[str, Any] | None:
-        return self.loop.read(lambda plant: view.task_by_id(plant, task))
+        """A task as it is kept; NotKept where that cannot be said now."""
+        try:
+            found: dict[str, Any] | None = self._read(lambda plant: view.task_by_id(plant, task), READ_S)
+        except UnderWay:
+            found = next((row for row in self._last_kept["tasks"] if row["id"] == task), None)
+            if found is None:
+                raise NotKept from None
+        return found
 
     def stop(self) -> None:
         """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
@@ -452,7 +507,7 @@ class Orchestrator:
             self.reacted(clock.seconds() - max(event.at for event in events))
         if self.recorder is not None:
             self.recorder.stepped(self.plant, now, events, messages)
-        for observer in self.observers:
+        for observer in self.observers if self._amnesia is None else ():
             try:
                 observer(self.plant)
             except Exception as error:  # noqa: BLE001 - whatever is told of a plant must not end it
@@ -506,6 +561,11 @@ class Orchestrator:
     def _publication(self) -> Generator[None, None, None]:
         """Make a snapshot and show it to all who watch, in parts between which the plant may be stepped."""
         snapshot = yield from view.in_parts(self.plant)
+        if self._amnesia is not None:  # what happens now is not kept
+            if not self._kept:
+                return
+            snapshot = self._last_kept
+        before, self._kept = self._kept, snapshot
         if self.recorder is not None and not self.recorder.trouble:
             drawn = yield from twin_view.in_parts(self.plant)
             self.recorder.saw(snapshot, drawn)
@@ -518,8 +578,8 @@ class Orchestrator:
                 recorder = [] if self.recorder is None else [diagnostics.record(self.recorder.trouble)]
                 rows = (*diagnostics.diagnostics(snapshot), *recorder)
                 yield from self._ros.publish_diagnostics(rows)
-        rows = [*snapshot["cells"], *snapshot["robots"], *snapshot["tasks"]]
-        del snapshot
+        rows = [row for kind in ("cells", "robots", "tasks") for row in before.get(kind, ())]
+        del before
         while rows:  # to give back the memory of them all at once takes as long as some slices
             rows.pop()
             yield

@@ -6,6 +6,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 from urllib.parse import urlencode
@@ -28,6 +29,7 @@ from arboleda.views.oee import Oee
 
 from .. import tokens
 from ..web_options import WebOptions
+from .orchestrator import GLANCE_S, READ_S
 
 LOG = logging.getLogger(__name__)
 CLEAR = "No TLS: the token travels in clear on {host}; see docs/how-to/network.md"
@@ -36,7 +38,7 @@ CLEAR = "No TLS: the token travels in clear on {host}; see docs/how-to/network.m
 class Asked(Protocol):
     """What the part asks of the plant it belongs to."""
 
-    def snapshot(self) -> Snapshot: ...
+    def snapshot(self, within_s: float = READ_S) -> Snapshot: ...
     def offers(self) -> list[dict[str, Any]]: ...
     def find(self, task: str) -> dict[str, Any] | None: ...
     def history(self, query: TaskQuery) -> list[TaskRow]: ...
@@ -60,7 +62,8 @@ class Side:
         self._plant = plant
         self._watchers: tuple[Callable[[Snapshot], None], ...] = ()
         self._changing = threading.Lock()
-        self.snapshot = plant.snapshot
+        self.snapshot = partial(plant.snapshot, GLANCE_S)
+        self.latest = plant.snapshot
         self.offers = plant.offers
         self.find = plant.find
         self.history = plant.history
