@@ -644,3 +644,60 @@ def test_a_fact_that_finds_no_room_is_an_error_and_what_was_kept_stays(path, sma
             store.keep(long)
         store.keep(Remember(fact=Fact.EFFECTOR, name="ra1", value="off"))
     assert everything(path)[0][:2] == [{"ra1": "on"}, {"ra1": "off"}] and not any(everything(path)[0][2:])
+
+
+@pytest.mark.parametrize(
+    ("lost", "advice"),
+    [
+        ("plant.sqlite", "put it, or a backup, in its place"),
+        ("plant.sqlite-wal", "start again; as the plant"),
+    ],
+)
+def test_a_file_that_is_deleted_while_it_is_open_is_said_by_whatever_comes_next(path, lost, advice):
+    with Store(path) as store:
+        store.keep(LATCH)
+        store.confirm()
+        path.with_name(lost).unlink()
+        for write in (lambda: store.keep(LATCH), lambda: store.journal(ACT, 5.0), store.confirm):
+            with pytest.raises(ArboledaError, match=f"any more.*{lost} was deleted.*ran.: {advice}"):
+                write()
+    store.confirm()  # closed, nothing of it can be lost
+
+
+def test_a_file_in_the_place_of_the_one_that_is_open_is_no_memory(path, tmp_path):
+    with Store(path) as store:
+        store.keep(LATCH)
+        with Store(tmp_path / "other.sqlite"):
+            pass
+        (tmp_path / "other.sqlite").replace(path)
+        with pytest.raises(ArboledaError, match="was replaced by another file"):
+            store.keep(LATCH)
+
+
+@pytest.mark.parametrize("log", ["stays", "deleted"])
+def test_a_memory_that_was_moved_away_has_all_that_was_kept_once_it_is_closed(path, tmp_path, log):
+    with Store(path) as store:
+        store.keep(LATCH)
+        moved = path.rename(tmp_path / "moved.sqlite")
+        if log == "deleted":
+            Path(f"{path}-wal").unlink()
+    with Store(moved) as again:
+        assert again.facts(Fact.LATCH) == {"ra1": "on"}
+
+
+def test_a_memory_whose_log_was_deleted_has_all_that_was_kept_once_it_is_closed(path):
+    with Store(path) as store:
+        store.keep(LATCH)
+        Path(f"{path}-wal").unlink()
+    with Store(path) as again:
+        assert again.facts(Fact.LATCH) == {"ra1": "on"}
+
+
+def test_who_backs_up_or_reads_beside_the_plant_leaves_its_files_in_their_place(path, store):
+    store.keep(LATCH)
+    history = TaskHistory(path)
+    history.select(TaskQuery())
+    history.close()
+    with closing(sqlite3.connect(path)) as other:
+        other.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    store.keep(LATCH)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import stat
 import subprocess
 import sys
@@ -11,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import state
+from arboleda.app import place_claim, state
 from arboleda.app.state import StateDir, default_state, find_running
-from arboleda.model.errors import StartError
+from arboleda.model.errors import ArboledaError, StartError
 
 
 @pytest.fixture(autouse=True)
@@ -146,7 +147,7 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 from arboleda.app.state import StateDir
-from arboleda.model.errors import StartError
+from arboleda.model.errors import ArboledaError, StartError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 room = int(sys.argv[2])
 state = StateDir(Path(sys.argv[1]))
@@ -173,3 +174,44 @@ def test_a_full_disk_at_the_start_is_one_sentence(tmp_path, room):
     assert [file.name for file in tmp_path.iterdir()] == ["plant.lock"]
     with StateDir(tmp_path):
         pass
+
+
+def test_the_owner_notices_that_its_lock_is_not_in_its_place(tmp_path):
+    place = tmp_path / "demo"
+    with StateDir(place) as owner:
+        owner.confirm()
+        place.rename(tmp_path / "away")
+        with pytest.raises(ArboledaError) as noticed:
+            owner.confirm()
+        assert str(noticed.value).startswith(
+            f"The state directory {place} cannot be used any more ({place / 'plant.lock'} was deleted or"
+            " moved away while the plant ran)"
+        )
+    owner.confirm()  # who has given it back has lost nothing
+
+
+@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+@pytest.mark.parametrize("ways", [("demo", "demo"), ("demo", "demo/../demo"), ("demo", "link")])
+def test_a_second_owner_is_kept_out_though_the_directory_was_deleted(tmp_path, ways):
+    first, second = (StateDir(tmp_path / way) for way in ways)
+    (tmp_path / "link").symlink_to(tmp_path / "demo")
+    with first:
+        shutil.rmtree(tmp_path / "demo")
+        (tmp_path / "demo").mkdir()
+        with pytest.raises(StartError) as refused:
+            second.open()
+        assert f"still runs (process {os.getpid()}), though its files there are gone" in str(refused.value)
+    with second:
+        second.confirm()
+
+
+@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+def test_owners_of_two_directories_do_not_meet(tmp_path):
+    with StateDir(tmp_path / "north"), StateDir(tmp_path / "south"):
+        pass
+
+
+def test_where_no_name_is_without_a_file_the_lock_alone_keeps_owners_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr(place_claim, "HAS_ABSTRACT", False)
+    with StateDir(tmp_path), pytest.raises(StartError, match="already running"):
+        StateDir(tmp_path).open()

@@ -15,10 +15,11 @@ from . import row_sums
 VERSION = 10
 BUSY_S = 1.0  # a person may look into the file with another program; the plant's own lock keeps plants apart
 OWNER = ("plant", "name")  # the row of `fact` that says whose memory it is; no `Fact` has this name
-MOVE_AWAY = (
-    "move it away, together with its -wal and -shm files, and start again; lost with it are stop latches,"
-    " what the effectors hold, quarantined zones, the tasks and the operators' journal"
+LOST_WITH_IT = (
+    "lost with it are stop latches, what the effectors hold, quarantined zones, the tasks and the operators'"
+    " journal"
 )
+MOVE_AWAY = f"move it away, together with its -wal and -shm files, and start again; {LOST_WITH_IT}"
 ADVICE = {  # by what SQLite says; Python 3.10 tells no codes
     "not a database": MOVE_AWAY,
     "malformed": MOVE_AWAY,

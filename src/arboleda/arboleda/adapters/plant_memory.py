@@ -117,7 +117,8 @@ class PlantMemory(ABC):
         """Tell the next leader which cells are held for the change alone; from any thread. ArboledaError."""
 
     def confirm(self) -> None:  # noqa: B027
-        """Make sure that this process still leads; costs nothing while that is known."""
+        """Make sure that this process still leads, and that what it wrote can be found again; ArboledaError.
+        Costs next to nothing while that is known."""
 
     @property
     def leads_for_certain(self) -> bool:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterable, Iterator
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
 
 from arboleda.model.errors import ArboledaError, StartError
 
 from . import row_sums
+from .held_files import HeldFiles
 from .memory_file import (
     BUSY_S,
+    LOST_WITH_IT,
     MOVE_AWAY,
     OWNER,
     VERSION,
@@ -73,6 +75,8 @@ SINCE = {
     9: row_sums.COLUMNS,
 }
 IN_MEMORY = Path(":memory:")
+PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
+IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself"
 
 
 class Store(PlantMemory):
@@ -87,6 +91,7 @@ class Store(PlantMemory):
         self._plant = plant
         self._opened: sqlite3.Connection | None = None
         self._durable: bool | None = None  # what commits are now; None: not said yet
+        self._held = HeldFiles()
 
     def open(self) -> None:
         """Open the file, a new one where there is none; StartError; idempotent."""
@@ -102,12 +107,30 @@ class Store(PlantMemory):
                 db.close()
                 raise
         self._opened, self._durable = db, None
+        if self.path != IN_MEMORY:
+            self._held = HeldFiles([self.path, self._log])
 
     def close(self) -> None:
         """Give the file back; idempotent."""
         if self._opened is not None:
+            if self._held.loss() is not None:
+                with suppress(sqlite3.Error):  # of a file that was moved SQLite itself leaves the log unread
+                    self._opened.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            self._held = HeldFiles()
             self._opened.close()
             self._opened = None
+
+    def confirm(self) -> None:
+        """ArboledaError where another file, or none, is in the place of the one that is open: what is written
+        from now on would be lost with this process. From any thread; it takes some microseconds."""
+        loss = self._held.loss()
+        if loss is not None:
+            advice = IN_PLACE if loss.path == self._log else PUT_BACK
+            raise ArboledaError(f"The plant's memory {self.path} cannot be used any more ({loss}): {advice}.")
+
+    @property
+    def _log(self) -> Path:
+        return Path(f"{self.path}-wal")
 
     @property
     def _db(self) -> sqlite3.Connection:
@@ -122,6 +145,7 @@ class Store(PlantMemory):
                 self._db.execute(*statements[0])
             else:
                 _carry_out(self._db, statements)
+        self.confirm()  # after the commit: whoever is told of it hears only of what is in its place
 
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with self._explained(ArboledaError):
@@ -165,7 +189,7 @@ class Store(PlantMemory):
 
     def _is_there(self) -> bool:
         """Whether there is a memory to open; StartError where only a part of one is."""
-        log = Path(f"{self.path}-wal")
+        log = self._log
         if self.path == IN_MEMORY or self.path.exists():
             return True
         if log.exists():

@@ -48,6 +48,7 @@ from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
 from .parts.orchestrator import READ_S, Orchestrator
 from .parts.part import Part
+from .parts.periodic import Periodic
 from .parts.reports import NO_RECORD, NoReport, ReportsPart
 from .parts.router import PlantPort, Router
 from .parts.systemd import systemd_part
@@ -364,6 +365,7 @@ class App:
                 drops_waiting=not self._keeps_waiting,
             )
             self._parts += self._recorder(epoch, self.orchestrator, options)
+            self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
             times = CellTimes(self._store, self.model.history_days)
             self._parts.append(times)  # before the plant, so that it ends after it
             self.orchestrator.observers.append(times.stepped)
@@ -390,6 +392,11 @@ class App:
         if self.orchestrator is not None:
             systemd = systemd_part(os.environ, lambda: self._plant.stepped_at)
             self._parts += [systemd] if systemd else []
+
+    def _looks(self) -> list[Callable[[], None]]:
+        """What is looked at all the time: whether the plant's files are in their place."""
+        is_leased = self._store.renew_s is not None  # then the thread of the lease finds out
+        return [self._state.confirm] if is_leased else [self._store.confirm, self._state.confirm]
 
     def _lead(self, now: int) -> int:
         """The number of this start, higher than any before, also than those of other hosts."""

@@ -14,9 +14,11 @@ from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
-from arboleda.model.errors import ConfigError, StartError
+from arboleda.adapters.held_files import HeldFiles
+from arboleda.model.errors import ArboledaError, ConfigError, StartError
 from arboleda.wire import epochs
 
+from .place_claim import PlaceClaim
 from .user_file import read_bytes
 
 STORE = "plant.sqlite"
@@ -87,6 +89,8 @@ class StateDir:
     def __init__(self, path: Path, *, plant: str = "", store: str = "") -> None:
         self.path = path
         self._lock: int | None = None
+        self._held = HeldFiles()
+        self._claim = PlaceClaim(path)
         started = datetime.now(timezone.utc).isoformat(timespec="seconds")
         self._running = Running(pid=os.getpid(), started=started, plant=plant, store=store)
 
@@ -100,8 +104,9 @@ class StateDir:
             raise StartError(
                 f"{holder(self.path)} End it first, or give this plant its own --state directory."
             )
-        self._lock = lock
+        self._lock, self._held = lock, HeldFiles([self.path / LOCK])
         try:
+            self._claim.take()
             with self._explained():
                 (self.path / FACTS).unlink(missing_ok=True)
                 os.ftruncate(lock, 0)
@@ -149,9 +154,21 @@ class StateDir:
     def close(self) -> None:
         """Give the directory back; idempotent. The lock file stays: removing it would let two owners in."""
         if self._lock is not None:
+            self._held = HeldFiles()
             (self.path / FACTS).unlink(missing_ok=True)
             os.close(self._lock)
             self._lock = None
+        self._claim.release()
+
+    def confirm(self) -> None:
+        """ArboledaError where the lock that this process has is not in its place; from any thread."""
+        loss = self._held.loss()
+        if loss is not None:
+            raise ArboledaError(
+                f"The state directory {self.path} cannot be used any more ({loss}), so that a second plant"
+                " could start beside this one: put back what else was deleted or moved away there, and start"
+                " again."
+            )
 
     @contextmanager
     def _explained(self) -> Iterator[None]:

@@ -1,0 +1,115 @@
+"""A plant whose files are deleted, moved or replaced while it runs ends by itself, its robots halted."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arboleda.adapters.broker_login import address
+from arboleda.adapters.mqtt import MqttClient
+from arboleda.app import place_claim
+from arboleda.wire.transport import Connection, Delivery
+
+from ..patience import PATIENCE_S
+
+pytestmark = pytest.mark.system
+UP = ("up", "--no-ros")
+
+
+def halts(plant: Any, request: pytest.FixtureRequest) -> tuple[list[str], threading.Event]:
+    """Whom the plant's broker tells to halt from now on, and whether it has told anybody."""
+    broker = next(found[1] for line in plant.lines if (found := re.match(r"MQTT broker: (\S+)", line)))
+    joined, halted, robots = threading.Event(), threading.Event(), list[str]()
+
+    def hear(event: Any) -> None:
+        if isinstance(event, Connection):
+            joined.set()
+        elif isinstance(event, Delivery) and json.loads(event.payload).get("paro"):
+            robots.append(event.topic.partition("/")[0])
+            halted.set()
+
+    observer = MqttClient("observer", address(broker), subscriptions=["+/paro"], on_event=hear)
+    observer.start()
+    request.addfinalizer(observer.close)
+    assert joined.wait(PATIENCE_S), "the observer did not reach the broker"
+    return robots, halted
+
+
+def unlink_memory(state: Path) -> None:
+    (state / "plant.sqlite").unlink()
+
+
+def unlink_lock(state: Path) -> None:
+    (state / "plant.lock").unlink()
+
+
+def make_anew(state: Path) -> None:
+    shutil.rmtree(state)
+    state.mkdir()
+
+
+@pytest.mark.parametrize(
+    ("harm", "sentence"),
+    [
+        (shutil.rmtree, "plant.(sqlite|lock) was deleted or moved away"),
+        (make_anew, "plant.(sqlite|lock) was deleted or moved away"),
+        (unlink_memory, "plant's memory .*plant.sqlite was deleted or moved away"),
+        (unlink_lock, "state directory .*plant.lock was deleted or moved away"),
+    ],
+)
+def test_a_plant_whose_files_are_gone_halts_its_robots_and_ends_with_a_sentence(
+    arboleda: Callable[..., Any],
+    request: pytest.FixtureRequest,
+    tmp_path: Path,
+    harm: Callable[[Path], object],
+    sentence: str,
+) -> None:
+    plant = arboleda(*UP, "sis_a 0B 4")
+    plant.wait_for("sis_a: drive path 0B")
+    robots, halted = halts(plant, request)
+    harm(tmp_path / "state")
+    assert halted.wait(PATIENCE_S), plant.output
+    assert plant.wait() == 1
+    assert robots[0] == "rm_sis_a"
+    assert re.match(f"arboleda: The .*{sentence}", plant.lines[-1]), plant.output
+    assert "start again" in plant.lines[-1] and "Traceback" not in plant.output
+
+
+def test_an_idle_plant_whose_directory_was_moved_ends_and_goes_on_with_it_once_it_is_back(
+    arboleda: Callable[..., Any], typed: Callable[..., tuple[int, str]], tmp_path: Path
+) -> None:
+    plant = arboleda(*UP, "--rate", "20", "sis_a 0B 1 #one")
+    plant.wait_for("done      sis_a 0B 1")
+    (tmp_path / "state").rename(tmp_path / "away")
+    assert plant.wait() == 1
+    (tmp_path / "away").rename(tmp_path / "state")
+    again = arboleda(*UP)
+    again.wait_for("HTTP API")
+    assert typed("submit", "sis_a 0B 1 #one") == (0, "done: sis_a 0B 1 (id one)")
+
+
+@pytest.mark.skipif(not place_claim.HAS_ABSTRACT, reason="only Linux has names without files")
+def test_no_second_plant_starts_beside_one_whose_directory_was_deleted(
+    arboleda: Callable[..., Any], tmp_path: Path
+) -> None:
+    """The first is stopped, so that it cannot end before the second has looked."""
+    first = arboleda(*UP)
+    first.wait_for("HTTP API")
+    os.kill(first.pid, signal.SIGSTOP)
+    shutil.rmtree(tmp_path / "state")
+    second = arboleda(*UP)
+    assert second.wait() == 1
+    assert f"still runs (process {first.pid}), though its files there are gone" in second.output
+    os.kill(first.pid, signal.SIGCONT)
+    assert first.wait() == 1 and "while the plant ran" in first.lines[-1]
+    third = arboleda(*UP)
+    third.wait_for("HTTP API")
