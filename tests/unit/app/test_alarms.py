@@ -14,6 +14,7 @@ from arboleda.adapters.webhook import TOKEN, URL
 from arboleda.app.alarm_options import TOPIC, alarm_options
 from arboleda.app.build import Options, build
 from arboleda.app.parts.alarms import AlarmsPart
+from arboleda.app.parts.commit_pace import Pace
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
 from arboleda.model.errors import StartError
@@ -63,6 +64,7 @@ def heard(rig: Rig, told: Told) -> Any:
         part.stepped(rig.plant)
 
     rig.watchers.append(look)
+    rig.alarms = part  # type: ignore[attr-defined]
     return rig
 
 
@@ -279,3 +281,17 @@ def test_that_the_plant_was_away_names_the_cells_that_go_on_by_themselves(told: 
     away = next(alarm for alarm in told.alarms if alarm["kind"] == "plant_away")
     goes_on = "what was at work goes on once its devices prove what they did: sis_a"
     assert away["sentence"].endswith(f"{goes_on}; what was at work is held: sis_b")
+
+
+def test_a_slow_memory_is_told_with_the_next_step_and_so_is_its_end(rig: Any, told: Told) -> None:
+    rig.alarms.paced(Pace(typical_s=0.35, worst_s=0.4, is_slow=True))
+    rig.wait(1.0)
+    rig.alarms.paced(Pace(typical_s=0.002))
+    rig.wait(1.0)
+    slow, fast = told.alarms
+    assert told.kinds == ["memory_slow", "memory_fast"] and fast["alarm"] == slow["id"]
+    assert (
+        "waits 0.35 s for it now as a rule" in slow["sentence"]
+        and slow["cell"] == ""
+        and slow["state"] is None
+    )

@@ -20,7 +20,10 @@ from arboleda.testing import shipped
 from arboleda.views import view
 
 Read = Callable[..., "float | None"]
-LINKS = {"broker": {"address": "127.0.0.1:1883", "connected": True}}
+LINKS = {
+    "broker": {"address": "127.0.0.1:1883", "connected": True},
+    "memory": {"typical_s": 0.35, "worst_s": 0.4, "is_slow": True},
+}
 
 
 @pytest.fixture
@@ -132,6 +135,13 @@ def test_a_reaction_falls_into_its_bucket(metrics: Metrics, read: Read) -> None:
     assert read("arboleda_reaction_seconds_bucket", le="0.005") == 1
 
 
+def test_commits_are_counted_and_said_to_be_slow(metrics: Metrics, read: Read) -> None:
+    metrics.committed(0.35)
+    assert read("arboleda_commit_seconds_bucket", le="0.2") == 0
+    assert read("arboleda_commit_seconds_bucket", le="0.5") == 1
+    assert read("arboleda_memory_slow") == 1
+
+
 DOCS = Path(__file__).parents[3] / "docs" / "how-to"
 NAMED = re.compile(r"\barboleda_\w+")
 LABELS = re.compile(r'(\w+) ?(?:=~|!~|!=|=) ?"|by \(([^)]*)\)')
@@ -172,7 +182,7 @@ def told(metrics: Metrics, snapshot: dict[str, Any]) -> dict[str, set[str]]:
     return found
 
 
-@pytest.mark.parametrize(("place", "least"), [("grafana.json", 13), ("metrics.md", 8)])
+@pytest.mark.parametrize(("place", "least"), [("grafana.json", 15), ("metrics.md", 10)])
 def test_each_metric_and_label_that_is_asked_for_exists(
     told: dict[str, set[str]], place: str, least: int
 ) -> None:

@@ -353,3 +353,13 @@ def test_below_the_stop_button_stands_no_list_of_a_hundred_robots() -> None:
         unix_s=0.0,
     )
     assert stop_face(moment)["text/stop"][0].endswith("a6, a7 and 92 more")
+
+
+def test_a_slow_memory_is_said_in_the_header_and_among_the_links(told: Callable[..., Any]) -> None:
+    rig = told()
+    fast = rig.face(memory={"typical_s": 0.002, "worst_s": 0.3, "is_slow": False})
+    assert fast["text/memory"] == ["", ""] and fast["text/sum"][0] == ""
+    slow = {"typical_s": 0.351, "worst_s": 0.62, "is_slow": True}
+    line = "Memory: slow; whatever needs a commit waits 0.35 s for it now as a rule, and up to 0.62 s"
+    assert rig.face(memory=slow)["text/memory"] == [line, "warning"]
+    assert rig.face("es", memory=slow)["text/sum"][0] == "la memoria de la planta es lenta"

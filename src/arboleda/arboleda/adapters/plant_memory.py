@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -71,6 +72,7 @@ class PlantMemory(ABC):
     remedy: str  # what to do where something in it means nothing
     standbys: Sequence[Standby] = ()  # who waits to lead the plant, as of the last renewal
     going: Sequence[str] = ()  # the cells that the leader before held for nothing but the change
+    timing: AbstractContextManager[None] = nullcontext()  # around each commit that waits for the disk
     renew_s: float | None = None  # how often `renew` has to be called while the plant is led, None: never
 
     @abstractmethod
@@ -84,6 +86,10 @@ class PlantMemory(ABC):
     @abstractmethod
     def _write(self, *statements: Statement, durable: bool) -> None:
         """Commit all of them, or none."""
+
+    def _commit(self, *statements: Statement, durable: bool) -> None:
+        with self.timing if durable else nullcontext():
+            self._write(*statements, durable=durable)
 
     @abstractmethod
     def _read(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
@@ -129,7 +135,7 @@ class PlantMemory(ABC):
         """Commit facts, or forget those whose value is None: all of them, or none."""
         last_words = {(fact.fact, fact.name): fact for fact in facts}.values()
         durable = any(outlives_power(fact) for fact in facts)
-        self._write(*map(_kept, last_words), durable=durable)
+        self._commit(*map(_kept, last_words), durable=durable)
 
     def facts(self, fact: Fact) -> dict[str, str]:
         """Name to value of what is remembered."""
@@ -143,7 +149,7 @@ class PlantMemory(ABC):
         said = json.dumps(entry.sentence.data(), ensure_ascii=False)
         row = (unix_s, entry.verb.value, entry.scope, str(entry.sentence), entry.cell, said)
         insert = "INSERT INTO journal (unix_s, verb, scope, sentence, cell, said) VALUES (?, ?, ?, ?, ?, ?)"
-        self._write((insert, row), durable=outlives_power(entry))
+        self._commit((insert, row), durable=outlives_power(entry))
 
     def task(
         self,
@@ -164,12 +170,12 @@ class PlantMemory(ABC):
             columns = "id, text, cell, recipe, state, accepted_s, asked_by, choice"
             values = ", ".join("?" * len(row))
             insert = f"INSERT INTO task ({columns}) VALUES ({values}) ON CONFLICT (id) DO NOTHING"
-            self._write((insert, row), durable=durable)
+            self._commit((insert, row), durable=durable)
         elif state is TaskState.RUNNING:
             begin = (
                 "UPDATE task SET state = ?, started_s = ?, attempts = 1 WHERE id = ? AND started_s IS NULL"
             )
-            self._write((begin, (state.value, unix_s, change.task)), durable=durable)
+            self._commit((begin, (state.value, unix_s, change.task)), durable=durable)
         elif state is not TaskState.REFUSED:
             said = json.dumps(change.sentence.data(), ensure_ascii=False)
             reason = None if change.reason is None else change.reason.value
@@ -180,17 +186,17 @@ class PlantMemory(ABC):
             told = json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
             how = course_written(change.course)
             values = (state.value, reason, str(change.sentence), said, unix_s, told, how, change.task)
-            self._write((end, values), durable=durable)
+            self._commit((end, values), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:
         """Commit how often a task was begun or tried again."""
-        self._write(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
+        self._commit(("UPDATE task SET attempts = ? WHERE id = ?", (attempts, task)), durable=False)
 
     def forget_tasks(self, before_unix_s: float) -> None:
         """Forget the oldest tasks that ended before, at most PRUNED of them."""
         oldest = "SELECT number FROM task WHERE ended_s < ? ORDER BY ended_s LIMIT ?"
         delete = f"DELETE FROM task WHERE number IN ({oldest})"
-        self._write((delete, (before_unix_s, PRUNED)), durable=False)
+        self._commit((delete, (before_unix_s, PRUNED)), durable=False)
 
     def began(self, unix_s: float, before_unix_s: float) -> None:
         """Commit that the plant runs, and forget the times of cells that were over before."""
@@ -201,21 +207,21 @@ class PlantMemory(ABC):
             ("DELETE FROM run WHERE seen_s < ?", (before_unix_s,)),
             ("INSERT INTO run (since_s, seen_s, ended) VALUES (?, ?, 0)", (unix_s, unix_s)),
         ):
-            self._write(statement, durable=False)
+            self._commit(statement, durable=False)
 
     def seen(self, unix_s: float, *, ended: bool = False) -> None:
         """Commit that the plant still runs, or that it was ended."""
         last = "number = (SELECT max(number) FROM run)"
         update = f"UPDATE run SET seen_s = ?, ended = ? WHERE {last}"
-        self._write((update, (unix_s, int(ended))), durable=False)
+        self._commit((update, (unix_s, int(ended))), durable=False)
 
     def stands(self, cell: str, state: str | None, unix_s: float) -> None:
         """Commit that a cell does no work from now on, in this state; or works again, where that is None."""
         over = "UPDATE down SET until_s = ? WHERE cell = ? AND until_s IS NULL"
-        self._write((over, (unix_s, cell)), durable=False)
+        self._commit((over, (unix_s, cell)), durable=False)
         if state is not None:
             begun = "INSERT INTO down (cell, state, since_s) VALUES (?, ?, ?)"
-            self._write((begun, (cell, state, unix_s)), durable=False)
+            self._commit((begun, (cell, state, unix_s)), durable=False)
 
     def tasks(self, query: TaskQuery) -> list[TaskRow]:
         """The tasks that a query asks for, the last accepted first."""

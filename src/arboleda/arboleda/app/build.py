@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,6 +46,7 @@ from .parts.groot2 import Groot2Options, Groot2Part
 from .parts.handover import GoingOn, hold_all
 from .parts.lease import LeasePart
 from .parts.linux_boards import LinuxBoards, on_linux
+from .parts.memory_pace import MemoryPace
 from .parts.orchestrator import READ_S, Orchestrator
 from .parts.part import Part
 from .parts.periodic import Periodic
@@ -112,6 +113,8 @@ class App:
         self._reporting: ReportsPart | None = None
         self._keeps_waiting = options.keeps_waiting
         self._broker = _broker(model, options, set(parts))
+        self._pace = MemoryPace()
+        self._store.timing = self._pace
         self._metrics: Metrics | None = None
         self._web: WebPart | None = None
         options.alarms.check(model, has_broker=model.has_boards or options.broker is not None)
@@ -247,13 +250,16 @@ class App:
         return self._plant.spelled(cell=cell, recipe=recipe, values=values, id=id)
 
     def links(self) -> dict[str, Any]:
-        """Broker, ROS 2, refused messages, standbys, as the page's `PlantSide` has them; from any thread."""
+        """Broker, ROS 2, refused messages, standbys, the memory's pace, as `PlantSide` has them; from any
+        thread."""
         connected, refused = self._bridge.links() if self._bridge else (False, {})
         broker = {"address": str(self._broker.address), "connected": connected} if self._bridge else None
         ros = {"notes": list(self._link.notes)} if self._link else None
         waiting = [{"host": each.host, "url": way_to(each.host, each.url)} for each in self._store.standbys]
         demo = self._demo is not None and self._demo.is_on
-        return {"broker": broker, "ros": ros, "refused": refused, "standbys": waiting, "demo": demo}
+        memory = None if self.orchestrator is None else asdict(self._pace.pace)
+        about = {"refused": refused, "standbys": waiting, "demo": demo, "memory": memory}
+        return {"broker": broker, "ros": ros, **about}
 
     def end_demo(self) -> None:
         """Give no more tasks of the demonstration; from any thread."""
@@ -364,6 +370,7 @@ class App:
                 history=self._recalled,
                 drops_waiting=not self._keeps_waiting,
             )
+            self.orchestrator.diagnoses.append(self._pace.diagnosis)
             self._parts += self._recorder(epoch, self.orchestrator, options)
             self._parts.append(Periodic("place", self._looks(), self._crash))  # also while the plant ends
             times = CellTimes(self._store, self.model.history_days)
@@ -372,6 +379,7 @@ class App:
             if self._alarms is not None:
                 self._parts.append(self._alarms)
                 self.listen(self._alarms.changed)
+                self._pace.listeners.append(self._alarms.paced)
                 self.orchestrator.observers.append(self._alarms.stepped)
             self._parts.append(self.orchestrator)
         if self._web is not None:
@@ -394,9 +402,10 @@ class App:
             self._parts += [systemd] if systemd else []
 
     def _looks(self) -> list[Callable[[], None]]:
-        """What is looked at all the time: whether the plant's files are in their place."""
+        """What is looked at all the time: how fast the memory is, whether files are in their place."""
         is_leased = self._store.renew_s is not None  # then the thread of the lease finds out
-        return [self._state.confirm] if is_leased else [self._store.confirm, self._state.confirm]
+        places = [self._state.confirm] if is_leased else [self._store.confirm, self._state.confirm]
+        return [self._pace.look, *places]  # a disk that hangs may hold up the others
 
     def _lead(self, now: int) -> int:
         """The number of this start, higher than any before, also than those of other hosts."""
@@ -434,6 +443,7 @@ class App:
             self.watch(self._metrics.saw)
             self.listen(self._metrics.changed)
             self.orchestrator.reacted = self._metrics.reacted
+            self._pace.observers.append(self._metrics.committed)
 
     def _boards(self, first_boot: int, bridge: BridgePart | None, *, scout: bool) -> list[Part]:
         """The boards that play the real ones: the firmware's where wanted and possible, else virtual."""

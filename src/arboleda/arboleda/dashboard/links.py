@@ -15,7 +15,7 @@ def build(layout: Layout, words: Words) -> None:
     with tag("div", classes="box"):
         tag("h2", words("tab.links"))
         with tag("div", classes="facts"):
-            for key in ("broker", "ros", "standbys", "strays"):
+            for key in ("broker", "ros", "standbys", "memory", "strays"):
                 live("p", key, classes="fact")
         cell_filter("links", layout, words)
         rows("links", [words(f"column.{name}") for name in COLUMNS], classes="links")

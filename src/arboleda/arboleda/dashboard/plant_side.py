@@ -51,7 +51,7 @@ class PlantSide(Protocol):
     def links(self) -> Links:
         """`broker` {address, connected} or None, `ros` {notes} or None, `refused` {robot: {count, last}},
         `standbys` [{host, url}], whose url is "" where it leads there from no other host, `demo`: whether a
-        demonstration gives tasks now."""
+        demonstration gives tasks now, `memory` {typical_s, worst_s, is_slow}: how long commits take."""
 
     def end_demo(self) -> None:
         """Have the demonstration give no more tasks, of a plant whose layout has `demo`."""

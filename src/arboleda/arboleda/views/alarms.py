@@ -19,6 +19,7 @@ from .view import standing, waited_for
 Alarm = dict[str, Any]
 TASK_FAILED, CELL_HELD, CELL_CLEARED = "task_failed", "cell_held", "cell_cleared"
 CELL_BLOCKED, PERSON_ASKED, PLANT_AWAY = "cell_blocked", "person_asked", "plant_away"
+MEMORY_SLOW, MEMORY_FAST = "memory_slow", "memory_fast"
 BLOCKED_S = 10.0  # a cell is blocked for so long before anybody is told: a board that boots is back by then
 NEEDS_SOMEBODY = frozenset({CellState.HELD, CellState.ABORTED, CellState.STOPPED})
 AT_WORK_AGAIN = frozenset({CellState.IDLE, CellState.EXECUTE})
@@ -81,6 +82,11 @@ def of_absence(plant: Plant, away_s: float) -> Alarm:
     if stay:
         sentence = AWAY_HELD(why=sentence, cells=stay)
     return _alarm(plant, "", PLANT_AWAY, None, None, sentence)
+
+
+def of_memory(plant: Plant, sentence: Sentence, *, is_slow: bool) -> Alarm:
+    """That commits are slow, or fast again; it is about no cell."""
+    return _alarm(plant, "", MEMORY_SLOW if is_slow else MEMORY_FAST, None, None, sentence)
 
 
 def of_cell(plant: Plant, cell: str) -> Alarm:

@@ -7,6 +7,7 @@ from typing import Any
 
 from arboleda.core.cell_states import CellState
 from arboleda.model.facts import shown
+from arboleda.model.sentence import Sentence
 from arboleda.wire.status import ERROR, OK, STALE, WARN
 
 Diagnostic = tuple[str, str, int, str, dict[str, str]]
@@ -23,6 +24,11 @@ def diagnostics(snapshot: dict[str, Any]) -> Iterator[Diagnostic]:
 def record(trouble: str) -> Diagnostic:
     """The same of the flight record; `trouble` is why it has stopped, "" while it is written."""
     return ("arboleda: record", "", WARN if trouble else OK, trouble or "written", {})
+
+
+def memory(trouble: Sentence | None) -> Diagnostic:
+    """The same of the plant's memory; `trouble` is that it is slow."""
+    return ("arboleda: memory", "", WARN if trouble else OK, str(trouble or "commits are fast"), {})
 
 
 def _robot_diagnostic(robot: dict[str, Any]) -> Diagnostic:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
 from typing import Any
@@ -19,6 +20,7 @@ from arboleda.views import alarms
 from arboleda.wire.transport import Connection, Delivery, Publication
 
 from ..alarm_options import AlarmOptions
+from .commit_pace import Pace
 from .outbox import Outbox, Receiver
 from .part import BrokerAddress
 
@@ -34,6 +36,8 @@ class AlarmsPart:
         self._page = page
         self._number = 0
         self._failed: list[TaskChanged] = []
+        self._paces: deque[Pace] = deque()  # from slow to fast and back, from another thread
+        self._slow: str | None = None  # the alarm that stands of the memory
         self._seen = -1
         self._stepped_at: float | None = None
         self._open: dict[str, tuple[str, alarms.Need]] = {}  # by cell: the alarm that stands, and its cause
@@ -55,11 +59,20 @@ class AlarmsPart:
         if task.state is TaskState.FAILED and task.request is None:
             self._failed.append(task)
 
+    def paced(self, pace: Pace) -> None:
+        """Note that commits got slow, or fast again; from any thread, told with the next step."""
+        self._paces.append(pace)
+
     def stepped(self, plant: Plant) -> None:
         """Tell what came of a step, after its commands have left."""
         before, self._stepped_at = self._stepped_at, plant.now
         if before is not None and plant.now - before > plant.away_after_s:
             self._tell(plant, alarms.of_absence(plant, plant.now - before), None)
+        while self._paces:
+            pace = self._paces.popleft()
+            alarm = alarms.of_memory(plant, pace.sentence, is_slow=pace.is_slow)
+            id = self._tell(plant, alarm, None if pace.is_slow else self._slow)
+            self._slow = id if pace.is_slow else None
         failed, self._failed = self._failed, []
         for task in failed:
             self._tell(plant, alarms.of_task(plant, task), None)

@@ -15,6 +15,7 @@ from arboleda.views.alarms import needs_in
 
 WORK_S = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1800, 3600)
 REACTION_S = (0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)
+COMMIT_S = (0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5)
 
 
 class Metrics:
@@ -51,6 +52,12 @@ class Metrics:
             buckets=REACTION_S,
             registry=registry,
         )
+        self._commits = Histogram(
+            "arboleda_commit_seconds",
+            "How long the plant waited for its memory to be on the disk, or in the database.",
+            buckets=COMMIT_S,
+            registry=registry,
+        )
         self._restarts = Counter(
             "arboleda_robot_restarts", "Boards that were seen to boot anew.", ["robot"], registry=registry
         )
@@ -80,6 +87,10 @@ class Metrics:
     def reacted(self, seconds: float) -> None:
         """Count how long commands took to leave."""
         self._reactions.observe(seconds)
+
+    def committed(self, seconds: float) -> None:
+        """Count how long a commit took."""
+        self._commits.observe(seconds)
 
     def saw(self, snapshot: dict[str, Any]) -> None:
         """Count boots and lost links since the last snapshot."""
@@ -147,6 +158,8 @@ class Metrics:
             ("zone", "state"),
             {(zone["zone"], zone["state"]): 1 for zone in zones},
         )
+        if (memory := links.get("memory")) is not None:
+            yield _rows("arboleda_memory_slow", "Whether commits are slow now.", (), {(): memory["is_slow"]})
         if (broker := links["broker"]) is not None:
             yield _rows(
                 "arboleda_broker_connected",

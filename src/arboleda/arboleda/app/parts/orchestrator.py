@@ -163,6 +163,7 @@ class Orchestrator:
         self.observers: list[Callable[[Plant], None]] = []  # told after each step; they must not wait
         self.reacted: Callable[[float], None] = lambda _seconds: None
         self.recorder: FlightRecorder | None = None
+        self.diagnoses: list[Callable[[], diagnostics.Diagnostic]] = []  # of what is no robot and no cell
         self._store = store
         self._history = history
         self._drops_waiting = drops_waiting
@@ -576,7 +577,7 @@ class Orchestrator:
             yield from self._ros.publish_view(snapshot)
             if self._ros.diagnosed:
                 recorder = [] if self.recorder is None else [diagnostics.record(self.recorder.trouble)]
-                rows = (*diagnostics.diagnostics(snapshot), *recorder)
+                rows = (*diagnostics.diagnostics(snapshot), *recorder, *(each() for each in self.diagnoses))
                 yield from self._ros.publish_diagnostics(rows)
         rows = [row for kind in ("cells", "robots", "tasks") for row in before.get(kind, ())]
         del before

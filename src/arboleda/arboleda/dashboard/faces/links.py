@@ -21,6 +21,7 @@ def face(moment: Moment) -> Face:
         "text/broker": _broker(moment),
         "text/ros": _ros(moment),
         "text/standbys": _standbys(moment),
+        "text/memory": memory(moment),
         "text/strays": _strays(moment),
         "text/demo": ["", "on" if moment.links.get("demo") else "off"],
         "list/standbys": [[each["host"], each["url"]] for each in moment.links["standbys"] if each["url"]],
@@ -51,6 +52,15 @@ def _ros(moment: Moment) -> list[str]:
 def _standbys(moment: Moment) -> list[str]:
     hosts = [each["host"] for each in moment.links["standbys"]]
     return [moment.words("links.standbys", hosts=", ".join(hosts)), "online"] if hosts else ["", ""]
+
+
+def memory(moment: Moment) -> list[str]:
+    """That commits are slow, with what that means; nothing where they are not."""
+    pace = moment.links.get("memory")
+    if not pace or not pace["is_slow"]:
+        return ["", ""]
+    typical, worst = (f"{pace[key]:.2f}" for key in ("typical_s", "worst_s"))
+    return [moment.words("links.memory_slow", typical=typical, worst=worst), "warning"]
 
 
 def _strays(moment: Moment) -> list[str]:

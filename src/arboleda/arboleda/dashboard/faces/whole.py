@@ -37,12 +37,13 @@ def face(moment: Moment) -> Face:
 
 
 def _sum(moment: Moment) -> list[str]:
-    """Who is waited for, and whether the plant ends; the worst state of a cell colours it."""
+    """Who is waited for, whether commits are slow or the plant ends; the worst state of a cell colours it."""
     states = [standing(cell) for cell in moment.snapshot["cells"]]
     ending = [moment.words("page.ending")] if moment.snapshot["ending"] else []
     people = [name for names in waited_for(moment.snapshot).values() for name in names]
     waits = [_waits(moment, people)] if people else []
-    return [" · ".join([*waits, *ending]), min(states, key=WORST.index, default="")]
+    slow = [moment.words("page.memory_slow")] if links.memory(moment)[0] else []
+    return [" · ".join([*waits, *slow, *ending]), min(states, key=WORST.index, default="")]
 
 
 def _trouble_first(moment: Moment) -> list[str]:
