@@ -205,6 +205,8 @@ class App:
 
     def stop(self) -> None:
         """Halt the robots, then end the parts in reverse order; idempotent."""
+        if self.orchestrator is not None:
+            self.orchestrator.halt()  # parts that end before it may take their time
         while self._started:
             self._started.pop().stop()
         if self._freezes:

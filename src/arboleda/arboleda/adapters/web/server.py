@@ -26,6 +26,8 @@ if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
     from ..server_tls import ServerTls
 
 START_S = 20.0
+STOP_S = 5.0  # connections have 1 s to close; an application that hangs then ends with the process
+LOG = logging.getLogger(__name__)
 SENTENCE = b"This plant speaks TLS here: its address begins with https://\n"
 SPEAKS_TLS = (
     b"HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n"
@@ -91,10 +93,12 @@ class Server:
         return int(listener.getsockname()[1])
 
     def stop(self) -> None:
-        """Close every connection and join; idempotent."""
+        """Close every connection and join, for STOP_S at most; idempotent."""
         self._server.should_exit = True
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(STOP_S)
+            if self._thread.is_alive():
+                LOG.warning("the HTTP server does not end; the plant goes on ending without it")
             self._thread = None
 
 
@@ -121,7 +125,7 @@ class _Uvicorn(uvicorn.Server):
         try:
             self.run(sockets=[listener])
         except SystemExit:  # how it says that the application did not start
-            logging.getLogger(__name__).error("the application behind HTTP did not start")
+            LOG.error("the application behind HTTP did not start")
         finally:
             self.ready.set()
 

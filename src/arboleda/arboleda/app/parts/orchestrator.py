@@ -327,9 +327,13 @@ class Orchestrator:
                 raise NotKept from None
         return found
 
+    def halt(self) -> None:
+        """Halt whatever moves, accept nothing more, and wait for nothing."""
+        self.loop.post(Shutdown(at=clock.seconds(), drops_waiting=self._drops_waiting))
+
     def stop(self) -> None:
         """Halt whatever moves and wait until the robots confirm it, at most PATIENCE_S."""
-        self.loop.post(Shutdown(at=clock.seconds(), drops_waiting=self._drops_waiting))
+        self.halt()
         if self.loop.running:
             self._at_rest.wait(PATIENCE_S)
         self.loop.stop()
