@@ -5,8 +5,8 @@ process: the boards of the 10 arms, at a mosquitto of the benchmark's own, and t
 
 - Telemetry: an arm's board reports that it has moved on; it has come through when its `status` is here, where
   it is not even unpacked. Boards are present, and every report differs from the last in all its joints.
-- Goals: a labelled `joint_goals_q`; it has come through when the board has its `juntas`. Meanwhile the plant
-  beats and the boards report twice a second, without which the bridge would send nothing.
+- Goals: a goal on `command`, as the plant gives it; it has come through when the board has its `juntas`.
+  Meanwhile the plant beats and the boards report twice a second, without which the bridge would send nothing.
 
 A rate is that of a saturated bridge: four messages of each arm are always under way, and each that comes out
 makes room for the next, so no queue overflows (what is lost all the same, the notes say). Latencies are those

@@ -16,7 +16,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
-from std_msgs.msg import Float32MultiArray, UInt32
+from std_msgs.msg import UInt32
 
 from arboleda.kinds.arm import Arm, MoveJoints
 from arboleda.model.plant_model import MotionState
@@ -89,7 +89,7 @@ class Ends:
         goal = MoveJoints(
             id=f"{PLANT_EPOCH}-{number}", robot=name, q=(math.radians(number % NUMBERS * DEG), 0.1, 0.01)
         )
-        self._voices[name].publish(convert.command_message(goal))
+        self._voices[name].publish(convert.labelled_message(self._arms[name], goal, copied=False))
 
     def _obey(self, name: str, _client: Client, _userdata: Any, message: MQTTMessage) -> None:
         self.goals.arrive(name, message.payload)
@@ -112,7 +112,8 @@ class Ends:
 
 
 def _goals_of(node: Node, arm: Arm, space: str) -> Publisher:
-    return node.create_publisher(Float32MultiArray, f"{space}{arm.name}/joint_goals_q", qos.COMMAND)
+    kind, topic = convert.ordered(arm)
+    return node.create_publisher(kind, f"{space}{topic}", qos.COMMAND)
 
 
 def _number_of_status(raw: bytes) -> int:

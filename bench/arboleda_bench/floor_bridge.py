@@ -45,7 +45,7 @@ class Voice:
         self._state = node.create_publisher(UInt8, f"{arm.name}/motion_state", qos.COMMAND)
         self._positions = node.create_publisher(JointState, joint_states_topic(arm), qos.COMMAND)
         self._piece = node.create_publisher(Bool, f"{arm.name}/piece_detected", qos.COMMAND)
-        node.create_subscription(Float32MultiArray, f"{arm.name}/joint_goals_q", self._on_goal, qos.COMMAND)
+        node.create_subscription(Float32MultiArray, f"{arm.name}/command", self._on_goal, qos.COMMAND)
         client.message_callback_add(f"{arm.mqtt}/sensores", self._on_telemetry)
 
     def beat(self) -> None:
