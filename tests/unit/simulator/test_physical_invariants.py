@@ -31,6 +31,7 @@ from arboleda.testing.plants import shipped
 from arboleda.trees import steps
 from arboleda.trees.context import Context
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
+from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
@@ -210,6 +211,7 @@ def obeyed_a_stranger(patch: Patch) -> Watch:
 def beyond_its_limits(patch: Patch) -> Watch:
     patch.setattr(ArmBody, "admits", lambda self, goal: True)
     patch.setattr("arboleda.sim.board.SILENCE_US", 60_000_000)  # of the stranger that is about to speak
+    patch.setattr(Rivals, "answer", lambda *args, **options: False)  # the bridge would halt what it begins
     watch = Watch()
     watch.say(Channel.JOINTS, JointsGoal, q=(170.0, 0.0, 0.0))
     watch.wait(5.0)

@@ -24,10 +24,10 @@ EPOCH = 1_000
 class Bench:
     """Drives a bridge and remembers what came out of it; `now` only moves where a test says so."""
 
-    def __init__(self, **declared: Any) -> None:
+    def __init__(self, *, epoch: int = EPOCH, **declared: Any) -> None:
         self.model = shipped("sis_a", **declared)
         self.now = 100.0
-        self.bridge = Bridge(self.model, epoch=EPOCH, now=self.now)
+        self.bridge = Bridge(self.model, epoch=epoch, now=self.now)
         self._beaten = False
         self._told: dict[str, Telemetry] = {}
         self.start = self.step()
@@ -100,6 +100,12 @@ def sent(messages: list[Message]) -> list[tuple[str, Payload]]:
 def bench() -> Bench:
     """A bridge that has just started: not connected, nothing heard."""
     return Bench()
+
+
+@pytest.fixture(scope="session")
+def make_bench() -> type[Bench]:
+    """`make_bench(epoch=2000)`: another bridge that has just started."""
+    return Bench
 
 
 @pytest.fixture

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from arboleda.kinds.arm import SetEffector
-from arboleda.model.plant_model import Evidence
+from arboleda.kinds.arm import MoveJoints, SetEffector
+from arboleda.model.commands import Stop, StopMode
+from arboleda.model.messages import Heartbeat
+from arboleda.model.plant_model import Evidence, MotionState
+from arboleda.wire.hop import FromPlant
 from arboleda.wire.payloads import Beat, EffectorGoal
 
 EPOCH = 1_000
@@ -36,21 +39,27 @@ def test_one_board_raises_only_its_own_epoca(bench, reports) -> None:
     assert reports(bench.tell("rm_sis_a"))[0].epoch == EPOCH
 
 
-def test_viejo_rejects_the_command_and_raises_the_epoca(linked, sent, reports) -> None:
+def test_viejo_rejects_the_command_and_the_next_one_is_above(linked, sent, reports) -> None:
     linked.order(grip(1))
     (report,) = reports(linked.tell(ack_epoch=EPOCH + 9, ack=4, refusal="viejo", refused_seq=1))
-    assert (report.rejected, report.refusal, report.epoch) == ("7-1", "viejo", EPOCH + 10)
+    assert (report.rejected, report.refusal, report.epoch) == ("7-1", "viejo", EPOCH)
     assert sent(linked.order(grip(2))) == [
         ("ra_1/efector", EffectorGoal(on=True, seq=2, epoch=EPOCH + 10, heard=2))
     ]
 
 
-def test_a_second_viejo_is_only_reported(linked, reports) -> None:
-    linked.order(grip(1))
-    linked.tell(ack_epoch=EPOCH + 9, ack=4, refusal="viejo", refused_seq=1)
-    linked.order(grip(2))
-    (report,) = reports(linked.tell(ack_epoch=EPOCH + 20, ack=9, refusal="viejo", refused_seq=2))
-    assert (report.rejected, report.refusal, report.epoch) == ("7-2", "viejo", EPOCH + 10)
+def test_a_board_that_takes_ever_higher_numbers_is_followed_three_times_a_minute(linked, sent) -> None:
+    given = []
+    for turn in range(1, 7):
+        linked.wait(1.0)
+        linked.tell(ack_epoch=EPOCH + 100 * turn, ack=4)
+        ((_, goal),) = sent(linked.order(grip(turn)))
+        given.append(goal.epoch)
+    assert given == [EPOCH + number for number in (101, 201, 301, 301, 301, 301)]
+    linked.wait(60.0)
+    linked.tell(ack_epoch=EPOCH + 1000, ack=4)
+    ((_, goal),) = sent(linked.order(grip(7)))
+    assert goal.epoch == EPOCH + 1001
 
 
 def test_numbers_given_before_the_epoca_rose_mean_nothing_after(linked, reports) -> None:
@@ -117,24 +126,90 @@ def test_a_bridge_that_starts_begins_above_what_has_beaten(bench, sent) -> None:
     assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 6))]
 
 
-def test_a_bridge_that_has_led_in_silence_does_not_rise_above_the_next(bench, sent) -> None:
+def test_a_bridge_that_leads_is_numbered_above_the_next_once_its_plant_still_beats(
+    bench, sent, reports
+) -> None:
     bench.connect()
     bench.tell(least_epoch=EPOCH)
-    bench.tell(least_epoch=EPOCH + 9)
-    assert sent(bench.heartbeat()) == []
-    assert sent(bench.order(grip(1))) == [
-        ("ra_1/efector", EffectorGoal(on=True, seq=1, epoch=EPOCH, heard=2))
-    ]
+    out = bench.tell(least_epoch=EPOCH + 9)
+    assert sent(out) == []
+    (report,) = reports(out)
+    assert "another bridge has come to its board (epoca 1009)" in str(report.foreign)
+    assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 10))]
+    ((_, goal),) = sent(bench.order(grip(1)))
+    assert goal.epoch == EPOCH + 10
 
 
-def test_a_bridge_that_was_superseded_hears_it_and_does_not_rise_above_the_next(
-    linked, sent, reports
-) -> None:
+def test_a_bridge_that_was_superseded_and_whose_plant_is_silent_does_not_rise(linked, sent, reports) -> None:
     linked.order(grip(1))
     linked.tell(ack_epoch=EPOCH, ack=1)
     linked.order(grip(2))
     (report,) = reports(linked.tell(least_epoch=EPOCH + 9, refusal="viejo", refused_seq=2))
     assert (report.rejected, report.refusal, report.epoch) == ("7-2", "viejo", EPOCH)
-    assert sent(linked.order(grip(3))) == [
-        ("ra_1/efector", EffectorGoal(on=True, seq=3, epoch=EPOCH, heard=3))
-    ]
+    assert "another bridge has come" in str(report.foreign)
+    assert sent(linked.wait(3.0)) == []
+
+
+def test_a_word_of_the_plant_from_before_the_other_bridge_came_proves_nothing(bench, sent) -> None:
+    bench.connect()
+    bench.tell(least_epoch=EPOCH)
+    early = bench.now
+    bench.wait(1.0)
+    bench.tell(least_epoch=EPOCH + 9)
+    assert sent(bench.step(FromPlant(at=early, message=Heartbeat(epoch=7)))) == []
+
+
+def test_the_bridge_that_came_later_yields_to_the_one_that_rose_above_it(bench, sent, reports) -> None:
+    bench.connect()
+    bench.tell(least_epoch=None)
+    assert sent(bench.heartbeat()) == [FENCE]
+    bench.tell(least_epoch=EPOCH)
+    (report,) = reports(bench.tell(least_epoch=EPOCH + 1))
+    assert "another bridge was at its board before this one (epoca 1001 now)" in str(report.foreign)
+    assert sent(bench.heartbeat()) == []
+    out = bench.order(grip(1))
+    (report,) = reports(out)
+    assert (sent(out), report.rejected, report.refusal) == ([], "7-1", "other_bridge")
+    halted = bench.order(Stop(id="7-2", robot="ra1", mode=StopMode.HALT))
+    assert [address for address, _ in sent(halted)] == ["ra_1/paro"]
+
+
+def test_a_bridge_that_has_long_been_there_does_not_yield(bench, sent) -> None:
+    bench.connect()
+    bench.tell(least_epoch=EPOCH)
+    for _ in range(11):
+        bench.wait(1.0)
+        bench.tell(least_epoch=EPOCH)
+    bench.tell(least_epoch=EPOCH + 1)
+    assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH + 2))]
+
+
+def test_of_two_bridges_the_one_that_was_there_first_goes_on(bench, make_bench, sent) -> None:
+    """Each hears what the other has the board say, for a minute."""
+    first, second, least = bench, make_bench(epoch=EPOCH + 40), None
+    for turn in range(240):
+        for each in (first, second)[: 1 if turn < 60 else 2]:
+            if turn in (0, 60):
+                each.connect()
+            each.wait(0.25)
+            each.tell(least_epoch=least)
+            beats = [goal.epoch for _, goal in sent(each.heartbeat()) if isinstance(goal, Beat)]
+            least = max([least or 0, *beats]) or None
+    assert least == EPOCH + 41
+    ((_, goal),) = sent(first.order(grip(1)))
+    assert goal.epoch == EPOCH + 41
+    assert sent(second.order(grip(1))) == []
+
+
+def test_work_under_way_is_ended_before_the_bridge_rises_above_another(bench, sent, reports) -> None:
+    bench.connect()
+    bench.tell(least_epoch=EPOCH)
+    bench.order(MoveJoints(id="7-1", robot="ra1", q=(0.5, 0.0, 0.0)))
+    bench.tell(ack_epoch=EPOCH, ack=1, least_epoch=EPOCH + 9, state=MotionState.MOVING)
+    assert sent(bench.heartbeat()) == [("ra_1/latido", Beat(epoch=EPOCH))]
+    (report,) = reports(bench.tell(ack_epoch=EPOCH, ack=1, done=1, least_epoch=EPOCH + 9))
+    assert (report.done, report.epoch) == ("7-1", EPOCH)
+    ((_, goal),) = sent(bench.order(grip(2)))
+    assert (goal.seq, goal.epoch) == (2, EPOCH + 10)
+    (report,) = reports(bench.tell(ack_epoch=EPOCH + 10, ack=2))
+    assert (report.accepted, report.epoch) == ("7-2", EPOCH)

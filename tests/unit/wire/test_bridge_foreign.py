@@ -247,3 +247,24 @@ def test_a_path_that_begins_where_its_robot_stands_or_next_to_it_is_no_news(begi
     mobile = bench.model.robots["rm_sis_a"]
     bench.tell(mobile.mqtt, node=4)
     assert news(others(bench, FollowPath(id="", robot="rm_sis_a", nodes=(begins,)))) == []
+
+
+@pytest.mark.parametrize("commanded_before", [False, True])
+def test_a_number_that_the_plant_never_gave_halts_the_robot_and_the_next_one_is_above_it(
+    beaten, sent, reports, commanded_before: bool
+) -> None:
+    if commanded_before:
+        beaten.order(replace(MOVE, id="7-1"))
+    out = beaten.tell(ack_epoch=EPOCH, ack=9999, state=MotionState.MOVING)
+    assert news(out) == [f"ra1: its board took a command of another MQTT client (epoca {EPOCH}, seq 9999)"]
+    assert reports(out)[-1].foreign_obeyed == 1
+    (halt,) = [payload for address, payload in sent(beaten.heartbeat()) if address == "ra_1/paro"]
+    assert isinstance(halt, StopGoal)
+    assert (halt.mode, halt.epoch) == (StopMode.HALT, EPOCH + 1)
+    again = dict(sent(beaten.order(replace(MOVE, id="7-2"))))
+    assert again["ra_1/juntas"].epoch == EPOCH + 1
+
+
+def test_without_a_plant_nobody_is_halted_for_what_a_board_took(linked, sent) -> None:
+    linked.tell(ack_epoch=EPOCH, ack=9999, state=MotionState.MOVING)
+    assert sent(linked.wait(1.0)) == []

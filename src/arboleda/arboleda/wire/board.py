@@ -15,13 +15,14 @@ from arboleda.model.sentence import NOTHING, Phrase, Sentence
 from . import goals, rejections
 from .copies import Copies
 from .forms import form_of
-from .hop import shown
+from .hop import is_stop, shown
 from .labels import Labels
 from .link import BoardLink, Heard
 from .motion import OpenMotion
 from .payloads import Beat, Payload, Presence, Telemetry, decode, encode, read_angles
-from .rejections import ForeignCommand, Rejection
+from .rejections import OTHER_BRIDGE, ForeignCommand, Rejection
 from .repeats import Words
+from .rivals import News, Rivals
 from .topics import Channel, topic
 from .transport import Delivery, Publication
 from .units import from_wire
@@ -58,6 +59,7 @@ class Board:
         self.robot = robot
         self.labels = Labels(epoch)
         self.link = BoardLink(stale_after_s if supervised else None)
+        self.rivals = Rivals()
         self.copies = Copies()
         self.counters = Counters()
         self._foreign = Foreign()
@@ -83,6 +85,7 @@ class Board:
     def lose(self, at: float) -> list[Message]:
         """The link is gone, and with it whatever was open; nothing is sent again."""
         self._motion = None
+        self.rivals.lose()
         return [self.no_link(at)] if self.link.lose() else []
 
     def no_link(self, at: float) -> Report:
@@ -97,6 +100,8 @@ class Board:
         word = self._refusal(command)
         if word:
             return self.refuse(at, command, word, sender)
+        goes_on = self.in_motion and not isinstance(command, Work | Stop)  # those end what is under way
+        self.rivals.answer(at, self.labels, in_motion=goes_on)
         return [*self._passed_over(at, command), *self._send(at, command, sender)]
 
     def _passed_over(self, at: float, command: Command) -> list[Message]:
@@ -151,20 +156,28 @@ class Board:
         return self._send(at, Stop(id="", robot=self.robot.name, mode=StopMode.HALT))
 
     def hear_plant(self, at: float, epoch: int) -> list[Message]:
-        """A heartbeat: a plant that was not heard before is told so, with what the board said last."""
+        """A heartbeat: others are answered, a plant that is new is told so, with what the board said last."""
+        answer = self._answer_rivals(at)
         if epoch == self._plant:
-            return []
+            return answer
         self._plant = epoch
         self._last = self._last.again(at, plant=epoch) if self._last else None
-        return [self._last] if self._last and self.link.up else []
+        return [*answer, self._last] if self._last and self.link.up else answer
+
+    def _answer_rivals(self, at: float) -> list[Message]:
+        """Whatever moves at the word of somebody else is halted, under a number above theirs."""
+        if not self.link.up or not self.rivals.answer(at, self.labels, in_motion=self.in_motion):
+            return []
+        halt = Stop(id="", robot=self.robot.name, mode=StopMode.HALT)
+        return self._send(at, halt) if self.robot.has_stop else []
 
     def beat(self) -> Publication:
         """`latido`: who commands this board is alive."""
-        return _beat(self.robot.mqtt, self.labels.epoch)
+        return _beat(self.robot.mqtt, self.labels.beat())
 
     def fence(self) -> list[Message]:
         """A beat for a board that would still take commands of who commanded before this bridge."""
-        numbered = self.robot.evidence is Evidence.IDS
+        numbered = self.robot.evidence is Evidence.IDS and not self.rivals.yielded
         return [self.beat()] if numbered and self.link.up and not self.labels.fenced else []
 
     def deliver(self, delivery: Delivery, channel: Channel) -> list[Message]:
@@ -252,12 +265,18 @@ class Board:
             out.append(rejection)
             if not issued.command.id:  # the plant counts those of its own
                 self._count(rejection.sentence)
-        if self.labels.foreign is not None:
-            epoch, seq = self.labels.foreign
-            sentence = rejections.taken(self.robot, epoch, seq)
+        if (sentence := self._of_rivals(at)) is not None:
             self._count_foreign(sentence, refused=False)
             out.append(ForeignCommand(at=at, robot=self.robot.name, sentence=sentence))
         return out
+
+    def _of_rivals(self, at: float) -> Sentence | None:
+        news = self.rivals.hear(at, self.labels)
+        if news is News.TAKEN and self.labels.foreign is not None:
+            return rejections.taken(self.robot, *self.labels.foreign)
+        if news is None or self.labels.beaten_by is None:
+            return None
+        return rejections.beaten(self.robot, self.labels.beaten_by, yielded=news is News.YIELDED)
 
     def _given_up_before(self, at: float) -> list[Message]:
         """A report of each command that the board has newly given up, but for the last, which all tell."""
@@ -283,6 +302,8 @@ class Board:
     def _refusal(self, command: Command) -> str | None:
         if not self.link.up:
             return "no_link"
+        if self.rivals.yielded and not is_stop(command):
+            return OTHER_BRIDGE
         return goals.refusal(self.robot, command) or (
             "paro" if self._latched and needs_clear(command) else None
         )
@@ -352,7 +373,7 @@ class Board:
         return Report(
             at=at,
             robot=self.robot.name,
-            epoch=self.labels.epoch,
+            epoch=self.labels.start,
             plant=self._plant,
             boot_id=self._boot_id,
             rejected=rejected,

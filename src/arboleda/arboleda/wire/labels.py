@@ -20,9 +20,10 @@ REMEMBERED = 256  # commands per board; an open one is never that old
 
 @dataclass(frozen=True, kw_only=True)
 class Issued:
-    """A command that was given a number; `sender` names who gave it where it has no id."""
+    """A command that was given a number under `epoch`; `sender` names who gave it where it has no id."""
 
     command: Command
+    epoch: int
     sender: str = ""
 
 
@@ -34,10 +35,11 @@ class Labels:
     `answered` is the last query that a device answered, with the answer; `failed` the last command that it
     gave up, with its word, and `failed_before` those that it names newly beside that one.
     `foreign` is the (epoca, seq) that it has accepted in it from nobody that we know, and not before.
+    `epoch` is under which commands are given now, `start` that of this bridge's begin, which stays.
     """
 
     def __init__(self, epoch: int) -> None:
-        self.epoch = epoch
+        self.epoch = self.start = epoch
         self.accepted: str | None = None
         self.done: str | None = None
         self.rejected: tuple[str, str] | None = None
@@ -51,9 +53,8 @@ class Labels:
         self._seq = 0
         self._issued: OrderedDict[int, Issued] = OrderedDict()
         self._known: OrderedDict[str, None] = OrderedDict()
-        self._spoken = False
+        self._spoken = False  # whether the board may have heard of this bridge
         self._led = False  # whether the board has said that this bridge is the newest that it hears
-        self._raised = False
         self._heard_refusal: tuple[int | None, int | None, str | None] | None = None
         self._heard_failures: tuple[tuple[int, str], ...] = ()
 
@@ -61,6 +62,21 @@ class Labels:
     def fenced(self) -> bool:
         """Whether the board has said that it takes nothing older than what comes from here."""
         return self._least >= self.epoch
+
+    @property
+    def leads(self) -> bool:
+        """Whether the board has said that this bridge is the newest that it hears, and says so still."""
+        return self._led and self._least <= self.epoch
+
+    @property
+    def beaten_by(self) -> int | None:
+        """The epoch of another one that has come to the board after this bridge, which is refused since."""
+        known = self._led or self._spoken
+        return self._least if known and self._least > self.epoch else None
+
+    def rise(self) -> None:
+        """Give what comes next a number above all that the board has heard."""
+        self.epoch = min(max(self._least, self.epoch) + 1, UINT32)
 
     def repeated(self, command_id: str) -> bool:
         """Whether this id came before; it counts as known from now on. Unlabelled ones never repeat."""
@@ -70,11 +86,16 @@ class Labels:
             _remember(self._known, command_id, None)
         return False
 
+    def beat(self) -> int:
+        """The epoch of a beat that leaves."""
+        self._spoken = True
+        return self.epoch
+
     def issue(self, command: Command, sender: str = "") -> int:
         """The next seq, given to this command."""
         self._seq += 1
         self._spoken = True
-        _remember(self._issued, self._seq, Issued(command=command, sender=sender))
+        _remember(self._issued, self._seq, Issued(command=command, epoch=self.epoch, sender=sender))
         return self._seq
 
     def refuse(self, command_id: str, word: str) -> None:
@@ -95,30 +116,31 @@ class Labels:
         self._least = max(acknowledged, -1 if said.least_epoch is None else said.least_epoch)
         begins = not self._spoken and not self._led  # later it is another one that has come after this bridge
         if begins and (acknowledged >= self.epoch or self._least > self.epoch):
-            self._raise_above(self._least)
+            self.rise()
+            self.start = self.epoch
         self._led = self._led or self._least == self.epoch
-        self.foreign = self._strange(said)
+        strange = self._strange(said)
+        self.foreign = None if begins else strange
         refused = self._refused(said)
-        ours = said.ack_epoch == self.epoch
-        self.accepted = self._name(said.ack) if ours else None
-        self.done = self._name(said.done) if ours else None
-        done = said.done if ours else None
-        self._answered(said, ours=ours)
-        failed = self._given_up(said, ours=ours)
+        self.accepted = self._name(said, said.ack)
+        self.done = self._name(said, said.done)
+        done = said.done if self._is_ours(said, said.done) else None
+        self._answered(said)
+        failed = self._given_up(said)
         return frozenset([seq for seq in (done, refused, *failed) if seq is not None])
 
-    def _answered(self, said: Telemetry, *, ours: bool) -> None:
-        query = self._name(said.answered_seq) if ours else None
+    def _answered(self, said: Telemetry) -> None:
+        query = self._name(said, said.answered_seq)
         self.answered = None if query is None or said.answer is None else (query, said.answer)
 
-    def _given_up(self, said: Telemetry, *, ours: bool) -> list[int]:
+    def _given_up(self, said: Telemetry) -> list[int]:
         """The seqs of the commands that the board gave up; it repeats the last few in every message."""
-        failures = said.failures if ours and said.failures else ()
-        names = [(self._name(seq), word) for seq, word in failures]
+        failures = tuple(each for each in said.failures or () if self._is_ours(said, each[0]))
+        names = [(self._name(said, seq), word) for seq, word in failures]
         known = [(name, word) for name, word in names if name is not None]
         self.failed = known[-1] if known else None
         before = set(self._heard_failures)
-        news = [(self._name(seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
+        news = [(self._name(said, seq), word) for seq, word in failures[:-1] if (seq, word) not in before]
         self.failed_before = [(name, word) for name, word in news if name is not None]
         self._heard_failures = failures
         return [seq for seq, _ in failures]
@@ -126,11 +148,11 @@ class Labels:
     def _strange(self, said: Telemetry) -> tuple[int, int] | None:
         """A number above ours that the board newly accepted: another MQTT client has commanded it.
 
-        Before we have given it a command, it may be one of the bridge before us, whose clock was ahead.
+        Before it has heard of us, it may be one of the bridge before us, whose clock was ahead.
         """
         accepted = (said.ack_epoch, said.ack)
         before, self._accepted = self._accepted, accepted
-        if not self._spoken or said.ack_epoch is None or said.ack is None or accepted == before:
+        if said.ack_epoch is None or said.ack is None or accepted == before:
             return None
         above = (said.ack_epoch, said.ack) > (self.epoch, self._seq)
         return (said.ack_epoch, said.ack) if above else None
@@ -147,30 +169,28 @@ class Labels:
         issued = self._issued[said.refused_seq]
         self.refuse(issued.command.id, said.refusal)
         self.objection = (issued, said.refusal)
-        if said.ack_epoch is not None and said.ack_epoch > self.epoch and not self._raised:
-            self._raised = True
-            self._raise_above(said.ack_epoch)
         return said.refused_seq
 
     def _concerns_us(self, said: Telemetry, refused_seq: int) -> bool:
-        if refused_seq not in self._issued:
+        issued = self._issued.get(refused_seq)
+        if issued is None:
             return False
         if said.refusal != "viejo":
-            return said.ack_epoch == self.epoch
-        if self._least > self.epoch:
+            return said.ack_epoch == issued.epoch
+        if self._least > issued.epoch:
             return True
-        if said.ack_epoch != self.epoch:
-            return said.ack_epoch is not None and said.ack_epoch > self.epoch
+        if said.ack_epoch != issued.epoch:
+            return said.ack_epoch is not None and said.ack_epoch > issued.epoch
         # equal: it came twice (QoS 1), and the first one counts; above: a stranger's, ours is on its way
         return said.ack is not None and refused_seq < said.ack
 
-    def _raise_above(self, epoch: int) -> None:
-        self.epoch = min(epoch + 1, UINT32)
-        self._issued.clear()
-
-    def _name(self, seq: int | None) -> str | None:
+    def _is_ours(self, said: Telemetry, seq: int | None) -> bool:
+        """Whether a number that the board says is one that it was given from here."""
         issued = self._issued.get(seq) if seq is not None else None
-        return issued.command.id or None if issued is not None else None
+        return issued is not None and issued.epoch == said.ack_epoch
+
+    def _name(self, said: Telemetry, seq: int | None) -> str | None:
+        return self._issued[seq].command.id or None if seq is not None and self._is_ours(said, seq) else None
 
 
 def _remember(table: OrderedDict[K, V], key: K, value: V) -> None:

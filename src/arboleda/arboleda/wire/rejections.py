@@ -12,6 +12,7 @@ from .forms import BEYOND, ELSEWHERE, NODES, ON_THE_GRID, UNDONE, form_of
 from .hop import shown
 
 FOREIGN = "foreign"  # the word that refuses a command of another node
+OTHER_BRIDGE = "other_bridge"  # the one that refuses what is for the board of another bridge
 SOMEBODY = Phrase("foreign.somebody", "another node")
 REJECTED = Phrase("rejection", "{robot}: {command} was refused ({word}): {why}")
 REJECTED_OF = Phrase("rejection_of", "{robot}: {command} of {sender} was refused ({word}): {why}")
@@ -22,11 +23,25 @@ TAKEN = Phrase(
     "foreign.taken",
     "{robot}: its board took a command of another MQTT client (epoca {epoch}, seq {seq})",
 )
+BEATEN = Phrase(
+    "foreign.beaten",
+    "{robot}: another bridge has come to its board (epoca {epoch}); what this plant commands next is "
+    "numbered above it. End the other one",
+)
+YIELDED = Phrase(
+    "foreign.yielded",
+    "{robot}: another bridge was at its board before this one (epoca {epoch} now), which commands it no "
+    "more. End the other one and start this one again, or give this plant a broker of its own",
+)
 WHY = {
     "no_link": Phrase("why.no_link", "its board is not heard"),
     "no_stop": Phrase("why.no_stop", "the plant file says that it has no stop"),
     "no_home": Phrase("why.no_home", "it has no homing routine"),
     "old_epoch": Phrase("why.old_epoch", "it is of another start of the plant than the one that is heard"),
+    OTHER_BRIDGE: Phrase(
+        "why.other_bridge",
+        "another bridge was at its board before this one; end it, then start this one again",
+    ),
     FOREIGN: Phrase("why.foreign", "a plant commands this robot (foreign_commands: refuse)"),
     "formato": Phrase("why.formato", "it makes no sense for this robot"),
     "limite": Phrase("why.limite", "it is beyond a limit of the robot"),
@@ -100,6 +115,11 @@ def taken(robot: Robot, epoch: int, seq: int) -> Sentence:
     return TAKEN(robot=robot.name, epoch=epoch, seq=seq)
 
 
+def beaten(robot: Robot, epoch: int, *, yielded: bool) -> Sentence:
+    """What is said of another bridge that beats the same board."""
+    return (YIELDED if yielded else BEATEN)(robot=robot.name, epoch=epoch)
+
+
 def _why(robot: Robot, command: Command, word: str, *, by_board: bool) -> Sentence | str:
     more = form_of(robot).why(robot, command, word, by_board)
     return more or (WHY[word]() if word in WHY else word)
@@ -115,6 +135,8 @@ SAID_OF_OTHERS = {
             OBEYED,
             OVERHEARD,
             TAKEN,
+            BEATEN,
+            YIELDED,
             PASSED_OVER,
             ELSEWHERE,
             ON_THE_GRID,

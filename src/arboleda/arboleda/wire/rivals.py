@@ -1,0 +1,72 @@
+"""Others who command one board beside this bridge, and which of two bridges goes on.
+
+MQTT carries no sender: another one shows only in the numbers that the board says it has taken. The bridge
+that was there first rises above them, the one that came later yields.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from enum import Enum
+
+from .labels import Labels
+
+NEW_S = 10.0  # a bridge that has led its board for less is the one that came later
+MOST, WITHIN_S = 3, 60.0  # rises: a board that says what is not so would have it rise without end
+
+
+class News(Enum):
+    """What a board has newly shown of others."""
+
+    BEATEN = "beaten"  # another bridge beats with a higher number
+    YIELDED = "yielded"  # it was there before this one, which commands the board no more
+    TAKEN = "taken"  # it took a command that nobody gave from here
+
+
+class Rivals:
+    """`yielded`: this bridge leaves the board to another one, until it is started again."""
+
+    def __init__(self) -> None:
+        self.yielded = False
+        self._led_since: float | None = None
+        self._noticed_at: float | None = None  # until it is answered
+        self._beaten_by: int | None = None
+        self._moves = False  # whether the board may be doing what somebody else commanded
+        self._risen: deque[float] = deque(maxlen=MOST)
+
+    def lose(self) -> None:
+        """Who was away does not know who was there first."""
+        self._led_since = None
+
+    def hear(self, at: float, labels: Labels) -> News | None:
+        """What telemetry that `labels` has taken over shows newly."""
+        known, self._beaten_by = self._beaten_by, labels.beaten_by
+        if labels.leads and self._led_since is None:
+            self._led_since = at
+        if labels.foreign is not None:
+            self._noticed_at, self._moves = at, True
+            return News.TAKEN
+        if self._beaten_by in (None, known) or self.yielded:
+            return None
+        self._noticed_at = at
+        self.yielded = self._beaten_by == labels.epoch + 1 and self._is_new(at)
+        return News.YIELDED if self.yielded else News.BEATEN
+
+    def answer(self, at: float, labels: Labels, *, in_motion: bool) -> bool:
+        """Rise, where a word of the plant, no older than what was noticed, shows that it still commands;
+        whether the board is to be halted then.
+
+        Not while a motion goes on that the board would end without beats of its own epoch.
+        """
+        noticed, moves = self._noticed_at, self._moves
+        if noticed is None or at < noticed or self.yielded or (in_motion and not moves):
+            return False
+        self._noticed_at, self._moves = None, False
+        if len(self._risen) == MOST and at < self._risen[0] + WITHIN_S:
+            return False
+        self._risen.append(at)
+        labels.rise()
+        return moves
+
+    def _is_new(self, at: float) -> bool:
+        return self._led_since is None or at < self._led_since + NEW_S
