@@ -179,6 +179,84 @@ def test_an_id_on_a_plain_topic_makes_no_command_of_the_plant(pair, links):
     assert event.sender
 
 
+DONE = Report(at=0.0, robot="ra1", state=MotionState.STOPPED, plant=7, epoch=1000, accepted="7-1", done="7-1")
+MOVING = replace(DONE, state=MotionState.MOVING, done=None)
+
+
+def reported(side: Side) -> list[Report]:
+    return [event for event in side.events if isinstance(event, Report) and event.robot == "ra1"]
+
+
+def status_of(report: Report) -> DiagnosticStatus:
+    plain = to_status(PLANT.robots["ra1"], report)
+    return statuses.diagnostic(plain.name, plain.hardware_id, plain.level, plain.message, plain.values)
+
+
+def contest(pair) -> str:
+    """What is told of a stranger who publishes what a robot reports, while its bridge goes on."""
+
+    def told() -> list[Interference]:
+        pair.bridge.port.send(MOVING)
+        return [event for event in pair.orchestrator.events if isinstance(event, Interference)]
+
+    return str(eventually(told)[0].sentence)
+
+
+def test_while_a_stranger_publishes_what_a_robot_reports_nothing_of_that_is_believed(pair, links):
+    plant = pair.orchestrator
+    pair.bridge.port.send(MOVING)
+    eventually(lambda: any(each.state is MotionState.MOVING for each in reported(plant)))
+    stranger = Stranger(links(), "forger")
+    stranger.say("/ra1/status", status_of(DONE))
+    assert contest(pair) == (
+        "ra1: more than one node publishes on /ra1/status (/forger and /mqtt_bridge); nothing that it "
+        "reports is believed until one is left"
+    )
+    for _ in range(20):
+        stranger.say("/ra1/status", status_of(DONE))
+        pair.bridge.port.send(MOVING)
+    time.sleep(0.3)
+    last = reported(plant)[-1]
+    assert (last.state, str(last.lost)) == (MotionState.NO_LINK, contest(pair))
+    assert [each.done for each in reported(plant)] == [None] * len(reported(plant))
+    stranger.node.destroy_node()
+
+    def is_back() -> bool:
+        pair.bridge.port.send(MOVING)
+        return reported(plant)[-1].state is MotionState.MOVING
+
+    eventually(is_back)
+    assert [each.done for each in reported(plant)] == [None] * len(reported(plant))
+
+
+def test_what_a_stranger_has_left_who_is_gone_is_not_believed_either(pair, links):
+    plant = pair.orchestrator
+    pair.bridge.port.send(MOVING)
+    eventually(lambda: reported(plant))
+    link = links()
+    node = link.node("forger")
+    link.start()
+    publisher = node.create_publisher(DiagnosticStatus, "/ra1/status", 10)
+    eventually(publisher.get_subscription_count)
+    publisher.publish(status_of(DONE))
+    node.destroy_publisher(publisher)
+    assert "more than one node publishes on /ra1/status" in contest(pair)
+    assert [each.done for each in reported(plant)] == [None] * len(reported(plant))
+
+
+def test_a_bridge_that_was_started_again_is_believed_beside_the_end_of_the_last_one(pair, links):
+    plant = pair.orchestrator
+    again = Side(links(), "bridge", PLANT)
+    eventually(again.port._voices["ra1"].status.get_subscription_count)
+
+    def is_heard() -> bool:
+        again.port.send(DONE)
+        return any(each.done == "7-1" for each in reported(plant))
+
+    eventually(is_heard)
+    assert not [event for event in plant.events if isinstance(event, Interference)]
+
+
 def test_who_listens_beside_the_bridge_hears_copies(pair, links):
     person = Stranger(links(), "person")
     goals = person.hear(Float32MultiArray, "/ra1/joint_goals_q")
@@ -676,7 +754,8 @@ def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
     side.port.check_alone(0.1)
     assert side.port.health().errors == ()
     diagnostics = Stranger(links(), "screen").hear(DiagnosticArray, "/diagnostics")
-    Stranger(links(), "intruder").node.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
+    intruder = Stranger(links(), "intruder").node
+    intruder.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
     sentence = "another node commands /rm_sis_a/stop_cmd: /intruder"
     eventually(lambda: side.port.health().errors == (sentence,))
     eventually(lambda: any(message.status[0].message == sentence for message in diagnostics))

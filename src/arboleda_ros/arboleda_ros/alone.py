@@ -14,7 +14,7 @@ _POLL_S = 0.02
 # Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
 DISCOVERY_S = 3.2
 _NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
-_UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
+UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
 _LOOKED_AT = 5  # topics in one look: each takes as long as the whole graph is large
 _ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
 
@@ -102,11 +102,11 @@ def _intrusion(name: str, topics: list[str]) -> str:
 
 
 def _named(publishers: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    return [(topic, name) for topic, name in publishers if name != _UNNAMED]
+    return [(topic, name) for topic, name in publishers if name != UNNAMED]
 
 
 def full_name(info: Any) -> str:
     """The name of the node that an endpoint belongs to, with its namespace."""
     if "_UNKNOWN_" in info.node_name:
-        return _UNNAMED
+        return UNNAMED
     return plain(f"{info.node_namespace.rstrip('/')}/{info.node_name}")  # whoever joins DDS chooses it

@@ -45,6 +45,7 @@ from .diagnostics import Diagnostic, Diagnostics
 from .overhear import OwnTopic
 from .port import NAMED, Port
 from .senders import Senders
+from .speakers import Speakers
 from .verbs import VerbServices
 
 if TYPE_CHECKING:  # they are there only where the types of their messages are built
@@ -228,23 +229,24 @@ class OrchestratorPort(Port):
             self._listen(convert.message_type(kind), f"{robot.name}/{PLAIN[kind]}", overhear, qos.BEST_EFFORT)
         if isinstance(robot, Arm):
             self._listen(UInt8, f"{robot.name}/start", partial(self._on_trigger, robot), qos.COMMAND)
+        speakers = Speakers(self._node, robot.name, self._clock, self._on_event)
         tells_facts = isinstance(robot, Device) and robot.evidence is not Evidence.STATE
         if robot.link is Link.MQTT or robot.evidence is Evidence.IDS or tells_facts:
             ear = statuses.Ear(robot, self._clock, self._on_event)
             topic = f"{robot.name}/status"
             if robot.link is Link.ROS:
-                self._listen_as_offered(DiagnosticStatus, topic, ear, raw=True)
+                self._listen_as_offered(DiagnosticStatus, topic, ear, raw=True, speakers=speakers)
             else:
-                self._listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True)
+                self._listen(DiagnosticStatus, topic, ear, qos.COMMAND, raw=True, speakers=speakers)
             return
         on_state = self._reporting(convert.state_report, robot)
-        self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state)
+        self._listen_as_offered(UInt8, f"{robot.name}/motion_state", on_state, speakers=speakers)
         if robot.evidence is Evidence.JOINTS:
             on_joints = self._reporting(convert.joints_report, robot)
-            self._listen(JointState, joint_states_topic(robot), on_joints, qos.SENSOR)
+            self._listen(JointState, joint_states_topic(robot), on_joints, qos.SENSOR, speakers=speakers)
         if isinstance(robot, Arm):
             on_piece = self._reporting(_piece_report, robot)
-            self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR)
+            self._listen(Bool, f"{robot.name}/piece_detected", on_piece, qos.SENSOR, speakers=speakers)
 
     def _reporting(self, read: Callable[[float, Any, Any], Report], robot: Robot) -> Callable[[Any], None]:
         return lambda message: self._on_event(read(self._clock(), robot, message))

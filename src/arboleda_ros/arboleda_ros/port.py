@@ -21,6 +21,7 @@ from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses
 from .alone import DISCOVERY_S, Alone
+from .speakers import Speakers
 
 NAMED = "arboleda: "  # how the names of all our statuses begin
 _DIAGNOSTICS_S = 1.0
@@ -102,21 +103,39 @@ class Port:
         profile: QoSProfile,
         *,
         raw: bool = False,
+        speakers: Speakers | None = None,
     ) -> None:
-        """Have `handle` called with each message, `raw` ones as bytes."""
-        events = qos.subscription_events(lambda policy: self._incompatible(topic, "publisher", policy))
-        self._node.create_subscription(
-            kind, topic, self._guarded(topic, handle), profile, event_callbacks=events, raw=raw
+        """Have `handle` called with each message, `raw` ones as bytes, and with `speakers` only with those
+        that count."""
+        handle, on_match = self._spoken(topic, handle, speakers)
+        events = qos.subscription_events(
+            lambda policy: self._incompatible(topic, "publisher", policy), on_match
         )
+        self._node.create_subscription(kind, topic, handle, profile, event_callbacks=events, raw=raw)
+
+    def _spoken(
+        self, topic: str, handle: Callable[[Any], None], speakers: Speakers | None
+    ) -> tuple[Callable[[Any], None], Callable[[Any], None] | None]:
+        """What is called with each message of a topic, and with each publisher that comes or goes."""
+        guarded = self._guarded(topic, handle)
+        if speakers is None:
+            return guarded, None
+        return speakers.guarded(topic, guarded), self._guarded(topic, partial(speakers.matched, topic))
 
     def _listen_as_offered(
-        self, kind: type, topic: str, handle: Callable[[Any], None], *, raw: bool = False
+        self,
+        kind: type,
+        topic: str,
+        handle: Callable[[Any], None],
+        *,
+        raw: bool = False,
+        speakers: Speakers | None = None,
     ) -> None:
         """Like `_listen`, reliably for as long as every publisher offers that, else best effort."""
-        guarded = self._guarded(topic, handle)
+        guarded, on_match = self._spoken(topic, handle, speakers)
 
         def make(profile: QoSProfile, on_policy: Callable[[str], None]) -> Subscription:
-            events = qos.subscription_events(on_policy)
+            events = qos.subscription_events(on_policy, on_match)
             return self._node.create_subscription(
                 kind, topic, guarded, profile, event_callbacks=events, raw=raw
             )

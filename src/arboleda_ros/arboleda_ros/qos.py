@@ -42,14 +42,23 @@ SENSOR = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT, durabil
 RELIABILITY = qos_policy_name_from_kind(QoSPolicyKind.RELIABILITY)
 
 
+# whether a subscription hears of publishers that come and go; that of Humble does not
+TELLS_MATCHES = hasattr(SubscriptionEventCallbacks(), "matched")
+
+
 def publisher_events(on_policy: Callable[[str], None]) -> PublisherEventCallbacks:
     """Calls `on_policy` with the policy an incompatible subscription broke."""
     return PublisherEventCallbacks(incompatible_qos=_naming(on_policy))
 
 
-def subscription_events(on_policy: Callable[[str], None]) -> SubscriptionEventCallbacks:
-    """Calls `on_policy` with the policy an incompatible publisher broke."""
-    return SubscriptionEventCallbacks(incompatible_qos=_naming(on_policy))
+def subscription_events(
+    on_policy: Callable[[str], None], on_match: Callable[[Any], None] | None = None
+) -> SubscriptionEventCallbacks:
+    """Calls `on_policy` with the policy an incompatible publisher broke; `on_match` as they come and go."""
+    events = SubscriptionEventCallbacks(incompatible_qos=_naming(on_policy))
+    if on_match is not None and TELLS_MATCHES:
+        events.matched = on_match
+    return events
 
 
 def _naming(on_policy: Callable[[str], None]) -> Callable[[Any], None]:

@@ -1,0 +1,75 @@
+"""Who speaks for a robot on ROS 2: while several nodes publish what it reports, nothing of that is believed.
+
+rclpy tells neither whose a message is nor proves it, only who publishes on a topic.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from arboleda.model.sentence import Phrase, Sentence
+
+HOLD_S = 0.5  # what a node that is gone has left in the queues
+NAMELESS_S = 1.0  # discovery may show a publisher before it knows the node
+GONE = Phrase("speaker.gone", "a node that is gone")
+NAMELESS = Phrase("speaker.nameless", "a node without a name")
+CONTESTED = Phrase(
+    "speaker.contested",
+    "{robot}: more than one node publishes on {topic} ({nodes}); nothing that it reports is believed until "
+    "one is left",
+)
+AND = Phrase("speaker.and", "{first} and {second}")
+
+
+class Contest:
+    """Several nodes on one topic, `since` when, and which of them people were told of."""
+
+    def __init__(self, since: float) -> None:
+        self.since = since
+        self.told: frozenset[str | None] = frozenset()
+
+
+class Speaker:
+    """That of one robot. Nodes of one name are one: it was started again, and DDS still keeps the last."""
+
+    def __init__(self, robot: str) -> None:
+        self._robot = robot
+        self._contests: dict[str, Contest] = {}  # by topic
+        self._until = -math.inf
+
+    def believed(self, at: float) -> bool:
+        """Whether what is heard now counts."""
+        return not self._contests and at >= self._until
+
+    def publishers(self, at: float, topic: str, nodes: Sequence[str | None]) -> Sentence | None:
+        """Take over who publishes on a topic, None for a node without a name (yet); what is new of others."""
+        names = frozenset(nodes)
+        if len(names) <= 1 and nodes.count(None) <= 1:
+            return self._settled(at, topic, alone=len(nodes) <= 1)
+        contest = self._contests.setdefault(topic, Contest(at))
+        if names == contest.told or (None in names and at < contest.since + NAMELESS_S):
+            return None
+        contest.told = names
+        return self._sentence(topic, names)
+
+    def came_and_went(self, at: float, topic: str) -> Sentence | None:
+        """A node has published that is there no more; the sentence on it, where nothing was told."""
+        was_believed, self._until = self.believed(at), at + HOLD_S
+        return self._contested(topic, GONE()) if was_believed else None
+
+    def _settled(self, at: float, topic: str, *, alone: bool) -> Sentence | None:
+        contest = self._contests.pop(topic, None)
+        if contest is None:
+            return None
+        self._until = at + HOLD_S
+        return self._contested(topic, GONE()) if alone and not contest.told else None
+
+    def _sentence(self, topic: str, names: frozenset[str | None]) -> Sentence:
+        known = sorted(name for name in names if name is not None)
+        said: str | Sentence = ", ".join(known if None in names else known[:-1])
+        last = NAMELESS() if None in names else known[-1]
+        return self._contested(topic, AND(first=said, second=last) if said else last)
+
+    def _contested(self, topic: str, nodes: str | Sentence) -> Sentence:
+        return CONTESTED(robot=self._robot, topic=topic, nodes=nodes)

@@ -1,0 +1,88 @@
+"""Who publishes what a robot reports: the middleware's word for the rule of `wire.speaker`."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from rclpy.node import Node
+
+from arboleda.model.messages import Event, Interference, Report
+from arboleda.model.plant_model import MotionState
+from arboleda.model.sentence import Sentence
+from arboleda.wire.speaker import Speaker
+
+from . import qos
+from .alone import UNNAMED, full_name
+
+LOG = logging.getLogger("arboleda.ros.speakers")
+_FRESH_S = 0.2  # in which nobody is looked for again for each message
+
+
+class Speakers:
+    """The publishers of one robot's topics. While nobody is believed, the robot counts as without link."""
+
+    def __init__(
+        self, node: Node, robot: str, clock: Callable[[], float], on_event: Callable[[Event], None]
+    ) -> None:
+        self._node = node
+        self._robot = robot
+        self._clock = clock
+        self._on_event = on_event
+        self._speaker = Speaker(robot)
+        self._looked: dict[str, float] = {}  # by topic, where several publish
+        # by topic: how many ever came, how many are matched, and who is there
+        self._known: dict[str, tuple[int, int, set[tuple[int, ...]]]] = {}
+
+    def guarded(self, topic: str, handle: Callable[[Any], None]) -> Callable[[Any], None]:
+        """`handle` for what counts, called behind what the middleware has told of publishers meanwhile."""
+
+        def believe(message: Any) -> None:
+            if not self._speaker.believed(self._clock()) or not qos.TELLS_MATCHES:
+                self._look_again(topic)
+            if self._speaker.believed(self._clock()):
+                handle(message)
+
+        def hear(message: Any) -> None:
+            executor = self._node.executor
+            if executor is None:
+                believe(message)
+            else:
+                executor.create_task(partial(believe, message))
+
+        return hear
+
+    def matched(self, topic: str, event: Any) -> None:
+        """A publisher has come or gone; one that is gone again may have left something in the queue."""
+        came, matched, before = self._known.get(topic, (0, 0, set()))
+        there = self._look(topic)
+        self._known[topic] = (event.total_count, event.current_count, there)
+        stayed = max(len(there - before), event.current_count - matched)
+        if event.total_count - came > stayed:
+            self._tell(self._speaker.came_and_went(self._clock(), self._absolute(topic)))
+
+    def _look_again(self, topic: str) -> None:
+        if self._clock() >= self._looked.get(topic, 0.0) + _FRESH_S:
+            self._look(topic)
+
+    def _look(self, topic: str) -> set[tuple[int, ...]]:
+        """Who publishes now, as the middleware numbers them."""
+        now = self._looked[topic] = self._clock()
+        found = self._node.get_publishers_info_by_topic(topic)
+        names = [full_name(info) for info in found]
+        nodes = [None if name == UNNAMED else name for name in names]
+        self._tell(self._speaker.publishers(now, self._absolute(topic), nodes))
+        return {tuple(info.endpoint_gid) for info in found}
+
+    def _tell(self, sentence: Sentence | None) -> None:
+        if sentence is None:
+            return
+        now = self._clock()
+        LOG.warning("%s", sentence)
+        self._on_event(Report(at=now, robot=self._robot, state=MotionState.NO_LINK, lost=sentence))
+        self._on_event(Interference(at=now, robot=self._robot, sentence=sentence))
+
+    def _absolute(self, topic: str) -> str:
+        return self._node.resolve_topic_name(topic)
