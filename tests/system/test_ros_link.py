@@ -755,12 +755,17 @@ def test_a_later_commander_is_an_error_in_the_diagnostics(links, caplog):
     assert side.port.health().errors == ()
     diagnostics = Stranger(links(), "screen").hear(DiagnosticArray, "/diagnostics")
     intruder = Stranger(links(), "intruder").node
-    intruder.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
+    publisher = intruder.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
     sentence = "another node commands /rm_sis_a/stop_cmd: /intruder"
     eventually(lambda: side.port.health().errors == (sentence,))
     eventually(lambda: any(message.status[0].message == sentence for message in diagnostics))
     assert diagnostics[-1].status[0].level == b"\x02"
     assert sum("/intruder" in record.message for record in caplog.records) == 1
+    intruder.destroy_publisher(publisher)
+    eventually(lambda: side.port.health().errors == ())
+    intruder.create_publisher(UInt8, "/rm_sis_a/stop_cmd", 10)
+    eventually(lambda: side.port.health().errors == (sentence,))
+    assert sum("/intruder" in record.message for record in caplog.records) == 2
 
 
 def test_an_incompatible_endpoint_is_one_warning_and_the_plant_goes_on(links, caplog):

@@ -50,6 +50,7 @@ class Port:
         self._warnings: dict[str, None] = {}
         self._seldom = Seldom()
         self._logged: set[str] = set()
+        self._intrusions: tuple[str, ...] = ()  # as told last
         self._diagnostics = self._speak(DiagnosticArray, "/diagnostics", qos.COMMAND)
         node.create_timer(_DIAGNOSTICS_S, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -64,10 +65,12 @@ class Port:
         """Give back what does not end with the node; nothing is delivered any more."""
 
     def health(self) -> PortHealth:
-        """The health now; a node that joined topics of this port's own is logged once."""
+        """The health now; a node that joined topics of this port's own is logged, each time it comes."""
         errors = self._alone.look()
         for sentence in errors:
-            self._log_once(sentence, logging.ERROR)
+            if sentence not in self._intrusions:
+                self._log.error(sentence)
+        self._intrusions = errors
         return PortHealth(
             warnings=tuple(self._warnings), errors=errors, refused=self._refused, failures=self._failures
         )
