@@ -1,8 +1,8 @@
 """The virtual boards in a process of their own: it outlives the plant, and tells what its arms truly did.
 
 `python -m arboleda_kills.boards RATE`. It reads a line of JSON for each thing that somebody does,
-`{"broker": [HOST, PORT]}` or null, `{"reference": ROBOT}`, `{"repair": ROBOT}`, and ends with its input. It
-prints a line for each deed.
+`{"broker": [HOST, PORT]}` or null, `{"reference": ROBOT}`, `{"empty": ROBOT}`, `{"repair": ROBOT}`, and ends
+with its input. It prints a line for each deed.
 """
 
 from __future__ import annotations
@@ -114,6 +114,8 @@ class Boards:
                 self._join(Address(host=broker[0], port=broker[1]))
         if robot := line.get("reference"):
             self._at_board(robot, Board.put_at_reference)
+        if robot := line.get("empty"):
+            self._at_board(robot, lambda board: board.body.take_out())
         if robot := line.get("repair"):
             self._at_board(robot, lambda board: board.repair(round(clock.seconds() * 1e6)))
 

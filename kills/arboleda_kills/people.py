@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arboleda.core.advice import Hand
+from arboleda.model.messages import Verb
 from arboleda.recipes.storage_cell import StorageCell
 
 from .processes import Boards, Plant
@@ -18,6 +19,7 @@ AGAIN = 3  # ended tasks that are asked for once more after each start
 OVER = frozenset({"done", "failed", "cancelled"})
 BY_THEMSELVES = frozenset({Hand.BRING_BACK.value})
 AT_THE_BOARD = {Hand.REFERENCE.value: "reference", Hand.REPAIR.value: "repair"}
+BY_HAND = {Verb.HOME.value: "reference", Verb.RELEASE.value: "empty"}
 ACCEPTED = 202
 
 
@@ -129,11 +131,12 @@ class Attendant:
                 return
 
     def _say(self, plant: Plant, cell: str, advice: dict[str, Any]) -> None:
-        """Say a verb; who says that a robot is homed by hand has put it at its reference before."""
+        """Say a verb; who declares what was done by hand has done that before."""
+        verb, scope, drops = advice["do"], advice["scope"], bool(advice["drops"])
         if advice["by_hand"]:
-            self._boards.act({"reference": advice["scope"]})
-        verb, scope = advice["do"], advice["scope"]
-        self.said.append(Said(at=time.time(), cell=cell, verb=verb, scope=scope, drops=bool(advice["drops"])))
+            self._boards.act({BY_HAND[verb]: scope})
+            drops = verb == Verb.RELEASE.value
+        self.said.append(Said(at=time.time(), cell=cell, verb=verb, scope=scope, drops=drops))
         status, answer = plant.ask(
             "POST", f"/api/cells/{scope}/{verb}", {"by_hand": True} if advice["by_hand"] else None
         )

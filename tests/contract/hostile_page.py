@@ -100,6 +100,9 @@ class Side:
         answer.set_result(OperatorAnswer(verb=verb, scope=scope, refusal=EVIL))
         return answer
 
+    def act(self, number: int) -> dict[str, Any] | None:
+        return None
+
     def watch(self, callback: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
         return lambda: None
 

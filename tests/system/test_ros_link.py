@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -38,6 +39,7 @@ from arboleda.model.messages import (
     Journal,
     OperatorAnswer,
     OperatorRequest,
+    Outcome,
     Report,
     SystemStart,
     TaskChanged,
@@ -530,10 +532,10 @@ class Operator(Stranger):
         return client.call_async(Trigger.Request())
 
 
-def answered(side: Side, refusal: str | None = None) -> OperatorRequest:
+def answered(side: Side, refusal: str | None = None, **told: Any) -> OperatorRequest:
     """What the plant was asked for, once; it was answered as its own thread answers."""
     asked = eventually(lambda: side.events.pop() if side.events else None)
-    side.port.send(OperatorAnswer(verb=asked.verb, scope="", request=asked.request, refusal=refusal))
+    side.port.send(OperatorAnswer(verb=asked.verb, scope="", request=asked.request, refusal=refusal, **told))
     return asked
 
 
@@ -625,6 +627,24 @@ def test_a_service_stops_robots_while_the_plant_waits_for_its_disk(links, tmp_pa
             let_go.set()
             plant.stop()
     assert call.result().success and "has not kept it" in call.result().message
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        (
+            {"act": 7, "outcome": Outcome.UNDER_WAY},
+            (True, "under way: `acts` of /plant/view tell the outcome of act 7"),
+        ),
+        ({"act": 7, "outcome": Outcome.FAILED, "why": "jaw: it is stuck"}, (False, "jaw: it is stuck")),
+        ({"act": 7, "outcome": Outcome.UNCHECKED, "why": "jaw says nothing"}, (True, "jaw says nothing")),
+        ({"act": 7, "outcome": Outcome.DONE}, (True, "")),
+    ],
+)
+def test_an_act_of_devices_is_answered_as_it_stands(links, told, said):
+    side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
+    call = operator.call("/plant/release")
+    answered(side, **told)
+    eventually(call.done)
+    assert (call.result().success, call.result().message) == said
 
 
 def test_answers_to_others_are_passed_over(links):

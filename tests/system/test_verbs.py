@@ -78,7 +78,7 @@ def operator(at_work: Callable[..., Operator], quick: tuple[str, ...]) -> Operat
 
 def test_stop_clear_reset_and_work_again(at_work: Callable[..., Operator], tmp_path: Path) -> None:
     operator = at_work(plant_at(tmp_path, 10))  # slow: the stop comes before the arm has a part
-    assert operator.ask("stop") == (0, "done: stop (software), the whole plant")
+    assert operator.ask("stop") == (0, "sent: stop (software), the whole plant")
     operator.up.wait_for("(stopped)")
     assert "failed    sis_a 0B 7" in operator.up.output
     refused, why = operator.ask("reset")
@@ -149,7 +149,10 @@ def cell(web: httpx.Client, name: str) -> dict[str, Any]:
 
 def test_the_same_verbs_over_http(web: httpx.Client, operator: Operator) -> None:
     held = web.post("/api/cells/sis_a/hold")
-    assert (held.status_code, held.json()) == (200, {"verb": "hold", "scope": "sis_a"})
+    assert held.status_code == 200
+    number = held.json()["act"]
+    assert held.json() == {"verb": "hold", "scope": "sis_a", "act": number, "outcome": "done"}
+    assert web.get(f"/api/acts/{number}").json()["sentence"] == "hold sis_a"
     eventually(lambda: cell(web, "sis_a")["state"] == "held", "the cell was not held")
     assert web.post("/api/cells/sis_a/resume").status_code == 200
     assert web.post("/api/tasks", json={"text": "sis_b 1C 3 #lot1"}).status_code == 202

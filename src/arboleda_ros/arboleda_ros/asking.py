@@ -6,29 +6,21 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NotInTime
-from typing import Any, NamedTuple
+from typing import Any
 from uuid import uuid4
 
-from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import OperatorAnswer, OperatorRequest, TaskChanged, TaskRequest, Verb
+from arboleda.model.messages import OperatorAnswer, OperatorRequest, Outcome, TaskChanged, TaskRequest, Verb
 
 LOG = logging.getLogger("arboleda.ros")
 ANSWER_S = 1.0
+UNDER_WAY = "under way: `acts` of /plant/view tell the outcome of act {act}"
 Question = OperatorRequest | TaskRequest
 Answer = OperatorAnswer | TaskChanged
 
 
 class NoAnswer(ArboledaError):
     """The plant did not answer in time; what was asked may still be done."""
-
-
-class Outcome(NamedTuple):
-    """What a service answers: whether a verb was done, and why not. Of a stop that has left and is not kept
-    the message says that."""
-
-    success: bool
-    message: str
 
 
 class Asker:
@@ -43,23 +35,22 @@ class Asker:
         self._clock = clock
         self._waiting: dict[str, Future[Any]] = {}
 
-    def outcome(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Outcome:
-        """Have an operator's verb done."""
-        return self._outcome(verb, scope, by_hand=by_hand)
-
-    def _outcome(self, verb: Verb, scope: str, **more: bool) -> Outcome:
+    def operate(self, verb: Verb, scope: str = "", **more: bool) -> tuple[bool, str]:
+        """Have an operator's verb done; whether it was, or is under way, and what there is to say of it."""
         try:
             answer = self._ask(
                 lambda token: OperatorRequest(at=self._clock(), verb=verb, scope=scope, request=token, **more)
             )
         except NoAnswer as error:
-            return Outcome(success=False, message=str(error))
+            return False, str(error)
         except Exception:  # a caller must not wait for an answer that never comes
             LOG.exception("%s %s failed", verb.value, scope or "plant")
-            return Outcome(success=False, message="internal error")
+            return False, "internal error"
         if answer.refusal is not None:
-            return Outcome(success=False, message=str(answer.refusal))
-        return Outcome(success=True, message=str(answer.sentence) if isinstance(answer, StopLeft) else "")
+            return False, str(answer.refusal)
+        if answer.outcome is Outcome.UNDER_WAY:
+            return True, UNDER_WAY.format(act=answer.act)
+        return answer.outcome is not Outcome.FAILED, str(answer.why or "")
 
     def submit(self, text: str) -> TaskChanged:
         """Ask for a task; what became of it first, refused too, or NoAnswer."""
@@ -71,8 +62,8 @@ class Asker:
 
     def cancellation_refusal(self, task: str) -> str | None:
         """Have a task cancelled for its client; why it was not, None where it was."""
-        outcome = self._outcome(Verb.CANCEL, task, client=True)
-        return None if outcome.success else outcome.message
+        done, said = self.operate(Verb.CANCEL, task, client=True)
+        return None if done else said
 
     def cancel_later(self, task: str) -> None:
         """Ask for a task to be cancelled for its client; its changes tell what came of it."""

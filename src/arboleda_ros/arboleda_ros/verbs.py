@@ -21,5 +21,5 @@ class VerbServices:
             node.create_service(Trigger, f"plant/{verb.value}", partial(self._serve, verb))
 
     def _serve(self, verb: Verb, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = self._asker.outcome(verb)
+        response.success, response.message = self._asker.operate(verb)
         return response

@@ -104,7 +104,7 @@ def test_a_task_is_cancelled_by_its_id(client: Any, submit: Any, command: Any) -
     [
         ("dance", "", {}, f"'dance' is no verb; there are {', '.join(verb.value for verb in Verb)}"),
         ("", "sis_a", {}, "'' is no verb"),
-        ("stop", "", {"by_hand": True}, "by_hand is for home only, not for stop"),
+        ("stop", "", {"by_hand": True}, "by_hand is for home and release only, not for stop"),
         ("retry", "sis_b", {}, "sis_b is idle"),
         ("hold", "sis_x", {}, "'sis_x' is neither a cell nor a robot"),
         ("override", "nowhere", {}, "nowhere"),

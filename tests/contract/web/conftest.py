@@ -84,6 +84,8 @@ class Plant:
         self.acts: list[tuple[Verb, str, bool]] = []
         self.refusal: str | None = None
         self.unkept: Sentence | None = None  # why a stop that has left is not kept
+        self.told: dict = {}  # of the answer to an act that is not refused
+        self.rows: dict[int, dict] = {}
         self.unanswered: list[Future] | None = None
         self.watchers: list[Callable[[dict], None]] = []
 
@@ -136,9 +138,12 @@ class Plant:
         if self.unanswered is not None:
             self.unanswered.append(future)
         else:
-            answer = OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal)
+            answer = OperatorAnswer(verb=verb, scope=scope, refusal=self.refusal, **self.told)
             future.set_result(answer if self.unkept is None else stop_left(answer, self.unkept))
         return future
+
+    def act(self, number: int) -> dict | None:
+        return self.rows.get(number)
 
     def watch(self, callback: Callable[[dict], None]) -> Callable[[], None]:
         self.watchers.append(callback)

@@ -11,11 +11,11 @@ from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery
 from arboleda.core.leaving import STILL_WAITS, stop_left
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
-from arboleda.model.messages import OperatorAnswer, Verb
+from arboleda.model.messages import OperatorAnswer, Outcome, Verb
 from arboleda.model.sentence import Phrase
 
 from ...patience import PATIENCE_S
-from .conftest import OFFERS, QUEUED, TASK, VIEW
+from .conftest import LATE, OFFERS, QUEUED, TASK, VIEW
 
 
 def test_the_view_is_the_plant(web):
@@ -297,11 +297,8 @@ def test_a_stop_that_has_left_and_is_not_kept_is_said_to(web, plant):
     plant.unkept = STILL_WAITS()
     answer = web.post("/api/cells/sis_a/stop")
     assert answer.status_code == 202
-    said = answer.json()
-    assert (said["verb"], said["scope"], said["key"]) == ("stop", "sis_a", "stop.left_unkept")
-    assert said["sentence"] == str(
-        stop_left(OperatorAnswer(verb=Verb.STOP, scope="sis_a"), plant.unkept).sentence
-    )
+    left = stop_left(OperatorAnswer(verb=Verb.STOP, scope="sis_a"), plant.unkept)
+    assert answer.json() == {"verb": "stop", "scope": "sis_a", "outcome": "sent", "why": str(left.why)}
 
 
 @pytest.mark.parametrize(
@@ -364,3 +361,24 @@ def test_an_error_of_ours_is_one_sentence_and_one_line(web, plant, caplog, capfd
         "GET /api/plant failed: RuntimeError('boom')"
     ]
     assert "Traceback" not in capfd.readouterr().err
+
+
+def test_what_devices_do_is_answered_as_under_way_with_the_number_that_tells_its_end(web, plant):
+    plant.told = {"act": 7, "outcome": Outcome.UNDER_WAY}
+    answer = web.post("/api/cells/jaw/release")
+    assert answer.status_code == 202
+    assert answer.json() == {"verb": "release", "scope": "jaw", "act": 7, "outcome": "under_way"}
+    plant.rows[7] = {"number": 7, "outcome": "failed", "why": LATE}
+    row = web.get("/api/acts/7")
+    assert (row.status_code, row.json()) == (200, {"number": 7, "outcome": "failed", "why": str(LATE)})
+
+
+def test_an_act_that_failed_at_once_says_why(web, plant):
+    plant.told = {"act": 7, "outcome": Outcome.FAILED, "why": LATE}
+    answer = web.post("/api/cells/jaw/release")
+    assert (answer.status_code, answer.json()["why"]) == (200, str(LATE))
+
+
+def test_an_act_that_nobody_knows_any_more_is_not_found(web):
+    answer = web.get("/api/acts/1")
+    assert (answer.status_code, "no act 1" in answer.json()["sentence"]) == (404, True)

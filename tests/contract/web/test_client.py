@@ -52,6 +52,12 @@ def test_the_client_operates_the_plant_or_one_thing_of_it(state, plant):
         client.operate(Verb.CLEAR, "sis_a")
 
 
+def test_the_client_follows_an_act_until_it_has_ended(state, plant):
+    rows = iter([{"outcome": "under_way"}, {"outcome": "under_way"}, {"outcome": "failed"}])
+    plant.act = lambda number: {"number": number, **next(rows)}
+    assert PlantClient(state.path).outcome(7) == {"number": 7, "outcome": "failed"}
+
+
 def test_who_follows_a_task_listens_anew_where_its_stream_was_cut(state, monkeypatch):
     told = [
         VIEW,

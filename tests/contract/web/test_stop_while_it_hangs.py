@@ -79,7 +79,7 @@ def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
     url = address(app)
     with httpx.Client(trust_env=False, timeout=PATIENCE_S) as client:
         answer = client.post(f"{url}/stop")
-        assert answer.status_code == 202 and "has not kept it" in answer.json()["sentence"]
+        assert answer.status_code == 202 and "has not kept it" in answer.json()["why"]
         assert robots.stopped == {"ra1", "rm_sis_a"}
         seen = client.get(url).json()
         assert seen["tasks"] == [] and not any(robot["latched"] for robot in seen["robots"])
@@ -90,6 +90,6 @@ def test_over_http(app: App, robots: Robots, disk: Disk) -> None:
 
 def test_from_the_terminal(app: App, robots: Robots, disk: Disk, tmp_path: Path) -> None:
     said = PlantClient(tmp_path).operate(Verb.STOP, "ra1")
-    assert "the stop has left for ra1" in said["sentence"]
+    assert "the stop has left for ra1" in said["why"]
     assert robots.stopped == {"ra1"}
     assert not disk.let_go.is_set()

@@ -218,7 +218,7 @@ def test_every_robot_is_told_to_stop_while_something_hangs(
     assert gate.hangs
     if answer is not None:
         said = answer.result(SOON_S)
-        assert isinstance(said, StopLeft) and "has not kept it" in str(said.sentence)
+        assert isinstance(said, StopLeft) and "has not kept it" in str(said.why)
         assert gate.hangs
 
 
@@ -354,7 +354,7 @@ def test_a_stop_that_cannot_be_kept_is_told_to_have_left(scripted, robots, store
     stop = Stop(id="7-3", robot="ra1", mode=StopMode.LATCH)
     turn(scripted, latch, stop, OperatorAnswer(verb=Verb.STOP, scope="ra1", request=token))
     said = future.result(0)
-    assert isinstance(said, StopLeft) and "The disk is full." in str(said.sentence)
+    assert isinstance(said, StopLeft) and "The disk is full." in str(said.why)
     assert robots.messages == [stop, said]  # who asked over ROS 2 hears the same
 
 

@@ -21,9 +21,17 @@ PLANT_WIDE = [verb for verb in Verb if verb not in NEED_A_SCOPE]
 class Notes(list):
     """Stands for the plant: (verb, scope, by_hand) of every act."""
 
-    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> dict[str, str]:
+    def __init__(self) -> None:
+        super().__init__()
+        self.told: dict[str, object] = {}
+        self.end: dict[str, object] = {}
+
+    def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> dict[str, object]:
         self.append((verb, scope, by_hand))
-        return {"verb": verb.value, "scope": scope}
+        return {"verb": verb.value, "scope": scope, **self.told}
+
+    def outcome(self, act: int) -> dict[str, object]:
+        return {"number": act, **self.end}
 
 
 @pytest.fixture
@@ -61,9 +69,9 @@ def test_without_a_scope_it_is_the_whole_plant(acts: Notes, verb: Verb) -> None:
 
 
 def test_a_stop_that_is_not_kept_is_said_to_have_been_sent(acts: Notes, monkeypatch) -> None:
-    left = {"verb": "stop", "scope": "", "sentence": "the stop has left"}
+    left = {"verb": "stop", "scope": "", "outcome": "sent", "why": "it is not kept"}
     monkeypatch.setattr(acts, "operate", lambda *_, **__: left, raising=False)
-    assert arboleda("stop") == (0, "sent, not kept: stop (software), the whole plant; the stop has left\n")
+    assert arboleda("stop") == (0, "sent: stop (software), the whole plant: it is not kept\n")
 
 
 @pytest.mark.parametrize("verb", NEED_A_SCOPE, ids=str)
@@ -94,7 +102,8 @@ def test_an_empty_name_is_not_the_whole_plant(acts: Notes, scope: str) -> None:
 
 
 def test_stop_is_called_what_it_is(acts: Notes) -> None:
-    assert arboleda("stop", "ra1") == (0, "done: stop (software), ra1\n")
+    acts.told = {"act": 1, "outcome": "sent"}
+    assert arboleda("stop", "ra1") == (0, "sent: stop (software), ra1\n")
 
 
 @pytest.mark.parametrize(
@@ -125,6 +134,31 @@ def test_a_stop_that_nobody_confirms_names_the_button(
 def test_a_robot_is_declared_homed_by_hand(acts: Notes) -> None:
     assert arboleda("home", "ra1", "--by-hand")[0] == 0
     assert acts == [(Verb.HOME, "ra1", True)]
+
+
+def test_a_part_is_declared_taken_out_by_hand(acts: Notes) -> None:
+    assert arboleda("release", "jaw", "--by-hand")[0] == 0
+    assert acts == [(Verb.RELEASE, "jaw", True)]
+
+
+@pytest.mark.parametrize(
+    ("end", "status", "said"),
+    [
+        ({"outcome": "done", "why": None}, 0, "done: release, jaw\n"),
+        ({"outcome": "failed", "why": "jaw: it is stuck"}, 3, "failed: release, jaw: jaw: it is stuck\n"),
+        (
+            {"outcome": "unchecked", "why": "not said"},
+            0,
+            "sent, not checked: release, jaw: not said\n",
+        ),
+        ({"outcome": "under_way", "why": None}, 4, "still under way: release, jaw\n"),
+    ],
+)
+def test_what_devices_do_is_waited_for_and_told_as_it_ended(
+    acts: Notes, end: dict[str, object], status: int, said: str
+) -> None:
+    acts.told, acts.end = {"act": 7, "outcome": "under_way"}, end
+    assert arboleda("release", "jaw") == (status, said)
 
 
 @pytest.mark.parametrize("answer", ["n\n", "\n", ""])

@@ -41,6 +41,9 @@ class Plant:
     def operate(self, *_args: object, **_options: object) -> Future:
         return Future()
 
+    def act(self, _number: int) -> None:
+        return None
+
     def promises(self, _text: str) -> list[dict]:
         return []
 

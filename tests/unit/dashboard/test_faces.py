@@ -277,6 +277,28 @@ def test_a_part_that_would_fall_is_asked_about(told: Callable[..., Any]) -> None
     assert release["texts"][1] == "Or: The part that ra1 holds falls."
 
 
+def test_a_release_that_failed_stays_on_the_card_with_the_way_by_hand(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to station 7")
+    rig.boards["ra_1"].body.stuck = True
+    rig.operate(Verb.STOP, "sis_a")
+    rig.wait(5.0)
+    for verb in (Verb.CLEAR, Verb.RESET):
+        assert rig.operate(verb, "sis_a") is None
+        rig.wait(2.0)
+    assert rig.operate(Verb.RELEASE, "ra1") is None
+    assert rig.face()["text/sis_a.act"] == ["Under way: release ra1", "under_way"]
+    rig.wait(10.0)
+    said, outcome = rig.face()["text/sis_a.act"]
+    assert outcome == "failed" and said.startswith("release ra1: failed (ra1: did not finish")
+    by_hand = next(way for way in ways(rig.face()) if way["acts"] and way["acts"][0]["by_hand"])
+    assert by_hand["acts"][0]["label"] == "Say that the part of ra1 was taken out"
+    assert by_hand["acts"][0]["asks"] == ["Have you taken the part out of {of}? The plant will believe it."]
+    assert rig.operate(Verb.RELEASE, "ra1", by_hand=True) is None
+    assert rig.face()["text/sis_a.act"] == ["", ""]
+
+
 def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Callable[..., Any]) -> None:
     rig = told()
     assert rig.face()["text/sis_a.failure"] == ["", ""]  # none in the record yet

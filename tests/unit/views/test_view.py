@@ -152,7 +152,7 @@ def test_a_cell_says_which_verbs_would_be_refused_now(rig: Rig) -> None:
     def refused() -> set[str]:
         return set(rig.snapshot()["cells"][0]["refused"])
 
-    of_nobody = {"clear", "reset", "hold", "retry", "unload", "home_by_hand"}
+    of_nobody = {"clear", "reset", "hold", "retry", "unload", "home_by_hand", "release_by_hand"}
     assert refused() == of_nobody | {"resume", "cancel", "abandon"}
     rig.submit("sis_a 0B 7")
     rig.wait(1.0)

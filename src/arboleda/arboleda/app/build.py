@@ -230,6 +230,9 @@ class App:
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]:
         return self._plant.operate(verb, scope, by_hand)
 
+    def act(self, number: int) -> dict[str, Any] | None:
+        return self._plant.act(number)
+
     def snapshot(self, within_s: float = READ_S) -> dict[str, Any]:
         return self._plant.snapshot(within_s)
 

@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import quote, urlencode
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import ENDED, TaskState, Verb
+from arboleda.model.messages import ENDED, Outcome, TaskState, Verb
 from arboleda.model.outside import plain
 
 from . import places
@@ -25,6 +25,7 @@ LONGEST = 500  # characters of a line
 NEXT_S = 30.0  # by then a plant that lost its leader has the next one
 NOBODY_S = 5.0  # who stood by needs less to begin; while it does, nobody leads and nobody waits
 LOOK_S = 0.2
+FOLLOWED_S = 120.0  # a homing may take a minute
 URGENT_S = 1.5  # a stop is answered within some ms
 STANDS_BY = "this process stands by and does nothing itself: it {it}"
 LOST_TASK = (
@@ -76,6 +77,15 @@ class PlantClient:
         body = {"by_hand": True} if by_hand else None
         stops = verb is Verb.STOP
         return self._ask("POST", f"/api/{where}/{verb.value}", body, repeatable=stops, urgent=stops)
+
+    def outcome(self, act: int) -> dict[str, Any]:
+        """What has become of an act, once it has ended; after FOLLOWED_S as it is then."""
+        until = time.monotonic() + FOLLOWED_S
+        while True:
+            row: dict[str, Any] = self._ask("GET", f"/api/acts/{act}")
+            if row["outcome"] != Outcome.UNDER_WAY.value or time.monotonic() > until:
+                return row
+            time.sleep(LOOK_S)
 
     def changes(self) -> Iterator[tuple[str, dict[str, Any]]]:
         """What `GET /api/events` says, as it happens: the kind of each event and its row, `snapshot` first.

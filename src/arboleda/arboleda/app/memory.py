@@ -5,7 +5,7 @@ from __future__ import annotations
 from arboleda.adapters.plant_memory import PlantMemory
 from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, choice_of, course_of, sentence_of
 from arboleda.core.intake import HISTORY
-from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, LATCHED
+from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, EMPTIED, LATCHED
 from arboleda.model.errors import StartError
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Fact, Failure, KeptTask, Reason, TaskState
@@ -15,6 +15,7 @@ MEANS = {  # a quarantined zone has the name of a robot, which may be none of th
     Fact.LATCH: frozenset({LATCHED, CLEARED}),
     Fact.EFFECTOR: frozenset(grip.value for grip in Grip),
     Fact.DISPLACED: frozenset({DISPLACED}),
+    Fact.EMPTIED: frozenset({EMPTIED}),
 }
 
 

@@ -8,18 +8,23 @@ from typing import Annotated, Any
 import typer
 
 from arboleda.model.errors import ArboledaError, TextError
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain
 from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
-from .client import PlantClient
+from .client import LONGEST, PlantClient
 from .line import Refused
 from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
-STATUS = "Exit status: 0 done, 1 no plant, 2 refused."
-ByHand = Annotated[
+STATUS = "Exit status: 0 done, 1 no plant, 2 refused, 3 failed, 4 still under way."
+FAILED, UNENDED = 3, 4
+HomedByHand = Annotated[
     bool,
     typer.Option("--by-hand", help="Move nothing: you declare that the robot stands at its reference."),
+]
+TakenOut = Annotated[
+    bool,
+    typer.Option("--by-hand", help="Open nothing: you declare that you have taken the part out."),
 ]
 Question = Annotated[
     str | None,
@@ -28,12 +33,14 @@ Question = Annotated[
 Yes = Annotated[bool, typer.Option("--yes", help="Do not ask.")]
 
 
+WORDS = {Outcome.UNDER_WAY: "still under way", Outcome.UNCHECKED: "sent, not checked"}
+STATUSES = {Outcome.FAILED: FAILED, Outcome.UNDER_WAY: UNENDED}
 LABELS = {Verb.STOP: "stop (software)"}
 
 
 def add_to(cli: typer.Typer) -> None:
     """Add a command per verb."""
-    makers = {Verb.HOME: _home, Verb.OVERRIDE: _override, Verb.ANSWER: _answer}
+    makers = {Verb.HOME: _home, Verb.RELEASE: _release, Verb.OVERRIDE: _override, Verb.ANSWER: _answer}
     for verb, words in ABOUT.items():
         act = makers.get(verb, _plain)(verb, _argument(words.scopes))
         cli.command(verb.value, help=about(words), short_help=words.brief)(act)
@@ -74,7 +81,21 @@ def _plain(verb: Verb, argument: Any) -> Callable[..., None]:
 def _home(verb: Verb, argument: Any) -> Callable[..., None]:
     def act(
         scope: str | None = argument,
-        by_hand: ByHand = False,
+        by_hand: HomedByHand = False,
+        plant: PlantFile = None,
+        state: StateFolder = None,
+        store: StoreAddress = "",
+        tokens: TokensFile = None,
+    ) -> None:
+        _ask(verb, scope, client(plant, state, store, tokens), by_hand=by_hand)
+
+    return act
+
+
+def _release(verb: Verb, argument: Any) -> Callable[..., None]:
+    def act(
+        scope: str | None = argument,
+        by_hand: TakenOut = False,
         plant: PlantFile = None,
         state: StateFolder = None,
         store: StoreAddress = "",
@@ -121,10 +142,19 @@ def _answer(verb: Verb, argument: Any) -> Callable[..., None]:
 def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool = False) -> None:
     try:
         answer = reached.operate(verb, scope or "", by_hand=by_hand)
+        if answer.get("outcome") == Outcome.UNDER_WAY.value:
+            answer = reached.outcome(answer["act"])
     except ArboledaError as error:
         if verb is not Verb.STOP or isinstance(error, Refused | TextError):
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
-    unkept = answer.get("sentence")
-    what = f"{LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}"
-    print(f"sent, not kept: {what}; {plain(unkept)}" if unkept else f"done: {what}")
+    _tell(answer, f"{LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}")
+
+
+def _tell(answer: dict[str, Any], did: str) -> None:
+    """What has become of an act, and the status that says so."""
+    outcome = Outcome(answer.get("outcome") or Outcome.DONE.value)
+    why = f": {plain(answer['why'], LONGEST)}" if answer.get("why") else ""
+    print(f"{WORDS.get(outcome, outcome.value)}: {did}{why}")
+    if outcome in STATUSES:
+        raise typer.Exit(STATUSES[outcome])

@@ -46,14 +46,19 @@ DO: dict[Verb | Hand, Phrase] = {
     Hand.FREE: Phrase("do.free", "get {scope} out of the way by its own controls"),
     Hand.CHECK: Phrase("do.check", "see that nobody is in {scope}"),
 }
-HOME_BY_HAND = Phrase("do.home_by_hand", "home {scope} --by-hand")
+BY_HAND: dict[Verb, Phrase] = {
+    Verb.HOME: Phrase("do.home_by_hand", "home {scope} --by-hand"),
+    Verb.RELEASE: Phrase("do.release_by_hand", "release {scope} --by-hand"),
+}
 THEN = Phrase("do.then", "{first}, then {second}")
 OR = Phrase("do.or", "{first} or {second}")
+AND = Phrase("do.and", "{first} and {second}")
 
 
 def in_words(advice: Advice) -> Sentence:
     """What is to be done, as a person types or says it."""
-    return (HOME_BY_HAND if advice.by_hand else DO[advice.do])(scope=advice.scope)
+    by_hand = advice.by_hand and isinstance(advice.do, Verb)
+    return (BY_HAND[Verb(advice.do)] if by_hand else DO[advice.do])(scope=advice.scope)
 
 
 def sentence(ways: Iterable[Advice]) -> Sentence:

@@ -84,12 +84,15 @@ class Advisor:
     def _recovering(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         name, holding = run.cell.name, run.context.holding
         yield from self._freeing(run, run.context.awaited_by_recovery(), asked)
-        helps = not holding or _can_bring_back(run)
-        if helps:
-            yield Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
-        for robot in holding:
-            yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_held, drops=(robot,), instead=helps)
-        yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding)
+        retry = Advice(do=Verb.RETRY, scope=name, why=run.why_held, moves=_recovered(run))
+        helps, failed = not holding or _can_bring_back(run), (Verb.RETRY, name) in run.in_vain
+        if helps and not failed:
+            yield retry
+        for number, robot in enumerate(holding):
+            yield from _releasing(run, robot, run.why_held, instead=helps and not failed and number == 0)
+        yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding and not failed)
+        if helps and failed:
+            yield replace(retry, instead=True)
 
     def _aborted(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         name = run.cell.name
@@ -101,11 +104,12 @@ class Advisor:
     def _stopped(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
         yield Advice(do=Verb.RESET, scope=run.cell.name, why=run.why_stopped)
         yield from self._readying(run, asked)
-        if run.context.holding and _can_bring_back(run):
+        failed = (Verb.RETRY, run.cell.name) in run.in_vain
+        if run.context.holding and _can_bring_back(run) and not failed:
             yield Advice(do=Verb.RETRY, scope=run.cell.name, why=run.why_stopped, moves=_recovered(run))
         elif run.context.holding:
             for robot in run.context.holding:
-                yield Advice(do=Verb.RELEASE, scope=robot, why=run.why_stopped, drops=(robot,))
+                yield from _releasing(run, robot, run.why_stopped)
         yield from _running_again(run)
 
     def _readying(self, run: CellRun, asked: frozenset[str]) -> Iterator[Advice]:
@@ -149,7 +153,7 @@ class Advisor:
                 if any(map(run.context.moves, set(run.cell.interlocked).intersection(awaited.values()))):
                     return  # a machine at work comes to its end
                 yield from self._freeing(run, awaited, asked)
-            yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,))
+            yield from _running_home(run, robot, why)
             return
         if run.context.says_unhomed(robot):
             yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
@@ -175,7 +179,7 @@ class Advisor:
             if other is run and _can_leave(run, holder):
                 why = HOLDS_ZONES(arm=holder, zones=tuple(its))
                 yield from _letting_go(run, holder)
-                yield Advice(do=Verb.HOME, scope=holder, why=why, moves=(holder,))
+                yield from _running_home(run, holder, why)
                 continue
             waits_too = other.cell.name in asked
             leads = () if waits_too else self.ways_out(other.cell.name, asked)
@@ -209,7 +213,31 @@ def _letting_go(run: CellRun, robot: str) -> Iterator[Advice]:
     tool = run.context.opening_tool(robot)
     if tool is not None:
         why = MAY_LET_GO(robot=robot, tool=tool)
-        yield Advice(do=Verb.RELEASE, scope=tool, why=why, drops=(tool,))
+        yield from _releasing(run, tool, why)
+
+
+def _releasing(run: CellRun, robot: str, why: Sentence, *, instead: bool = False) -> Iterator[Advice]:
+    """To have a robot let go of its part, or to take that out by hand: first where it could not, and as
+    another way where it cannot be told to.
+    """
+    release = Advice(do=Verb.RELEASE, scope=robot, why=why, drops=(robot,), instead=instead)
+    by_hand = Advice(do=Verb.RELEASE, scope=robot, why=why, by_hand=True, instead=instead)
+    obstacle = run.context.obstacle_to_opening(robot)
+    if (Verb.RELEASE, robot) in run.in_vain:
+        yield by_hand
+        yield replace(release, instead=True)
+        return
+    yield release
+    if obstacle is not None and obstacle.reason in AT_THE_DEVICE:
+        yield replace(by_hand, instead=True)
+
+
+def _running_home(run: CellRun, robot: str, why: Sentence) -> Iterator[Advice]:
+    """To have a robot find its reference, or to home it at its own controls where that has failed."""
+    failed = (Verb.HOME, robot) in run.in_vain
+    if failed:
+        yield Advice(do=Hand.REFERENCE, scope=robot, why=why)
+    yield Advice(do=Verb.HOME, scope=robot, why=why, moves=(robot,), instead=failed)
 
 
 def _can_leave(run: CellRun, robot: str) -> bool:
@@ -263,6 +291,7 @@ def _movers(run: CellRun) -> tuple[str, ...]:
 
 
 STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState.STOPPED)
+AT_THE_DEVICE = (Reason.LINK_LOST, Reason.DEVICE_FAULT, Reason.NOT_HOMED)  # why it cannot be told to let go
 AT_HAND = (CellState.IDLE, CellState.HELD)  # where a robot that is stopped was stopped by somebody else
 HANDS: dict[Reason, Hand] = {Reason.LINK_LOST: Hand.BRING_BACK, Reason.DEVICE_FAULT: Hand.REPAIR}
 Lead = Callable[[Advisor, CellRun, "frozenset[str]"], Iterator[Advice]]

@@ -10,11 +10,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.belief import Moment
+from arboleda.dispatch.dispatcher import BROKEN_OFF
 from arboleda.dispatch.ledger import State
 from arboleda.model.commands import Motion
 from arboleda.model.errors import QueueFull
 from arboleda.model.grips import Grip
-from arboleda.model.messages import Failure, Reason, TaskState
+from arboleda.model.messages import Failure, Reason, TaskState, Verb
 from arboleda.model.plant_model import Cell
 from arboleda.model.recipe import Build
 from arboleda.model.sentence import BOTH, NOTHING, Phrase, Sentence
@@ -66,6 +67,7 @@ class CellRun:
         self.awaits: Sentence | None = None  # for what a task of an earlier start waits before it can go on
         self.trouble: Failure | None = None  # why it is held
         self.stranded: Sentence | None = None  # why no step of a held task can go on from there
+        self.in_vain: set[tuple[Verb, str]] = set()  # what was done to get on, and failed, since it worked
         self.left_over = False  # whether tasks of an earlier start wait, since nobody said `resume`
         self.dirty = False
         self.closed = False
@@ -73,6 +75,7 @@ class CellRun:
         self._changed = changed
         self._ways_out = ways_out
         self._cancelling = False
+        self._recovers_anew = False
         self._stopped_after: dict[str, Moment] = {}
         self._stop_by = 0.0
 
@@ -298,7 +301,7 @@ class CellRun:
         else:
             self.become(Cause.RETRY)
             self.context.start_afresh()
-            self._recover()
+            self._recover(anew=True)
 
     def abandon(self) -> None:
         """Give the task up and recover; without a task, leave the cell as it is."""
@@ -447,6 +450,7 @@ class CellRun:
         self.context.go_on()
         self.become(Cause.ENDED)
         self.trouble = None
+        self.in_vain.clear()
 
     def _aborted(self) -> bool:
         """Leave `aborting` once every online robot is seen still, or the time for it is over."""
@@ -523,7 +527,8 @@ class CellRun:
             act.send()
 
     def _start(self, task: Task) -> None:
-        self.task, self._cancelling = task, False
+        self.task, self._cancelling, self._recovers_anew = task, False, False
+        self.in_vain.clear()
         self.context.answers = task.answers
         self.become(Cause.TASK)
         task.become(TaskState.RUNNING, self.context.plant_now)
@@ -542,8 +547,9 @@ class CellRun:
             self.trouble = self.trouble or Failure(reason=Reason.PART_LOST, sentence=LET_GO(arm=robot))
             self.stranded = NO_PART(arm=robot)
 
-    def _recover(self) -> None:
-        """Drop what runs, halting it, and run the recovery alone."""
+    def _recover(self, *, anew: bool = False) -> None:
+        """Drop what runs, halting it, and run the recovery alone; `anew`: after one that failed."""
+        self._recovers_anew = anew
         self.stranded = self.awaits = None
         self.keeping.end()
         self.run.drop()
@@ -563,8 +569,10 @@ class CellRun:
         self.run.drop()
         if not recovered:
             unknown = Failure(reason=Reason.INTERNAL, sentence=NO_CAUSE(cell=self.cell.name))
+            self._fail_again(self.context.last_failure or unknown)
             self._stuck(self.context.last_failure or unknown)
         else:
+            self.in_vain.clear()
             self.become(Cause.ENDED)
         if task is None:
             return
@@ -577,6 +585,12 @@ class CellRun:
         else:
             task.course = course
             self._finish(task, TaskState.DONE)
+
+    def _fail_again(self, failure: Failure) -> None:
+        """A recovery that somebody wanted once more has failed as well, by what the cell itself cannot do."""
+        if self._recovers_anew and failure.reason not in BROKEN_OFF:
+            self.in_vain.add((Verb.RETRY, self.cell.name))
+            self.in_vain.update((Verb.RELEASE, robot) for robot in self.context.unopened)
 
     def _stuck(self, failure: Failure) -> None:
         self.queue_paused = True

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from arboleda.model.commands import Command, Stop, StopMode
-from arboleda.model.messages import Heartbeat, Notice, OperatorAnswer, OperatorRequest
+from arboleda.model.messages import Heartbeat, Notice, OperatorAnswer, OperatorRequest, Outcome
 from arboleda.model.sentence import Phrase, Sentence
 
 from .plant import Plant
@@ -22,11 +21,8 @@ LEFT_UNKEPT = Phrase(
 EVERYTHING = Phrase("stop.everything", "the whole plant")
 
 
-@dataclass(frozen=True, kw_only=True)
 class StopLeft(OperatorAnswer):
-    """Answer to a stop that has left for its robots and is not kept; `sentence` says why."""
-
-    sentence: Sentence
+    """Answer to a stop that has left for its robots and is not kept; its `why` says so."""
 
 
 class Departure(NamedTuple):
@@ -59,8 +55,10 @@ def departure(messages: Sequence[Command | Notice]) -> Departure:
 
 def stop_left(request: OperatorRequest | OperatorAnswer, why: Sentence) -> StopLeft:
     """Answer to a request for a stop that is not kept because of `why`."""
-    sentence = LEFT_UNKEPT(scope=request.scope.strip() or EVERYTHING(), why=why)
-    return StopLeft(verb=request.verb, scope=request.scope, request=request.request, sentence=sentence)
+    unkept = LEFT_UNKEPT(scope=request.scope.strip() or EVERYTHING(), why=why)
+    return StopLeft(
+        verb=request.verb, scope=request.scope, request=request.request, outcome=Outcome.SENT, why=unkept
+    )
 
 
 def ends_motion(message: Command | Notice) -> bool:

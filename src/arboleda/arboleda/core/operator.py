@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import partial, reduce
 
 from arboleda.dispatch.belief import ONLY_DRAWN
-from arboleda.dispatch.dispatcher import Dispatcher
+from arboleda.dispatch.dispatcher import Dispatcher, was_broken_off
+from arboleda.dispatch.ledger import Entry, State
 from arboleda.dispatch.zones import NONE, Zones
 from arboleda.model.commands import Question
 from arboleda.model.errors import ArboledaError, IllegalTransition
-from arboleda.model.messages import Failure, Journal, OperatorRequest, Reason, TaskState, Verb
+from arboleda.model.messages import Failure, Journal, OperatorRequest, Outcome, Reason, TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import known
 from arboleda.model.sentence import Phrase, Sentence, Value
 
-from .advice import DO, OR
+from .acts import ENDED, Acts, OperatorAct, outcome_of
+from .advice import AND, DO, OR
 from .cell import NOT_YET, STILL_DOING, CellRun
 from .cell_states import Cause, CellState
 from .intake import Intake
@@ -32,7 +32,10 @@ class Refused(ArboledaError):
 PLANT = Phrase("scope.plant", "plant")
 DID = Phrase("did.verb", "{verb}")
 DID_BY_HAND = Phrase("did.by_hand", "{verb} by hand")
-DECLARED_HOMED = Phrase("did.declared_homed", "home {scope} by hand")
+DECLARED_BY_HAND = {
+    Verb.HOME: Phrase("did.declared_homed", "home {scope} by hand"),
+    Verb.RELEASE: Phrase("did.declared_empty", "release {scope} by hand: the part was taken out"),
+}
 DID_BY_CLIENT = Phrase("did.by_client", "{verb} by its client")
 NO_TASK = Phrase(
     "refusal.no_task",
@@ -94,6 +97,8 @@ NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
 OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cell that is {allowed}")
 NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
+RELEASE_ALL_FIRST = Phrase("refusal.release_all_first", "{devices} may each hold a part; {releases} first")
+HOLDS_NOTHING = Phrase("refusal.holds_nothing", "{devices} is not known to hold a part")
 NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
 NOT_ASKED = Phrase("refusal.not_asked", "nobody asks {person} anything now")
 NO_ANSWER = Phrase("refusal.no_answer", "{word} is no answer to what {person} is asked; answers: {known}")
@@ -105,20 +110,9 @@ QUESTION_OVER = Phrase(
 )
 NO_RUNNING_TASK = Phrase("refusal.no_running_task", "{cell} has no running task")
 
-ACTS_KEPT = 20  # what a screen shows of them; the journal has all
+BROKE = Phrase("act.broke", "{cell} failed on an internal error meanwhile; the log has its details")
 SHOWN = 10  # tasks that a sentence names
 QUESTION_ID = re.compile(r"#[0-9]+-[0-9]+")
-
-
-@dataclass(frozen=True, kw_only=True)
-class OperatorAct:
-    """What an operator did, at `at` s of the plant's clock."""
-
-    number: int
-    at: float
-    scope: str
-    cell: str | None  # None for the whole plant and for a zone, which several cells may share
-    sentence: Sentence
 
 
 class Operator:
@@ -140,21 +134,64 @@ class Operator:
         self._intake = intake
         self._clock = clock
         self._scopes = scopes(dispatcher.model)
-        self.acts: deque[OperatorAct] = deque(maxlen=ACTS_KEPT)
+        self.acts = Acts()
+        self._sent: list[Entry] = []  # the commands of the act that is being done
+        self._defects: list[Sentence] = []  # what broke in it
         reached = [robot for cell in cells.values() for robot in cell.cell.reached]
         self._reached = {robot.name for robot in reached}
         self._homing = {robot.name for robot in reached if robot.homes}
 
-    def act(self, request: OperatorRequest) -> None:
+    def act(self, request: OperatorRequest) -> OperatorAct:
         """Do it and journal it; Refused says why nothing was done."""
         scope = scope_of(request)
-        self._planned(request, scope)()
-        cell = self._cell_of(request, scope)
-        sentence = self._with_shared(request.verb, scope, _did(request, scope))
-        self._dispatcher.outbox.append(Journal(verb=request.verb, scope=scope, cell=cell, sentence=sentence))
-        number = self.acts[-1].number + 1 if self.acts else 1
-        act = OperatorAct(number=number, at=self._clock(), scope=scope, cell=cell, sentence=sentence)
-        self.acts.append(act)
+        do = self._planned(request, scope)
+        self._sent, self._defects = [], []
+        do()
+        outcome, why = self._at_once(request.verb)
+        act = OperatorAct(
+            number=self.acts.next_number,
+            at=self._clock(),
+            verb=request.verb,
+            scope=scope,
+            cell=self._cell_of(request, scope),
+            sentence=self._with_shared(request.verb, scope, _did(request, scope)),
+            outcome=outcome,
+            why=why,
+            ended_at=self._clock() if outcome is Outcome.FAILED else None,
+        )
+        self.acts.add(act, self._sent)
+        self._journal(act, act.sentence)
+        if outcome is Outcome.FAILED:
+            self._journal(act, act.ended, outcome)
+        return act
+
+    def _at_once(self, verb: Verb) -> tuple[Outcome, Sentence | None]:
+        """What has become of an act in the step in which it is asked."""
+        if self._defects:
+            return Outcome.FAILED, self._defects[0]
+        return (Outcome.SENT, None) if verb is Verb.STOP else outcome_of(self._sent)
+
+    def look(self) -> bool:
+        """Journal what has become of acts that devices carry out; whether one has ended."""
+        news = False
+        for act, entries in self.acts.ended(self._clock()):
+            self._journal(act, act.ended, act.outcome)
+            self._learn(act.verb, entries)
+            news = True
+        return news
+
+    def _learn(self, verb: Verb, entries: Sequence[Entry]) -> None:
+        """What devices could not do is advised no more before other ways; what they could, is again."""
+        for entry in entries:
+            tried = (verb, entry.command.robot)
+            if entry.state is State.DONE:
+                self._cells[entry.cell].in_vain.discard(tried)
+            elif not was_broken_off(entry):
+                self._cells[entry.cell].in_vain.add(tried)
+
+    def _journal(self, act: OperatorAct, sentence: Sentence, outcome: Outcome | None = None) -> None:
+        entry = Journal(verb=act.verb, scope=act.scope, cell=act.cell, sentence=sentence, outcome=outcome)
+        self._dispatcher.outbox.append(entry)
 
     def refusal(self, request: OperatorRequest) -> Sentence | None:
         """Why a request would be refused now; None where it would be done."""
@@ -179,7 +216,10 @@ class Operator:
         robots = self._robots(scope)
         if request.verb is Verb.HOME:
             return self._planned_homing(robots, by_hand=request.by_hand)
-        return self._planned_in_cells(request.verb, robots, self._cells_in(request.verb, scope))
+        cells = self._cells_in(request.verb, scope)
+        if request.verb is Verb.RELEASE and request.by_hand:
+            return self._planned_emptying(robots, cells)
+        return self._planned_in_cells(request.verb, robots, cells)
 
     def _cells_in(self, verb: Verb, scope: str) -> list[CellRun]:
         """The cells of a scope; what is no matter of all that share a device is one of who holds it."""
@@ -234,6 +274,7 @@ class Operator:
         except (Refused, IllegalTransition):
             raise
         except Exception as error:  # noqa: BLE001 - whatever it is, it ends the work of this cell, not the plant
+            self._defects.append(BROKE(cell=cell.cell.name))
             self._broke(cell.cell.name, error)
 
     def _cell_of(self, request: OperatorRequest, scope: str) -> str | None:
@@ -348,6 +389,27 @@ class Operator:
             raise Refused(why)
         return partial(cell.cancel, failure)
 
+    def _planned_emptying(self, robots: set[str], cells: list[CellRun]) -> Callable[[], None]:
+        """A person has taken out what devices hold; all of them are still, as far as the plant moves them."""
+        for cell in cells:
+            if cell.state in AT_WORK:
+                raise Refused(HOLD_FIRST(cell=cell.cell.name, state=cell.state.said))
+        able = [(cell, name) for cell in cells for name in cell.cell.holders if name in robots]
+        if not able:
+            raise Refused(NO_EFFECTOR(robot=sorted(robots)[0]))
+        holding = [(cell, name) for cell, name in able if name in cell.context.holding]
+        if not holding:
+            raise Refused(HOLDS_NOTHING(devices=tuple(dict.fromkeys(name for _, name in able))))
+        for cell, name in holding:
+            if (told := cell.context.told(name)) is not None:
+                raise Refused(STILL_DOING(robot=name, doing=told.doing))
+        return partial(self._empty, holding)
+
+    def _empty(self, holding: list[tuple[CellRun, str]]) -> None:
+        for cell, name in holding:
+            cell.let_go(name)
+            self._dispatcher.declare_empty(name)
+
     def _planned_homing(self, robots: set[str], *, by_hand: bool) -> Callable[[], None]:
         """What is only drawn, and what has no homing, is left out; asked for alone, it is refused."""
         robots = self._homing & robots or robots
@@ -365,16 +427,16 @@ class Operator:
                 self._dispatcher.declare_homed(name)
                 self._uproot(name)
             else:
-                self.home(name)
+                self._sent.append(self.home(name))
 
-    def home(self, name: str) -> None:
+    def home(self, name: str) -> Entry:
         """Have a robot run its homing routine; it keeps everybody out of its zones meanwhile."""
         cell = self._cells[self._dispatcher.model.cell_of[name].name]
         cell.uproot(name)
         if name in cell.cell.zone_users:
             cell.context.forsake()
             cell.context.claim_zones(name)
-        self._dispatcher.home(name, self._clock())
+        return self._dispatcher.home(name, self._clock())
 
     def _uproot(self, name: str) -> None:
         self._cells[self._dispatcher.model.cell_of[name].name].uproot(name)
@@ -472,7 +534,7 @@ class Operator:
         return _not_yet(cell)
 
     def _not_releasable(self, cell: CellRun, robots: set[str]) -> Sentence | None:
-        if cell.state in (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING):
+        if cell.state in AT_WORK:
             return HOLD_FIRST(cell=cell.cell.name, state=cell.state.said)
         able = [name for name in cell.cell.holders if name in robots]
         if not able:
@@ -486,7 +548,8 @@ class Operator:
             if name in robots:
                 cell.let_go(name)
                 make = self._dispatcher.model.robots[name].let_go
-                self._dispatcher.send(make, cell.cell.name, RELEASING(), self._clock(), by_hand=True)
+                now, name_of_cell = self._clock(), cell.cell.name
+                self._sent.append(self._dispatcher.send(make, name_of_cell, RELEASING(), now, by_hand=True))
 
 
 def scopes(model: PlantModel) -> dict[str, frozenset[str]]:
@@ -516,8 +579,8 @@ def _did(request: OperatorRequest, scope: str) -> Sentence:
     if request.verb is Verb.ANSWER:
         person, _, word = _answered(scope)
         scope = f"{person} {word}"
-    if request.by_hand and request.verb is Verb.HOME:
-        return DECLARED_HOMED(scope=_whole(scope))
+    if request.by_hand and request.verb in DECLARED_BY_HAND:
+        return DECLARED_BY_HAND[request.verb](scope=_whole(scope))
     did = DID_BY_HAND if request.by_hand else DID_BY_CLIENT if request.client else DID
     return did(verb=DO[request.verb](scope=_whole(scope)))
 
@@ -558,8 +621,17 @@ def _not_yet(cell: CellRun) -> Sentence | None:
 def _not_abandonable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
     if refusal is None and cell.task is None and (holding := cell.context.holding):
-        return RELEASE_FIRST(arm=holding[0])
+        return _release_first(holding)
     return refusal
+
+
+def _release_first(holding: list[str]) -> Sentence:
+    """That parts are to be released first, by everybody that may hold one."""
+    if len(holding) == 1:
+        return RELEASE_FIRST(arm=holding[0])
+    releases = [DO[Verb.RELEASE](scope=robot) for robot in holding]
+    said = reduce(lambda first, second: AND(first=first, second=second), releases)
+    return RELEASE_ALL_FIRST(devices=tuple(holding), releases=said)
 
 
 def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
@@ -571,7 +643,9 @@ def _not_cancellable(operator: Operator, cell: CellRun, robots: set[str]) -> Sen
 BY_OPERATOR = Phrase("task.cancelled_by_operator", "cancelled by the operator")
 BY_CLIENT = Phrase("task.cancelled_by_client", "cancelled by the client")
 ACTS_TOLD = {
-    phrase.key: phrase for phrase in (*DO.values(), PLANT, DID, DID_BY_HAND, DECLARED_HOMED, DID_BY_CLIENT)
+    phrase.key: phrase
+    for phrases in (DO.values(), DECLARED_BY_HAND.values(), ENDED.values())
+    for phrase in (*phrases, PLANT, DID, DID_BY_HAND, DID_BY_CLIENT)
 }
 """All that is said of what operators did, by key."""
 CANCELLED_BY_OPERATOR = Failure(reason=Reason.CANCELLED, sentence=BY_OPERATOR())
@@ -598,6 +672,7 @@ ACTS: dict[Verb, tuple[Check, Do]] = {
 # What is done in all cells before the act itself in any: no robot's stop waits for what ends in other cells.
 FIRST: dict[Verb, Do] = {Verb.STOP: Operator._latch}
 OF_ALL_WHO_SHARE = (Verb.STOP, Verb.CLEAR, Verb.RESET)
+AT_WORK = (CellState.EXECUTE, CellState.HOLDING, CellState.ABORTING)
 STOPPING = (CellState.ABORTING, CellState.ABORTED)
 UNTIL_RESET = (*STOPPING, CellState.CLEARING, CellState.STOPPED)
 # A cell in one of these states that cannot follow keeps the verb from all the scope; others are left out.

@@ -43,13 +43,14 @@ from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
 
+from .acts import OperatorAct
 from .advice import Advice
 from .advisor import Advisor
 from .cell import CellRun
 from .cell_states import CellState
 from .choosing import PastTimes, Prospect, best, prospect
 from .intake import CUT_OFF, Intake
-from .operator import Operator, OperatorAct, Refused
+from .operator import Operator, Refused
 
 HEARTBEAT_S = 0.25
 DEFECT = Phrase("plant.defect", "this failed on an internal error; the log has its details")
@@ -143,6 +144,7 @@ class Plant:
         if self.zones.is_used:
             self._watch_zones()
         self._advance()
+        self._changes += self._operator.look()
         self._beat()
         self.next_deadline = self._earliest()
         out, self.dispatcher.outbox = self.dispatcher.outbox, []
@@ -156,7 +158,7 @@ class Plant:
     @property
     def acts(self) -> Sequence[OperatorAct]:
         """What operators did last, oldest first."""
-        return self._operator.acts
+        return self._operator.acts.last
 
     def advice(self, cell: str) -> tuple[Advice, ...]:
         """What leads a cell out of its present state, in the order to do it; nothing where it works."""
@@ -464,9 +466,9 @@ class Plant:
 
     def _on_operator_request(self, request: OperatorRequest) -> None:
         self._changes += 1
-        refusal, before = None, len(self.dispatcher.outbox)
+        refusal, before, act = None, len(self.dispatcher.outbox), None
         try:
-            self._operator.act(request)
+            act = self._operator.act(request)
             for run in self.cells.values():
                 self._keep_trail(run, before)
         except (Refused, IllegalTransition) as error:
@@ -475,7 +477,13 @@ class Plant:
             refusal = DEFECT()
             self.dispatcher.outbox.append(InternalError(cell="", error=error))
         answer = OperatorAnswer(
-            verb=request.verb, scope=request.scope, refusal=refusal, request=request.request
+            verb=request.verb,
+            scope=request.scope,
+            refusal=refusal,
+            request=request.request,
+            act=act.number if act else None,
+            outcome=act.outcome if act else None,
+            why=act.why if act else None,
         )
         self.dispatcher.outbox.append(answer)
 

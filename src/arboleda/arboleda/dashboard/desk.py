@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 from collections.abc import Awaitable
 from concurrent.futures import Future
 from typing import TypeVar
@@ -13,10 +14,10 @@ from nicegui import Client
 
 from arboleda.adapters.task_rows import PAGE
 from arboleda.adapters.web.auth import SUBMIT, allowed
-from arboleda.core.leaving import StopLeft
+from arboleda.core.advice import BY_HAND
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Verb
-from arboleda.model.sentence import in_json
+from arboleda.model.messages import Outcome, Verb
+from arboleda.model.sentence import Sentence, in_json
 
 from . import demo
 from .feed import Feed
@@ -25,7 +26,10 @@ from .plant_side import PlantSide
 from .wording import Words
 
 ANSWER_S = 5.0
+LOOK_S = 0.2
+FOLLOWED_S = 120.0  # a homing may take a minute
 DOWNLOAD = "download"
+GOOD = {Outcome.UNDER_WAY: None, Outcome.UNCHECKED: None, Outcome.FAILED: False}
 
 Answer = TypeVar("Answer")
 
@@ -69,13 +73,34 @@ class Desk(OpenPage):
         answer = await self._answered(self._plant.operate(verb, scope, by_hand=by_hand))
         if answer is None:
             return
-        if isinstance(answer, StopLeft):
-            self.say(self._words.say(answer.sentence), good=False)
+        if answer.refusal is not None:
+            self.say(self._words.say(answer.refusal), good=False)
             return
-        what = self._words.of("verb", verb.value)
+        if answer.outcome is Outcome.SENT and answer.why is not None:  # a stop that is not kept
+            self.say(self._words.say(answer.why), good=False)
+            return
+        name = f"{verb.value}_by_hand" if by_hand and verb in BY_HAND else verb.value
         where = _without_number(scope) if verb is Verb.ANSWER else scope or self._words("panel.plant")
-        done = self._words("panel.done", what=what, where=where)
-        self.say(done if answer.refusal is None else self._words.say(answer.refusal), good=not answer.refusal)
+        act = {"what": self._words.of("verb", name), "where": where}
+        self._tell(answer.outcome or Outcome.DONE, answer.why, act)
+        if answer.outcome is Outcome.UNDER_WAY and answer.act is not None:
+            await self._follow(answer.act, act)
+
+    async def _follow(self, number: int, act: dict[str, str]) -> None:
+        """Say what has become of an act, once that is known."""
+        until = time.monotonic() + FOLLOWED_S
+        while self.connected and time.monotonic() < until:
+            await asyncio.sleep(LOOK_S)
+            row = self._plant.act(number)
+            if row is None:
+                return
+            if row["outcome"] != Outcome.UNDER_WAY.value:
+                self._tell(Outcome(row["outcome"]), row["why"], act)
+                return
+
+    def _tell(self, outcome: Outcome, why: Sentence | None, act: dict[str, str]) -> None:
+        said = {} if why is None else {"why": self._words.say(why)}
+        self.say(self._words(f"panel.{outcome.value}", **act, **said), good=GOOD.get(outcome, True))
 
     async def _answered(self, future: Future[Answer]) -> Answer | None:
         """What the plant answers; None once the page was told why there is no answer."""

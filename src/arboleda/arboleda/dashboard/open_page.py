@@ -51,6 +51,6 @@ class OpenPage:
         """Somebody asks for something."""
         raise NotImplementedError
 
-    def say(self, sentence: str, *, good: bool) -> None:
-        """Show an answer."""
+    def say(self, sentence: str, *, good: bool | None) -> None:
+        """Show an answer; `good` is None where nobody can say yet."""
         self._client.run_javascript(f"arboleda.answer({json.dumps(sentence)}, {json.dumps(good)})")

@@ -35,6 +35,7 @@ OFFERS: dict[str, tuple[Verb, Offer]] = {
     "abandon": (Verb.ABANDON, Offer(scopes="cell")),
     "cancel": (Verb.CANCEL, Offer(scopes="cell")),
     "release": (Verb.RELEASE, Offer(scopes="holder", asks=1)),
+    "release_by_hand": (Verb.RELEASE, Offer(scopes="holder", asks=1, by_hand=True)),
     "unload": (Verb.UNLOAD, Offer(scopes="plant cell")),
     "home": (Verb.HOME, Offer(scopes="mover", asks=1)),
     "home_by_hand": (Verb.HOME, Offer(scopes="mover_alone", asks=1, by_hand=True)),

@@ -71,5 +71,8 @@ class PlantSide(Protocol):
     def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
         """An operator's act; `scope` is "" for the plant."""
 
+    def act(self, number: int) -> dict[str, Any] | None:
+        """What has become of an operator's act by now; None where the plant knows it no more."""
+
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
         """Have every changed snapshot told in the plant's thread; returns what ends that."""

@@ -69,6 +69,7 @@ def _card(layout: dict[str, Any], devices: list[dict[str, Any]], words: Words) -
             live("span", f"{cell}.queue")
         live("span", f"{cell}.cause", classes="trouble")
         live("span", f"{cell}.trouble", classes="trouble")
+        live("span", f"{cell}.act", classes="act-line")
     for device in devices:
         if device["asked"]:
             _asked(device["name"])

@@ -67,8 +67,10 @@ NOT_STOPPED = Phrase(
 )
 UNSENT = (Link.NONE, Link.SCREEN)  # nothing leaves the plant for these
 LATCHED, CLEARED = "on", "cleared"  # a stop as it is kept: until clear, and until reset
-DISPLACED = "true"
+DISPLACED = EMPTIED = "true"
 HOMING_S = 30.0  # a slow search for the switch, and back off it
+BROKEN_OFF = frozenset({Reason.LINK_LOST, Reason.REBOOTED, Reason.STOPPED, Reason.CANCELLED, Reason.INTERNAL})
+"""What befell a command that its device might have carried out."""
 KNOWN_STILL = frozenset({Reason.STOPPED_SHORT, Reason.NOT_REACHED, Reason.STOPPED})
 
 
@@ -106,6 +108,7 @@ class Dispatcher:
         stopped = memory.get(Fact.LATCH, {})
         self.latched = {name for name in self.beliefs if stopped.get(name) == LATCHED}
         self.cleared = {name for name in self.beliefs if stopped.get(name) == CLEARED}
+        self.unopened: set[str] = set()  # who was told last to let go, and could not
         # who let go unbidden since the last command to its effector, and how
         self.opened: dict[str, Sentence] = {}
         self.cut_off: set[str] = (
@@ -164,6 +167,7 @@ class Dispatcher:
             self._last_work[command.robot] = entry
         if isinstance(command, Switch) and command.grips is not None:
             self.opened.pop(command.robot, None)
+            self.remember(Fact.EMPTIED, command.robot, None)
             if not command.grips:
                 self.grips.open(command.robot, command.id)
             self._grip(command.robot, Grip.SWITCHING)
@@ -254,10 +258,10 @@ class Dispatcher:
         """Of whom or what a fact is kept."""
         return {name for (kind, name), value in self._kept.items() if kind is fact and value is not None}
 
-    def home(self, robot: str, now: float) -> None:
+    def home(self, robot: str, now: float) -> Entry:
         """Have a robot run its homing routine."""
         cell = self.model.cell_of[robot].name
-        self.send(partial(Home, robot=robot), cell, HOMING(), now)
+        return self.send(partial(Home, robot=robot), cell, HOMING(), now)
 
     def _displace(self, belief: Belief, *, displaced: bool) -> None:
         """Whether the position of a robot that cannot say so means anything outlives the plant."""
@@ -272,6 +276,17 @@ class Dispatcher:
         stands = belief.state in (None, MotionState.STOPPED)
         if belief.robot.reference is not None and not belief.supervised and stands:
             self.reached[robot] = belief.robot.reference
+        self.wake([robot])
+
+    def declare_empty(self, robot: str) -> None:
+        """A person has taken out what a device held: it holds nothing, even where it goes on saying so, until
+        it is told to grip or to let go, or says itself that it is empty.
+        """
+        belief = self.beliefs[robot]
+        self.cut_off.discard(robot)
+        if belief.held_in(belief):
+            self.remember(Fact.EMPTIED, robot, EMPTIED)
+        self._grip(robot, Grip.OFF)
         self.wake([robot])
 
     def forget_zone(self, zone: str) -> None:
@@ -431,7 +446,9 @@ class Dispatcher:
                 guard(self.model.cell_of[name].name, partial(self._went_stale, belief, now))
 
     def _end_overdue(self, entry: Entry, now: float) -> None:
-        self._book(entry, _overdue(entry), now)
+        verdict = _overdue(entry)
+        entry.settled = verdict.feed is Feed.DONE
+        self._book(entry, verdict, now)
 
     def _new_id(self) -> str:
         self._count += 1
@@ -541,6 +558,8 @@ class Dispatcher:
         if self.grips.set(arm, grip):
             self.version += 1
             self.remember(Fact.EFFECTOR, arm, grip.value)
+        if grip is Grip.OFF:
+            self.unopened.discard(arm)
 
     def _note_opening(self, belief: Belief, *, rebooted: bool) -> None:
         """An effector that was on is off; where no command of this plant is open for it, that is news."""
@@ -564,7 +583,14 @@ class Dispatcher:
         return arm in self.cut_off or any(_grips(entry.command) for entry in self.ledger.of_robot(arm))
 
     def _settle_grip(self, robot: str, grip: Grip) -> None:
-        """An effector that nobody is switching, and that does not open late, is what its board reports."""
+        """An effector that nobody is switching, and that does not open late, is what its board reports.
+
+        What a person has emptied stays so until it says that itself.
+        """
+        if grip is Grip.OFF:
+            self.remember(Fact.EMPTIED, robot, None)
+        elif self.kept(Fact.EMPTIED, robot) is not None:
+            return
         switches = self._switches(robot) or (grip is Grip.ON and robot in self.grips.opening)
         if self.grips[robot] is not grip and not switches:
             self._grip(robot, grip)
@@ -617,6 +643,8 @@ class Dispatcher:
         self.version += entry.state is not before
         if entry.state in (State.DONE, State.CANCELLED):
             self.under_way.ended(entry.command)
+        if _lets_go(entry.command) and entry.state is State.FAILED and not was_broken_off(entry):
+            self.unopened.add(entry.command.robot)
         if entry.state is State.DONE:
             self._done(entry.command)
         elif verdict.feed is Feed.REJECTED:
@@ -649,6 +677,15 @@ class Dispatcher:
             sentence = NO_TELEMETRY(robot=name, seconds=silence_s, doing=entry.doing)
             failure = Failure(reason=Reason.LINK_LOST, sentence=sentence)
             self._book(entry, Verdict(feed=Feed.FAILED, failure=failure), now)
+
+
+def was_broken_off(entry: Entry) -> bool:
+    """Whether a command failed by what befell it from outside, or was halted: its device is not the cause."""
+    return entry.failure is None or entry.failure.reason in BROKEN_OFF
+
+
+def _lets_go(command: Command) -> bool:
+    return isinstance(command, Switch) and command.grips is False
 
 
 def _grips(command: Command) -> bool:

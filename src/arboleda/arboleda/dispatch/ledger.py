@@ -88,6 +88,7 @@ class Entry:
         self.deadline = deadline
         self.origin: Position | None = None  # where its robot was believed to stand then
         self.settles_at: float | None = None
+        self.settled = False  # it counts as done because its time was over: nothing was reported of it
         self.left = True  # False: its robot was not ready for it
         self.too_early = False  # it never left, because its robot was still moving
         self.state = State.SENT

@@ -161,14 +161,30 @@ class TaskChanged:
     course: Course | None = field(default=None, repr=False)
 
 
+class Outcome(str, Enum):
+    """What has become of an operator's act."""
+
+    SENT = "sent"  # a stop: whether robots stand shows in what they report
+    UNDER_WAY = "under_way"  # devices were told to do it, and have not ended
+    DONE = "done"
+    UNCHECKED = "unchecked"  # devices were told, and report nothing of it
+    FAILED = "failed"
+
+
 @dataclass(frozen=True, kw_only=True)
 class OperatorAnswer:
-    """What became of an operator's request; `refusal` says why nothing was done, None where it was."""
+    """What became of an operator's request; `refusal` says why nothing was done, None where it was.
+
+    `act` is the number under which its `outcome`, and why so, is told on where that is still to come.
+    """
 
     verb: Verb
     scope: str
     refusal: Sentence | None = None
     request: str | None = None
+    act: int | None = field(default=None, repr=False)
+    outcome: Outcome | None = field(default=None, repr=False)
+    why: Sentence | None = field(default=None, repr=False)
 
 
 class Fact(str, Enum):
@@ -176,6 +192,7 @@ class Fact(str, Enum):
 
     LATCH = "latch"  # robot -> "on", or "cleared" until its cell is reset
     EFFECTOR = "effector"  # arm -> "on", "off" or "switching"
+    EMPTIED = "emptied"  # device that says that it holds a part -> "true" while a person has taken that out
     QUARANTINE = "quarantine"  # zone -> the robot that may still be in it
     STORED = "stored"  # cell -> the numbers of its stations with a part, "0 7"
     DISPLACED = "displaced"  # robot that cannot say so -> "true" while its position means nothing
@@ -194,12 +211,16 @@ class Remember:
 
 @dataclass(frozen=True, kw_only=True)
 class Journal:
-    """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more."""
+    """One act of an operator, kept for good; `cell` is the one it was for, None where it was for more.
+
+    An act of devices has two of them: `outcome` is in that of its end.
+    """
 
     verb: Verb
     scope: str
     cell: str | None
     sentence: Sentence
+    outcome: Outcome | None = field(default=None, repr=False)
 
 
 def outlives_power(kept: Remember | Journal | TaskChanged) -> bool:
@@ -372,7 +393,8 @@ class OperatorRequest:
     The scope of `unload` may be a cell and a station, that of `answer` is a person and the
     answer, and between them, after a #, the id of the question where only that one is meant.
 
-    `by_hand` (home) declares a robot homed that stands at its reference. `client` (cancel): who asks is no
+    `by_hand` declares what a person has done: a robot stands at its reference (home), the part that a device
+    held was taken out (release). `client` (cancel): who asks is no
     operator but the client of the task itself.
     """
 

@@ -116,6 +116,10 @@ class ArmBody(Robotic):
         self.holding = self.holding and on
         self._grip()
 
+    def take_out(self) -> None:
+        """The effector stays as it is switched, and does not notice."""
+        self.lose_piece()
+
     def lose_piece(self) -> None:
         """The piece falls; the effector does not notice."""
         self.holding = False

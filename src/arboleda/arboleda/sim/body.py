@@ -36,6 +36,9 @@ class Robotic:
     def set_by_hand(self, facts: Facts) -> None:
         """It has no facts."""
 
+    def take_out(self) -> None:
+        """It holds nothing."""
+
     homes = True
     ends: Sequence[End] = ()
     finishes = False
@@ -117,6 +120,9 @@ class Body(Protocol):
 
     def set_by_hand(self, facts: Facts) -> None:
         """Somebody makes facts so at the machine, which does nothing meanwhile."""
+
+    def take_out(self) -> None:
+        """Somebody takes out the part that the machine holds, which does nothing meanwhile."""
 
     def put_at_reference(self) -> None:
         """Somebody moves the still robot by hand to its reference, and has it count from there."""

@@ -88,6 +88,10 @@ class MachineBody:
         if not self._deeds:
             self.facts.update(facts)
 
+    def take_out(self) -> None:
+        if self.kind.held_fact is not None:
+            self.set_by_hand(((self.kind.held_fact, False),))
+
     def place(self, told: body.Told, *, holds: bool) -> None:
         self.facts.update(told.facts or ())
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from arboleda.core.advice import Advice, Hand
+from arboleda.model.messages import Verb
 
 from .world import World
 
 
 def do(world: World, advice: Advice) -> None:
-    """Do what is advised; who says that a robot is homed by hand has put it at its reference before."""
+    """Do what is advised; who declares what was done by hand has done that before."""
     if isinstance(advice.do, Hand):
         HANDS[advice.do](world, advice.scope)
     elif advice.by_hand:
-        world.home_by_hand(advice.scope)
+        BY_HAND[advice.do](world, advice.scope)
     else:
         world.request_verb(advice.do, advice.scope)
 
@@ -51,6 +52,10 @@ def _free(world: World, device: str) -> None:
             return
 
 
+BY_HAND: dict[Verb, Callable[[World, str], None]] = {
+    Verb.HOME: World.home_by_hand,
+    Verb.RELEASE: World.release_by_hand,
+}
 HANDS: dict[Hand, Callable[[World, str], None]] = {
     Hand.BRING_BACK: _bring_back,
     Hand.REPAIR: _repair,

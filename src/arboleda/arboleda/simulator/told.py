@@ -135,8 +135,10 @@ class Told:
         self._started: set[str] = set()
         world.watchers.append(self._look)
         for act in script.acts:
-            if act.by_hand:
+            if act.by_hand and act.verb is Verb.HOME:
                 world.at(world.now + max(0.0, act.at - BY_HAND_S), world.put_at_reference, act.scope)
+            elif act.by_hand and act.verb is Verb.RELEASE:
+                world.at(world.now + max(0.0, act.at - BY_HAND_S), world.take_out, act.scope)
             world.at(world.now + act.at, self._do, act)
         world.at(world.now + script.ends, lambda _: self.go())
 

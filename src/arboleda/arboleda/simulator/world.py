@@ -232,7 +232,7 @@ class World:
         self.tell(TaskRequest(at=self.now, text=text, request=text if token is None else token, kept=kept))
 
     def request_verb(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> None:
-        """An operator acts; one who says that a robot is homed by hand has put it at its reference before."""
+        """An operator acts; one who declares what was done by hand has done that before."""
         self.tell(OperatorRequest(at=self.now, verb=verb, scope=scope, by_hand=by_hand))
 
     def home_by_hand(self, scope: str) -> None:
@@ -245,6 +245,18 @@ class World:
         for name in self._boards_of(scope):
             if not self.boards[name].body.moving:
                 self.boards[name].put_at_reference()
+                self.moment.put_right.append(name)
+
+    def release_by_hand(self, scope: str) -> None:
+        """Somebody takes out what the still robots of a scope hold, then tells the plant so."""
+        self.take_out(scope)
+        self.at(self.now + BY_HAND_S, self._declare_empty, scope)
+
+    def take_out(self, scope: str) -> None:
+        """Somebody takes out what the still robots of a scope hold."""
+        for name in self._boards_of(scope):
+            if not self.boards[name].body.moving:
+                self.boards[name].body.take_out()
                 self.moment.put_right.append(name)
 
     def open_effector(self, board: str) -> None:
@@ -785,6 +797,9 @@ class World:
         if not any(self.boards[name].body.moving for name in self._boards_of(scope)):
             self.put_at_reference(scope)
             self.request_verb(Verb.HOME, scope, by_hand=True)
+
+    def _declare_empty(self, scope: str) -> None:
+        self.request_verb(Verb.RELEASE, scope, by_hand=True)
 
     def _boards_of(self, scope: str) -> list[str]:
         """The boards of a robot, a cell or the plant."""

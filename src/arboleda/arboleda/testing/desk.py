@@ -73,7 +73,8 @@ class Desk:
     def operate(self, verb: Verb, scope: str, *, by_hand: bool) -> str | None:
         """Act as an operator; why the plant refused, None where it did as asked."""
         if by_hand:
-            self._world.put_at_reference(scope)
+            prepare = {Verb.HOME: self._world.put_at_reference, Verb.RELEASE: self._world.take_out}
+            prepare[verb](scope)
             self._world.advance(BY_HAND_S)
         self._answers.clear()
         self._world.request_verb(verb, scope, by_hand=by_hand)

@@ -250,6 +250,19 @@ class Context:
         """The robots of the cell in whose effector a part may hang."""
         return [robot for robot in self.cell.holders if self._dispatcher.grips.holding(robot)]
 
+    def told(self, robot: str) -> Entry | None:
+        """The first command that a robot has not ended."""
+        return next(iter(self._dispatcher.ledger.of_robot(robot)), None)
+
+    @property
+    def unopened(self) -> list[str]:
+        """Those of them that were told last to let go, and could not."""
+        return [robot for robot in self.holding if robot in self._dispatcher.unopened]
+
+    def obstacle_to_opening(self, robot: str) -> Failure | None:
+        """Why a robot cannot be told now to let go."""
+        return self._dispatcher.obstacle_to_opening(robot)
+
     def opening_tool(self, robot: str) -> str | None:
         """The tool of a robot that may still let go of a part because it was told to."""
         return self._dispatcher.opening_tool(robot)

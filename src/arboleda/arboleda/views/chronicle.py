@@ -7,6 +7,7 @@ from collections.abc import Container, Iterable, Iterator
 from typing import Any
 
 from arboleda.core.cell import BY_OPERATOR
+from arboleda.model.messages import Outcome
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
 from .view import devices_once
@@ -31,6 +32,7 @@ class Chronicle:
         self._count = 0
         self._known: dict[tuple[str, str], str] = {}
         self._last_act = self._last_interference = 0
+        self._awaited: set[int] = set()  # the acts whose end is still to come
         for act in past_acts:
             self._did(act["at"], act)
 
@@ -39,7 +41,12 @@ class Chronicle:
         for act in snapshot["acts"]:
             if act["number"] > self._last_act:
                 self._last_act = act["number"]
+                self._awaited.add(act["number"])
                 self._did(unix_s - (snapshot["at"] - act["at"]), act)
+            if act["number"] in self._awaited and act["outcome"] != Outcome.UNDER_WAY:
+                self._awaited.discard(act["number"])
+                if act["ended"] is not None:
+                    self._ended(unix_s - (snapshot["at"] - act["ended_at"]), act)
         told = (*self._interference(snapshot), *_states(snapshot, self._known))
         for cell, kind, subject, what, sentence in told:
             if kind == "foreign" or self._known.get((kind, subject)) != what:
@@ -53,6 +60,11 @@ class Chronicle:
         self._add(
             unix_s, act["cell"], "operator", act["scope"] or "plant", "did", as_sentence(act["sentence"])
         )
+
+    def _ended(self, at: float, act: Row) -> None:
+        """It is known what has become of it."""
+        subject = act["scope"] or "plant"
+        self._add(at, act["cell"], "operator", subject, act["outcome"], as_sentence(act["ended"]))
 
     def _interference(self, snapshot: Row) -> Iterator[Told]:
         cell_of = _cells(snapshot)

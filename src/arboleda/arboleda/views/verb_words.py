@@ -77,9 +77,11 @@ ABOUT: dict[Verb, VerbWords] = {
     Verb.RELEASE: VerbWords(
         scopes=("cell", "arm"),
         brief="Open the effector where it is; a part that it holds falls.",
-        does="switches the effector off where it is; **a part that it holds falls**",
+        does="switches the effector off where it is; **a part that it holds falls**. Nothing opens with "
+        "`--by-hand`: you declare that you have taken the part out, even where the device still says that it "
+        "holds it",
         refused="while a task runs or something still moves; for an arm that is offline, in fault or not "
-        "homed",
+        "homed, but not by hand; by hand where nothing is known to be held",
     ),
     Verb.HOME: VerbWords(
         scopes=("cell", "robot"),

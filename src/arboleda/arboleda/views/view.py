@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
-from arboleda.core.advice import Advice, Hand, in_words, sentence
+from arboleda.core.acts import OperatorAct
+from arboleda.core.advice import BY_HAND, Advice, Hand, in_words, sentence
 from arboleda.core.cell import CellRun
 from arboleda.core.cell_states import CellState
-from arboleda.core.operator import OperatorAct
 from arboleda.core.plant import Plant
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry
@@ -241,11 +242,10 @@ def _advice(advice: Advice) -> dict[str, Any]:
 
 
 def _refused(plant: Plant, scope: str, verbs: tuple[Verb, ...]) -> dict[str, Sentence]:
-    """The verbs that would be refused there now, and why; homing by hand is `home_by_hand`."""
+    """The verbs that would be refused there now, and why; by hand they are `home_by_hand`, ..."""
     asked = {verb.value: OperatorRequest(at=plant.now, verb=verb, scope=scope) for verb in verbs}
-    if Verb.HOME in verbs:
-        by_hand = OperatorRequest(at=plant.now, verb=Verb.HOME, scope=scope, by_hand=True)
-        asked["home_by_hand"] = by_hand
+    for verb in filter(BY_HAND.__contains__, verbs):
+        asked[f"{verb.value}_by_hand"] = replace(asked[verb.value], by_hand=True)
     found = {name: plant.refusal(request) for name, request in asked.items()}
     return {name: why for name, why in found.items() if why is not None}
 
@@ -367,11 +367,24 @@ def _rejected(known: tuple[int, Sentence | None] | None) -> dict[str, Any]:
 
 
 def _act(act: OperatorAct) -> dict[str, Any]:
-    """What an operator did; `number` grows by one with every act."""
+    """What an operator did and what became of it; `number` grows by one with every act.
+
+    `ended` says its end, at `ended_at`, where it did not come with the act.
+    """
     return {
         "number": act.number,
         "at": act.at,
         "scope": act.scope,
         "cell": act.cell,
         "sentence": act.sentence,
+        "verb": act.verb.value,
+        "outcome": act.outcome.value,
+        "why": act.why,
+        "ended_at": act.ended_at,
+        "ended": None if act.ended_at is None else act.ended,
     }
+
+
+def act_by_number(plant: Plant, number: int) -> dict[str, Any] | None:
+    """One of the last acts of operators, None where the plant knows it no more."""
+    return next((_act(act) for act in plant.acts if act.number == number), None)

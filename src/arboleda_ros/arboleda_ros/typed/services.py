@@ -8,6 +8,7 @@ from arboleda_interfaces.msg import Task
 from arboleda_interfaces.srv import CellCommand, SubmitTask
 from rclpy.node import Node
 
+from arboleda.core.advice import BY_HAND
 from arboleda.model.messages import TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.views import view
@@ -39,15 +40,13 @@ class Services:
         return response
 
     def _command(self, request: CellCommand.Request, response: CellCommand.Response) -> CellCommand.Response:
-        response.success, response.message = self._outcome(request)
+        response.success, response.message = self._operated(request)
         return response
 
-    def _outcome(self, request: CellCommand.Request) -> Outcome:
+    def _operated(self, request: CellCommand.Request) -> tuple[bool, str]:
         verb = _VERBS.get(request.verb.strip().lower())
         if verb is None:
-            return Outcome(
-                success=False, message=f"{quoted(request.verb)} is no verb; there are {', '.join(_VERBS)}"
-            )
-        if request.by_hand and verb is not Verb.HOME:
-            return Outcome(success=False, message=f"by_hand is for home only, not for {verb.value}")
-        return self._asker.outcome(verb, request.scope, by_hand=request.by_hand)
+            return False, f"{quoted(request.verb)} is no verb; there are {', '.join(_VERBS)}"
+        if request.by_hand and verb not in BY_HAND:
+            return False, f"by_hand is for home and release only, not for {verb.value}"
+        return self._asker.operate(verb, request.scope, by_hand=request.by_hand)

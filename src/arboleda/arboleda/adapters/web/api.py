@@ -21,7 +21,7 @@ from starlette.exceptions import HTTPException
 from arboleda import __version__
 from arboleda.core.leaving import StopLeft
 from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextError
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
 
 from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table
@@ -32,6 +32,7 @@ from .nothing_else import NothingElse
 from .plain_json import PlainJson, explained
 from .plant_side import COMMAND_LINE, PlantSide
 from .schema import (
+    Act,
     ByHand,
     CellOee,
     Done,
@@ -40,7 +41,6 @@ from .schema import (
     Promise,
     Sentence,
     Snapshot,
-    StopSent,
     Task,
     TaskForm,
     TaskText,
@@ -70,13 +70,15 @@ REFUSED: Answers = {
     503: {"model": Sentence, "description": "Not now; with Retry-After where a queue is full."},
 }
 WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong."}}
-UNKEPT: Answers = {
+ACCEPTED: Answers = {
     202: {
-        "model": StopSent,
-        "description": "A stop has left for its robots, and the plant cannot keep it, or not yet.",
+        "model": Done,
+        "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its robots, "
+        "and the plant cannot keep it, or not yet.",
     }
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
+NO_ACT: Answers = {404: {"model": Sentence, "description": "The plant does not know this act (any more)."}}
 UNKNOWN: Answers = {404: {"model": Sentence, "description": "There is no such task."}}
 
 
@@ -113,6 +115,7 @@ def routes(side: PlantSide) -> APIRouter:
     _look(api, side)
     _submit(api, side)
     _operate(api, side)
+    _follow(api, side)
     return api
 
 
@@ -169,6 +172,16 @@ def _look(api: APIRouter, side: PlantSide) -> None:
         return PlainJson(explained(known))
 
 
+def _follow(api: APIRouter, side: PlantSide) -> None:
+    @api.get("/acts/{number}", response_model=Act, responses=NO_ACT)
+    async def act(number: int) -> JSONResponse:
+        """What has become of an operator's act by now; the last 20 are known."""
+        known = side.act(number)
+        if known is None:
+            raise HTTPException(404, f"The plant knows no act {number} of an operator, or no more.")
+        return PlainJson(known)
+
+
 def _submit(api: APIRouter, side: PlantSide) -> None:
     @api.post(
         "/tasks",
@@ -193,7 +206,7 @@ def _submit(api: APIRouter, side: PlantSide) -> None:
 def _operate(api: APIRouter, side: PlantSide) -> None:
     verb_route: dict[str, Any] = {
         "response_model": Done,
-        "responses": UNKEPT | REFUSED | CONFLICT,
+        "responses": ACCEPTED | REFUSED | CONFLICT,
         "openapi_extra": _body(ByHand, required=False),
     }
 
@@ -213,10 +226,10 @@ def _operate(api: APIRouter, side: PlantSide) -> None:
         answer = await in_time(side.operate(verb, scope, by_hand=by_hand))
         if answer.refusal is not None:
             return PlainJson(explained({"sentence": answer.refusal}), status_code=409)
-        done = {"verb": verb.value, "scope": scope}
-        if isinstance(answer, StopLeft):
-            return PlainJson(explained({**done, "sentence": answer.sentence}), status_code=202)
-        return JSONResponse(done)
+        known = {"act": answer.act, "outcome": answer.outcome, "why": answer.why}
+        told = {name: value for name, value in known.items() if value is not None}
+        is_open = isinstance(answer, StopLeft) or answer.outcome is Outcome.UNDER_WAY
+        return PlainJson({"verb": verb.value, "scope": scope, **told}, status_code=202 if is_open else 200)
 
 
 async def in_time(answer: Future[Answer]) -> Answer:

@@ -51,5 +51,8 @@ class PlantSide(Protocol):
     def operate(self, verb: Verb, scope: str, *, by_hand: bool = False) -> Future[OperatorAnswer]:
         """A future of what became of the verb; `scope` is "" for the whole plant."""
 
+    def act(self, number: int) -> dict[str, Any] | None:
+        """One of the last acts of operators by its number, None where the plant knows it no more."""
+
     def watch(self, callback: Callable[[Snapshot], None]) -> Callable[[], None]:
         """Have each changed snapshot told in the plant's thread, which must not wait; the way to end it."""

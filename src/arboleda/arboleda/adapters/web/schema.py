@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from arboleda.core.cell_states import CellState
 from arboleda.core.text import BETWEEN_CELLS
-from arboleda.model.messages import Verb
+from arboleda.model.messages import Outcome, Verb
 
 from ..oee_rows import OeeQuery
 from ..task_rows import TaskQuery
@@ -112,7 +112,9 @@ class TaskForm(_Asked):
 
 class ByHand(_Asked):
     by_hand: bool = Field(
-        default=False, description="For home: nothing moves, you declare that the robot is at its reference."
+        default=False,
+        description="Nothing moves, you declare what was done by hand: for home, that the robot is at its "
+        "reference; for release, that the part was taken out.",
     )
 
 
@@ -134,6 +136,10 @@ class TaskAnswer(_Told):
     answer: bool | int | float | str
 
 
+OUTCOME = (
+    "sent: a stop; whether robots stand shows in what they report. under_way: devices were told to. done. "
+    "unchecked: devices were told, and report nothing of it. failed."
+)
 CHOICE = "Why it is done in this cell, where several were allowed."
 
 
@@ -228,12 +234,28 @@ class Offer(_Told):
 
 
 class Done(_Told):
+    """A verb that is not refused; where it is `under_way`, `GET /api/acts/<act>` tells its end."""
+
     verb: Verb
     scope: str = Field(description="A cell, robot, zone or task id; empty for the whole plant.")
+    act: int | None = Field(default=None, description="Its number, in this start of the plant.")
+    outcome: Outcome | None = Field(default=None, description=OUTCOME)
+    why: str | None = Field(default=None, description="Why it failed, cannot be checked, or is not kept.")
 
 
-class StopSent(Done, Sentence):
-    """A stop that has left for its robots; why the plant has not kept it."""
+class Act(_Told):
+    """What an operator did, and what has become of it."""
+
+    number: int = Field(description="Grows by one with each act; of this start of the plant.")
+    at: float = Field(description="On the plant's clock.")
+    verb: Verb
+    scope: str
+    cell: str | None = Field(description="Null where it is of several.")
+    sentence: str
+    outcome: Outcome = Field(description=OUTCOME)
+    why: str | None = Field(description="Why it failed, or cannot be checked.")
+    ended_at: float | None = Field(description="When that was known, where it was not with the act.")
+    ended: str | None = Field(description="Its end in words, then.")
 
 
 class Advice(_Told):
@@ -242,7 +264,9 @@ class Advice(_Told):
     do: str = Field(description="A verb; or, where `hand`: bring_back, repair, reference, check or free.")
     hand: bool = Field(description="Only a person at the machine can do it.")
     scope: str = Field(description="A cell, a robot or a zone.")
-    by_hand: bool = Field(description="For `home`: the robot was put at its reference.")
+    by_hand: bool = Field(
+        description="For `home`: the robot was put at its reference; for `release`: the part was taken out."
+    )
     instead: bool = Field(description="It begins another way out than those before it.")
     said: str = Field(description="In words, as the command line takes a verb.")
     why: str
@@ -325,3 +349,4 @@ class Snapshot(_Told):
     zones: list[dict[str, Any]] = Field(
         description="Zones and devices that cells share, each with its state, who holds it and who waits."
     )
+    acts: list[Act] = Field(default=[], description="What operators did last, oldest first.")

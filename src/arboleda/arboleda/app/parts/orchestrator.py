@@ -41,6 +41,7 @@ from arboleda.model.messages import (
     Notice,
     OperatorAnswer,
     OperatorRequest,
+    Outcome,
     Remember,
     Report,
     Shutdown,
@@ -266,6 +267,10 @@ class Orchestrator:
             return self._standing is not Standing.SUPERSEDED
         return self._store.leads_for_certain
 
+    def act(self, number: int) -> dict[str, Any] | None:
+        """One of the last acts of operators, None where the plant knows it no more."""
+        return self.loop.read(lambda plant: view.act_by_number(plant, number))
+
     def promises(self, text: str) -> list[dict[str, Any]]:
         """What each cell that a task text names promises now; TextError, QueueFull."""
         return self.loop.read(lambda plant: view.promises(plant, text))
@@ -446,7 +451,8 @@ class Orchestrator:
 
     def _keep(self, message: Remember | Journal) -> None:
         if isinstance(message, Journal):
-            OPERATORS.info("%s", act_line(message))
+            level = logging.WARNING if message.outcome is Outcome.FAILED else logging.INFO
+            OPERATORS.log(level, "%s", act_line(message))
         if self._store is None or self._amnesia is not None:
             return
         if isinstance(message, Remember):
@@ -454,7 +460,7 @@ class Orchestrator:
                 self._store.keep(*facts)
             return
         self._store.journal(message, time.time())
-        if message.verb is Verb.RETRY:
+        if message.verb is Verb.RETRY and message.outcome is None:
             for name in [message.cell] if message.cell else self.plant.cells:
                 task = self.plant.cells[name].task
                 if task is not None:
@@ -620,7 +626,7 @@ def task_line(change: TaskChanged) -> str:
 
 
 def act_line(act: Journal) -> str:
-    """One line on what an operator did, with the cell where the sentence does not name it."""
+    """One line on what an operator did, or what became of it, with the cell where no sentence names it."""
     return str(act.sentence) if act.cell in (None, act.scope) else f"{act.sentence} ({act.cell})"
 
 

@@ -53,6 +53,7 @@ class PageSide:
         self.snapshot = side.snapshot
         self.submit = side.submit
         self.operate = side.operate
+        self.act = side.act
         self.history = side.history
         self.oee = side.oee
         self.watch = side.watch

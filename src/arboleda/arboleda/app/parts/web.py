@@ -47,6 +47,7 @@ class Asked(Protocol):
     def submit(self, text: str, asked_by: str, choice: str = "") -> Future[TaskChanged]: ...
     def promises(self, text: str) -> list[dict[str, Any]]: ...
     def operate(self, verb: Verb, scope: str = "", *, by_hand: bool = False) -> Future[OperatorAnswer]: ...
+    def act(self, number: int) -> dict[str, Any] | None: ...
 
 
 class Announce(Protocol):
@@ -71,6 +72,7 @@ class Side:
         self.spelled = plant.spelled
         self.promises = plant.promises
         self.operate = plant.operate
+        self.act = plant.act
 
     def submit(self, text: str, asked_by: str, choice: str = "") -> Future[dict[str, Any]]:
         plain: Future[dict[str, Any]] = Future()

@@ -18,11 +18,11 @@ export function start() {
   document.querySelector(".cells")?.addEventListener("pointerleave", inOrder);
 }
 
-// A line below the header; false where the sentence is one of trouble.
+// A line below the header; `good` is false where the sentence is one of trouble, null where that is not known.
 export function answer(sentence, good) {
   const line = document.getElementById("answer");
   line.textContent = sentence;
-  line.dataset.s = good ? "good" : "bad";
+  line.dataset.s = good === null ? "open" : good ? "good" : "bad";
   return false;
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from arboleda.drawing.layout import parent
+from arboleda.model.messages import Outcome
 from arboleda.views.view import devices_once, standing
 
 from ..tree_drawing import drawing, label
@@ -57,6 +58,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
         f"text/{name}.left": [_left(moment, leaf), ""],
         f"text/{name}.queue": [_queue(moment, cell), "paused" if cell["paused"] else ""],
         f"text/{name}.offer": [_offered(words, cell, stands), ""],
+        f"text/{name}.act": _act(moment, cell),
         f"text/{name}.trouble": [trouble(moment, cell), state],
         f"bar/{name}.progress": progress(memory.rows, memory.statuses) if cell["task"] else None,
     }
@@ -92,6 +94,26 @@ def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str
     return failed_in(words, task, memory.rows) if over and task else ""
 
 
+def _act(moment: Moment, cell: Row) -> list[str]:
+    """What an operator had devices of the cell do last, while they do it; that it failed, until it works."""
+    words = moment.words
+    act = next((act for act in reversed(moment.snapshot["acts"]) if act["cell"] == cell["name"]), None)
+    if act is None:
+        return ["", ""]
+    if act["outcome"] == Outcome.UNDER_WAY:
+        return [words("cells.act_under_way", did=words.say(act["sentence"])), act["outcome"]]
+    tells = act["ended"] is not None and act["outcome"] != Outcome.DONE
+    if not tells or _has_worked_since(moment, cell, act["at"]):
+        return ["", ""]
+    return [words.say(act["ended"]), act["outcome"]]
+
+
+def _has_worked_since(moment: Moment, cell: Row, at: float) -> bool:
+    tasks = (task for task in moment.snapshot["tasks"] if task["cell"] == cell["name"])
+    begun = any(task["started_at"] is not None and task["started_at"] > at for task in tasks)
+    return begun or cell["state"] == "execute" or not (cell["advice"] or cell["not_ready"])
+
+
 def _report(words: Words, cell: Row, task: Row | None) -> list[str]:
     """The way to the report of the last task, while the card says that it failed; its state is the id."""
     over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
@@ -120,7 +142,7 @@ def _ways(words: Words, cell: Row) -> Face:
 
 def _said(words: Words, advice: Row) -> str:
     if advice["by_hand"]:
-        return words("ways.by_hand", robot=advice["scope"])
+        return words(f"ways.{advice['do']}_by_hand", robot=advice["scope"])
     said = words.say(advice["said"])
     return said[:1].upper() + said[1:]
 
@@ -143,7 +165,7 @@ def _note(words: Words, advice: Row, before: Row | None) -> str:
 def _offer(words: Words, advice: Row) -> Row:
     said, asks = _said(words, advice), []
     if advice["by_hand"]:
-        asks = [words("asks.home_by_hand")]
+        asks = [words(f"asks.{advice['do']}_by_hand")]
     elif advice["drops"]:
         asks = [words("ways.asks_drops", said=said, robots=", ".join(advice["drops"]))]
     elif advice["moves"]:

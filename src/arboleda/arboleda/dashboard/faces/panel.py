@@ -52,7 +52,8 @@ def suggested(cell: Row) -> tuple[str, ...]:
     if first is None or first["hand"] or first["refusal"]:
         return ()
     here = (cell["name"], *(device["name"] for device in cell["devices"] if device["holds"]))
-    return (first["do"],) if first["scope"] in here else ()
+    verb = f"{first['do']}_by_hand" if first["by_hand"] else first["do"]
+    return (verb,) if first["scope"] in here else ()
 
 
 def refused_everywhere(cells: list[Row]) -> dict[str, str]:

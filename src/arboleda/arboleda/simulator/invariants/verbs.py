@@ -128,7 +128,8 @@ def _not_so(look: Look, request: OperatorRequest) -> bool:
 @invariant(When.ASKED)
 def verbs_do_what_they_say(look: Look) -> Iterator[str]:
     """A verb that is not refused is in the journal and has done its work, in its scope and nowhere else."""
-    journalled = sum(isinstance(each, Journal) for each in look.moment.sent)
+    begun = (each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is None)
+    journalled = len([*begun])
     done = sum(answer.refusal is None for answer in look.record.answers)
     if journalled != done:
         yield f"{done} verbs were done, {journalled} are in the journal"
@@ -238,11 +239,24 @@ def _given_up(look: Look, request: OperatorRequest) -> Iterator[str]:
 
 
 def _released(look: Look, request: OperatorRequest) -> Iterator[str]:
+    if request.by_hand:
+        yield from _emptied(look, request)
+        return
     switches = (each for each in look.moment.sent if isinstance(each, Switch))
     sent = [each for each in switches if each.grips is False]
     if not sent:
         yield "no effector was opened"
     yield from _outside(look, request, sent)
+
+
+def _emptied(look: Look, request: OperatorRequest) -> Iterator[str]:
+    scope = look.record.scopes.robots(request.scope)
+    held = [name for name in scope if look.world.model.robots[name].held_fact is not None]
+    left = [name for name in held if look.world.plant.dispatcher.grips.holding(name)]
+    if left:
+        yield f"{left} may still hold a part"
+    if any(isinstance(each, Command) for each in look.moment.sent):
+        yield "something was commanded"
 
 
 def _homed(look: Look, request: OperatorRequest) -> Iterator[str]:
@@ -282,5 +296,6 @@ EFFECTS: dict[Verb, Effect] = {
     Verb.HOME: _homed,
     Verb.UNLOAD: _unloaded,
 }
+
 
 VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say)

@@ -1,0 +1,99 @@
+"""What operators did last, and what became of it: asked, under way, done or failed, and why."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+
+from arboleda.dispatch.ledger import Entry, State
+from arboleda.model.messages import Outcome, Verb
+from arboleda.model.sentence import BOTH, Phrase, Sentence
+
+HALTED = Phrase("act.halted", "{robot} was halted while {doing}")
+UNCHECKED = Phrase("act.unchecked", "{robot} was told, and does not report whether it did it")
+ENDED = {
+    Outcome.DONE: Phrase("act.done", "{did}: done"),
+    Outcome.UNCHECKED: Phrase("act.not_checked", "{did}: not checked ({why})"),
+    Outcome.FAILED: Phrase("act.failed", "{did}: failed ({why})"),
+}
+KEPT = 20  # what a screen shows of them; the journal has all
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorAct:
+    """What an operator did, at `at` s of the plant's clock, and what became of it so far.
+
+    `ended_at` is when it had come to its end that was still to come, or failed at once.
+    """
+
+    number: int
+    at: float
+    verb: Verb
+    scope: str
+    cell: str | None  # None for the whole plant and for a zone, which several cells may share
+    sentence: Sentence
+    outcome: Outcome
+    why: Sentence | None = None
+    ended_at: float | None = None
+
+    @property
+    def ended(self) -> Sentence:
+        """Its end in words."""
+        why = {} if self.why is None else {"why": self.why}
+        return ENDED[self.outcome](did=self.sentence, **why)
+
+
+class Acts:
+    """The last acts, oldest first; those that devices carry out are looked at until they have ended."""
+
+    def __init__(self) -> None:
+        self.last: deque[OperatorAct] = deque(maxlen=KEPT)
+        self._count = 0
+        self._under_way: dict[int, tuple[OperatorAct, Sequence[Entry]]] = {}
+
+    @property
+    def next_number(self) -> int:
+        return self._count + 1
+
+    def add(self, act: OperatorAct, entries: Sequence[Entry]) -> None:
+        """An act for which these commands have left."""
+        self._count = act.number
+        self.last.append(act)
+        if act.outcome is Outcome.UNDER_WAY:
+            self._under_way[act.number] = (act, entries)
+
+    def ended(self, now: float) -> Iterator[tuple[OperatorAct, Sequence[Entry]]]:
+        """Each act that has come to its end since the last look, with its commands."""
+        for number, (act, entries) in list(self._under_way.items()):
+            outcome, why = outcome_of(entries)
+            if outcome is Outcome.UNDER_WAY:
+                continue
+            del self._under_way[number]
+            over = replace(act, outcome=outcome, why=why, ended_at=now)
+            for place, each in enumerate(self.last):
+                if each.number == number:
+                    self.last[place] = over
+            yield over, entries
+
+
+def outcome_of(entries: Sequence[Entry]) -> tuple[Outcome, Sentence | None]:
+    """What has become of the commands of an act."""
+    if any(entry.open for entry in entries):
+        return Outcome.UNDER_WAY, None
+    if failures := [_failure(entry) for entry in entries if entry.state is not State.DONE]:
+        return Outcome.FAILED, _joined(failures)
+    if unproven := [UNCHECKED(robot=entry.command.robot) for entry in entries if entry.settled]:
+        return Outcome.UNCHECKED, _joined(unproven)
+    return Outcome.DONE, None
+
+
+def _failure(entry: Entry) -> Sentence:
+    if entry.failure is not None:
+        return entry.failure.sentence
+    return HALTED(robot=entry.command.robot, doing=entry.doing)
+
+
+def _joined(sentences: Sequence[Sentence]) -> Sentence:
+    return reduce(lambda first, second: BOTH(first=first, second=second), sentences)
