@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from arboleda.core import advisor
+from arboleda.core.acts import outcome_of
 from arboleda.core.advisor import Advisor
 from arboleda.core.cell import CellRun
 from arboleda.core.operator import Operator
@@ -111,6 +112,12 @@ PEOPLE = (
         edit(Operator._not_resumable, "None if cell.queue_paused else", "None if True else"),
         weather={"operator_resume": 40.0},
         likely=12,
+    ),
+    mutant(
+        "acts_end_as_told",
+        "What an operator's release could not do is told as done.",
+        edit(outcome_of, " if entry.state is not State.DONE", " if entry.open"),
+        weather={"operator_release": 60.0, "stuck_effector": 30.0, "operator_stop": 10.0},
     ),
     mutant(
         "verbs_do_what_they_say",

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from arboleda.core.cell_states import CellState
-from arboleda.dispatch.ledger import State
+from arboleda.dispatch.ledger import OPEN, State
 from arboleda.model.commands import Command, Home, Stop, StopMode, Switch
-from arboleda.model.messages import Journal, OperatorAnswer, OperatorRequest, TaskState, Verb
+from arboleda.model.messages import Journal, OperatorAnswer, OperatorRequest, Outcome, TaskState, Verb
 from arboleda.model.plant_model import Evidence, Link
 
 from ..recorded.cells import KnownCell
@@ -298,4 +298,33 @@ EFFECTS: dict[Verb, Effect] = {
 }
 
 
-VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say)
+@invariant(When.SENT)
+def acts_end_as_told(look: Look) -> Iterator[str]:
+    """What devices did for an operator is told once it has ended, and as done only where each has done it."""
+    told = [each for each in look.moment.sent if isinstance(each, Journal) and each.outcome is not None]
+    ended = [sent for sent, _ in look.record.commands.moved if sent.state not in OPEN]
+    for end in told:
+        scope = look.record.scopes.robots(end.scope)
+        mine = [sent for sent in ended if sent.robot in scope and _is_of(sent, end.verb)]
+        undone = [str(sent) for sent in mine if sent.state is not State.DONE]
+        if undone and end.outcome is not Outcome.FAILED:
+            yield f"{end.sentence} is told, and {undone} were not done"
+        if mine and not undone and end.outcome is Outcome.FAILED and len(scope) == 1:
+            yield f"{end.sentence} is told, and {[*map(str, mine)]} were done"
+    for sent in ended:
+        for verb in (Verb.RELEASE, Verb.HOME):
+            waits = any(_is_of(other, verb) for other in look.record.commands.open.values())
+            if _is_of(sent, verb) and not waits and not any(end.verb is verb for end in told):
+                yield f"{sent} has ended, and nobody is told what became of {verb.value}"
+
+
+def _is_of(sent: SentCommand, verb: Verb) -> bool:
+    """Whether a command is that of an operator's verb; one that was asked for with it may be a task's."""
+    if verb not in sent.verbs:
+        return False
+    if verb is Verb.HOME:
+        return isinstance(sent.command, Home)
+    return isinstance(sent.command, Switch) and sent.command.grips is False
+
+
+VERBS = (verbs_are_refused_rightly, verbs_do_what_they_say, acts_end_as_told)
