@@ -221,6 +221,8 @@ def test_a_latch_and_the_journal_are_forced_to_the_disk(path, on_connect):
         (Fact.EFFECTOR, "off", "NORMAL"),
         (Fact.QUARANTINE, "ra1", "FULL"),
         (Fact.QUARANTINE, None, "NORMAL"),
+        (Fact.EMPTIED, "true", "FULL"),
+        (Fact.EMPTIED, None, "FULL"),
         (Fact.DISPLACED, "true", "FULL"),
         (Fact.DISPLACED, None, "NORMAL"),
         (Fact.STORED, "0 7", "FULL"),

@@ -627,6 +627,8 @@ def test_a_service_stops_robots_while_the_plant_waits_for_its_disk(links, tmp_pa
             let_go.set()
             plant.stop()
     assert call.result().success and "has not kept it" in call.result().message
+
+
 @pytest.mark.parametrize(
     ("told", "said"),
     [

@@ -26,6 +26,7 @@ def test_what_was_kept_is_remembered(store: Store) -> None:
     kept = {
         Fact.LATCH: {"ra1": "cleared", "ra2": "on"},
         Fact.EFFECTOR: {"ra1": "on"},
+        Fact.EMPTIED: {"mill": "true"},
         Fact.QUARANTINE: {"mesa": "gone"},
         Fact.STORED: {"sis_a": "0 7"},
         Fact.DISPLACED: {"rm": "true"},

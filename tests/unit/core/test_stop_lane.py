@@ -80,7 +80,7 @@ def test_who_asked_hears_in_time_that_a_stop_has_left_and_is_not_kept(lane: Stop
     (answer,) = lane.step(due, [])
     assert isinstance(answer, StopLeft)
     assert (answer.request, answer.scope, answer.refusal) == ("a", "sis_a", None)
-    assert str(answer.sentence).startswith("the stop has left for sis_a, and the plant has not kept it")
+    assert str(answer.why).startswith("the stop has left for sis_a, and the plant has not kept it")
     assert lane.next_deadline is None and lane.step(due + 10.0, []) == []
 
 
@@ -88,7 +88,7 @@ def test_a_stop_that_the_plant_has_sent_itself_is_told_to_have_left(lane: StopLa
     lane.step(10.0, [opened("")])
     lane.step(10.1, [Departed(token="a")])
     (answer,) = lane.step(10.0 + KEPT_S, [])
-    assert "left for the whole plant" in str(answer.sentence)
+    assert "left for the whole plant" in str(answer.why)
 
 
 @pytest.mark.parametrize(

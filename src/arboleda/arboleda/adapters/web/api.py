@@ -73,8 +73,8 @@ WRONG: Answers = {422: {"model": Sentence, "description": "The request is wrong.
 ACCEPTED: Answers = {
     202: {
         "model": Done,
-        "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its robots, "
-        "and the plant cannot keep it, or not yet.",
+        "description": "Devices do it now, and its act tells its end; or it is a stop that has left for its "
+        "robots, and the plant cannot keep it, or not yet.",
     }
 }
 CONFLICT: Answers = {409: {"model": Sentence, "description": "The plant does not do this now."}}
