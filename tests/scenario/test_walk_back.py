@@ -147,6 +147,22 @@ def test_a_board_that_has_booted_meanwhile_leaves_only_the_recovery(stage: Stage
     assert outcome(rig) is TaskState.FAILED
 
 
+def test_who_cannot_say_that_it_booted_is_put_right_by_hand_once(stage: Stage) -> None:
+    arm = replace(shipped(CELL).cell(CELL).arm, assume_homed=True)
+    rig, _ = stage(arm=arm)
+    at(rig, "effector off/switch")
+    restart(rig)
+    rig.crash("ra_1")
+    rig.wait(5.0)
+    assert ways(rig) == ["home", "abandon"]
+    assert rig.operate(Verb.HOME, "ra1", by_hand=True) is None
+    rig.wait(5.0)
+    assert ways(rig) == ["abandon"]
+    assert rig.operate(Verb.ABANDON, CELL) is None
+    assert outcome(rig) is TaskState.FAILED
+    assert rig.outcomes()[ID].reason is Reason.REBOOTED
+
+
 def test_a_part_that_was_lost_meanwhile_is_not_delivered(stage: Stage) -> None:
     rig, _ = stage()
     at(rig, "move to station 7")

@@ -76,6 +76,7 @@ class WalkBack:
         self.trail = trail
         self.begun = begun
         self.due: float | None = None
+        self._displaced: dict[str, int | None] = {}  # the boots after which devices have to be put right
         self._heard_since: float | None = None  # since when all of its devices are heard and stand still
 
     def judge(self, context: Context) -> Finding:
@@ -85,6 +86,8 @@ class WalkBack:
         troubles: dict[str, Trouble] = {}
         self.due = None
         for name, belief in beliefs.items():
+            if belief.displaced:
+                self._displaced[name] = belief.boot_id
             obstacle = context.obstacle(name)
             if obstacle is not None or belief.moves:
                 waits = obstacle.sentence if obstacle else STILL_MOVING(robot=name)
@@ -153,7 +156,8 @@ class WalkBack:
         if not self._is_numbered(belief):
             return None
         if belief.boot_id != known.boot:
-            belief.displaced = belief.displaced or not belief.robot.says_homed
+            if self._displaced.get(name) != belief.boot_id and not belief.robot.says_homed:
+                belief.displaced = True
             return Trouble(Reason.REBOOTED, BOOTED(robot=name))
         if not known.explains(belief.receipt):
             return Trouble(Reason.INTERRUPTED, MORE(robot=name), NOBODY_KNOWS())
