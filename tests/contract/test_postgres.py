@@ -258,7 +258,7 @@ def test_tables_of_an_older_format_are_brought_up_and_keep_what_they_have(
     with postgres.connection() as db:
         db.execute(f'SET search_path TO "plant_{plant}"')
         db.execute("ALTER TABLE leader DROP COLUMN url, DROP COLUMN wanted, DROP COLUMN going")
-        db.execute("ALTER TABLE task DROP COLUMN choice, DROP COLUMN course")
+        db.execute("ALTER TABLE task DROP COLUMN choice, DROP COLUMN course, DROP COLUMN unchecked")
         db.execute("DROP TABLE standby")
         db.execute("UPDATE leader SET format = 1")
     history = PostgresHistory(database, plant)

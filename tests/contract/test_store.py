@@ -23,10 +23,10 @@ from tests.rights import modes_count
 from arboleda.adapters import row_sums
 from arboleda.adapters.memory_file import VERSION
 from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of, course_of
+from arboleda.adapters.task_rows import TaskHistory, TaskQuery, choice_of, course_of, unchecked_of
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import ArboledaError, StartError
-from arboleda.model.messages import Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
+from arboleda.model.messages import Check, Course, Fact, Journal, Remember, TaskChanged, TaskState, Verb
 from arboleda.model.sentence import OWN
 
 LATCH = Remember(fact=Fact.LATCH, name="ra1", value="on")
@@ -306,6 +306,19 @@ def test_tasks_of_an_older_format_have_no_course_and_new_ones_have(path):
         assert [course_of(row) for row in store.tasks(TaskQuery())] == [course, None]
 
 
+def test_tasks_of_an_older_format_say_nothing_of_checks_and_new_ones_do(path):
+    with Store(path) as store:
+        for name in ("a", "b"):
+            store.task(queued(name), "storage", 5.0)
+    of_before_checks(path).close()
+    checks = (Check.GRIP, Check.RELEASE)
+    with Store(path) as store:
+        store.task(replace(queued("b"), state=TaskState.DONE, unchecked=checks), "storage", 6.0)
+        assert [unchecked_of(row) for row in store.tasks(TaskQuery())] == [checks, ()]
+    with Store(path) as store:
+        assert [row.unchecked for row in store.tasks(TaskQuery())] == ["grip release", None]
+
+
 def test_a_file_without_times_of_cells_gets_them(path):
     with Store(path) as store:
         store.task(queued("a"), "storage", 5.0)
@@ -337,9 +350,18 @@ def of_before_courses(path):
     return db
 
 
+def of_before_checks(path):
+    """The file as a format had it in which no task said what of it nobody confirmed."""
+    db = sqlite3.connect(path)
+    if db.execute("SELECT 1 FROM sqlite_master WHERE name = 'task'").fetchone():
+        db.execute("ALTER TABLE task DROP COLUMN unchecked")
+    db.execute("PRAGMA user_version = 10")
+    return db
+
+
 def of_before_sums(path):
     """The file as a format had it in which no row had a checksum."""
-    db = sqlite3.connect(path)
+    db = of_before_checks(path)
     for (table,) in db.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall():
         db.execute(f"ALTER TABLE {table} DROP COLUMN crc")
     db.execute("PRAGMA user_version = 9")

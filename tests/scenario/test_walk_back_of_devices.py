@@ -11,7 +11,7 @@ from arboleda.app.config import load
 from arboleda.core.advice import Hand
 from arboleda.core.cell_states import CellState
 from arboleda.model.commands import Command, Stop
-from arboleda.model.messages import TaskState, Verb
+from arboleda.model.messages import Check, TaskState, Verb
 from arboleda.model.plant_model import PlantModel
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator import hands
@@ -168,6 +168,37 @@ def test_a_gripper_that_is_carried_grips_once_and_lets_go_once(after_s: float) -
     assert rig.wait(30.0, until=lambda: state(rig) is TaskState.DONE)
     assert [each for each in sent(rig) if each.startswith("jaw")] == ["jaw close", "jaw open"]
     assert rig.plant.zones.holder("vise") is None
+
+
+def let_go_after_a_restart(*, boots: bool) -> Rig:
+    """The plant is killed while a gripper lets go, and the gripper's board boots meanwhile, or not."""
+    rig = begin(plant(carry), "tending carry")
+    assert rig.wait(30.0, until=lambda: "jaw open" in sent(rig))
+    restart(rig)
+    if boots:
+        rig.crash("jaw")
+    rig.wait(8.0)
+    verb = rig.plant.advice("tending")[0].do
+    assert verb is (Verb.RETRY if boots else Verb.RESUME)
+    assert rig.operate(verb, "tending") is None
+    assert rig.wait(60.0, until=lambda: state(rig) in ENDED)
+    return rig
+
+
+def test_a_release_that_a_boot_may_have_done_is_told_as_not_checked() -> None:
+    rig = let_go_after_a_restart(boots=True)
+    change = rig.outcomes()["one"]
+    assert (change.state, change.unchecked) == (TaskState.DONE, (Check.RELEASE,))
+    said = "not checked: whether the part was let go of"
+    assert str(change.sentence) == said
+    assert view.task_by_id(rig.plant, "one")["unchecked"] == ["release"]  # type: ignore[index]
+    assert view.change(change)["unchecked"] == ["release"]
+    assert rig.disk.tasks["one"].unchecked == (Check.RELEASE,)
+
+
+def test_a_release_in_the_boot_of_the_grip_is_checked() -> None:
+    change = let_go_after_a_restart(boots=False).outcomes()["one"]
+    assert (change.state, change.unchecked, str(change.sentence)) == (TaskState.DONE, (), "")
 
 
 def test_the_zone_of_an_arm_stays_its_own() -> None:

@@ -62,6 +62,7 @@ KEPT = [
         accepted_s=1000.0 + number,
         started_s=1001.0 + number,
         ended_s=None,
+        unchecked="release" if number == 2 else None,
     )
     for number, cell in ((2, "sis_b"), (1, "sis_a"))
 ]

@@ -39,6 +39,10 @@ def test_the_history_has_tasks_with_why_they_failed_as_data(web, plant):
     assert (row["key"], row["values"], row["accepted_s"]) == ("late", {"robot": "ra1"}, 1001.0)
 
 
+def test_the_history_says_what_of_a_task_nobody_confirmed(web):
+    assert [row["unchecked"] for row in web.get("/api/history").json()] == [["release"], []]
+
+
 def test_the_history_is_asked_for_what_the_query_says(web, plant):
     said = "cell=sis_a&state=done&recipe=storage&words=lot&since=5&until=9.5&before=7&limit=3"
     assert web.get(f"/api/history?{said}").status_code == 200

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.store import Store
-from arboleda.adapters.task_rows import TaskQuery, course_of
+from arboleda.adapters.task_rows import TaskQuery, course_of, unchecked_of
 from arboleda.app.memory import kept_tasks, remembered
 from arboleda.model.errors import StartError
-from arboleda.model.messages import Course, Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
+from arboleda.model.messages import Check, Course, Fact, Reason, Remember, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN, Phrase, retold
+from arboleda.model.task import Task
 
 
 @pytest.fixture
@@ -95,6 +96,18 @@ def test_a_task_comes_back_with_how_it_went_and_without_where_that_is_damaged(st
         '{"seconds": 2, "begun": 3}',
     ):
         assert course_of(replace(row, course=damaged)) is None
+
+
+def test_a_task_comes_back_with_what_was_not_checked_and_without_where_that_is_damaged(store: Store) -> None:
+    change = TaskChanged(task="a", text="bench weigh", cell="bench", state=TaskState.QUEUED)
+    store.task(change, "weigh", 1000.0)
+    done = replace(change, state=TaskState.DONE, unchecked=(Check.RELEASE,))
+    store.task(done, "weigh", 1002.0)
+    (task,) = kept_tasks(store, clock_s=50.0, unix_s=1010.0)
+    assert task.unchecked == (Check.RELEASE,)
+    assert str(Task.of(task).remark) == "not checked: whether the part was let go of"
+    (row,) = store.tasks(TaskQuery())
+    assert unchecked_of(replace(row, unchecked="grip weight")) == ()
 
 
 def test_a_sentence_that_was_kept_with_braces_is_said_as_it_was() -> None:

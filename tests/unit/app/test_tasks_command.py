@@ -20,8 +20,9 @@ from arboleda.app.state import StateDir
 from arboleda.app.tasks_command import moment
 from arboleda.core.choosing import LATER
 from arboleda.model.errors import StartError
-from arboleda.model.messages import Reason, TaskAnswer, TaskChanged, TaskState
+from arboleda.model.messages import Check, Reason, TaskAnswer, TaskChanged, TaskState
 from arboleda.model.sentence import OWN
+from arboleda.model.task import UNCHECKED
 
 NOW = time.time()
 
@@ -121,6 +122,19 @@ def test_why_a_task_is_done_in_its_cell_is_in_the_list(state: Path) -> None:
     assert "sis_b in 12 s" in " ".join(said("--limit", "1", state=state).split())
     (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
     assert row["choice"]["key"] == "choice.later" and row["choice"]["english"] == "sis_b in 12 s"
+
+
+def test_what_of_a_done_task_nobody_confirmed_is_in_the_list(state: Path) -> None:
+    with Store(state / "plant.sqlite") as store:
+        checks = (Check.GRIP,)
+        done = told("c", TaskState.DONE, sentence=UNCHECKED[checks](), unchecked=checks)
+        store.task(done, "", NOW)
+    why = "not checked: whether the part was gripped"
+    assert why in " ".join(said("--limit", "1", state=state).split())
+    (row,) = [json.loads(line) for line in said("--limit", "1", "--json", state=state).splitlines()]
+    assert (row["state"], row["unchecked"], row["sentence"]) == ("done", ["grip"], why)
+    (row,) = csv.DictReader(StringIO(said("--csv", "--limit", "1", state=state)))
+    assert row["unchecked"] == "grip"
 
 
 def test_where_nothing_was_kept_it_says_so(tmp_path: Path) -> None:

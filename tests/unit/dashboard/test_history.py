@@ -10,6 +10,8 @@ from arboleda.adapters.task_rows import TaskRow
 from arboleda.core.intake import CUT_OFF
 from arboleda.dashboard.faces.history import face
 from arboleda.dashboard.wording import words
+from arboleda.model.messages import Check
+from arboleda.model.task import UNCHECKED
 
 NOW = time.mktime((2026, 5, 4, 12, 0, 0, 0, 0, -1))
 CUT = TaskRow(
@@ -59,6 +61,13 @@ def test_what_was_kept_as_text_only_is_shown_as_it_is() -> None:
 def test_a_task_that_waits_has_neither_end_nor_cause() -> None:
     waits = replace(CUT, state="queued", reason=None, sentence=None, said=None, started_s=None, ended_s=None)
     assert texts(waits)[4:8] == ["", "", "2", ""]
+
+
+def test_a_done_task_says_what_of_it_nobody_confirmed() -> None:
+    remark = UNCHECKED[Check.RELEASE,]()
+    done = replace(CUT, state="done", reason=None, sentence=str(remark), said=json.dumps(remark.data()))
+    assert texts(done)[7] == "not checked: whether the part was let go of"
+    assert texts(done, "es")[7] == "sin comprobar: si la pieza se soltó"
 
 
 def test_what_an_older_version_kept_has_neither_who_asked_nor_attempts() -> None:

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arboleda.model.messages import (
+    Check,
     Course,
     Event,
     Fact,
@@ -61,6 +62,7 @@ KEPT = st.builds(
     ended_at=maybe(NUMBERS),
     attempts=st.integers(0, 9),
     answers=st.lists(ANSWERS, max_size=2).map(tuple),
+    unchecked=st.sets(st.sampled_from(Check)).map(tuple),
     course=maybe(st.builds(Course, seconds=NUMBERS, begun=st.dictionaries(TEXTS, st.floats(0, 9)))),
 )
 NUMBER, WORD, FLAG = maybe(st.integers()), maybe(TEXTS), maybe(st.booleans())

@@ -20,7 +20,15 @@ from arboleda.model.messages import (
     outlives_power,
 )
 
-from .task_rows import TaskQuery, TaskRow, choice_written, course_written, selection, to_row
+from .task_rows import (
+    TaskQuery,
+    TaskRow,
+    choice_written,
+    course_written,
+    selection,
+    to_row,
+    unchecked_written,
+)
 
 PRUNED = 20  # ended tasks that are forgotten with one that ends: many more than end meanwhile, and soon done
 Statement = tuple[str, tuple[object, ...]]  # with its values, each in the place of a `?`
@@ -181,11 +189,12 @@ class PlantMemory(ABC):
             reason = None if change.reason is None else change.reason.value
             end = (
                 "UPDATE task SET state = ?, reason = ?, sentence = ?, said = ?, ended_s = ?, answers = ?,"
-                " course = ? WHERE id = ? AND ended_s IS NULL"
+                " course = ?, unchecked = ? WHERE id = ? AND ended_s IS NULL"
             )
             told = json.dumps([vars(each) for each in answers], ensure_ascii=False) if answers else None
-            how = course_written(change.course)
-            values = (state.value, reason, str(change.sentence), said, unix_s, told, how, change.task)
+            how, unchecked = course_written(change.course), unchecked_written(change.unchecked)
+            outcome = (state.value, reason, str(change.sentence), said, unix_s)
+            values = (*outcome, told, how, unchecked, change.task)
             self._commit((end, values), durable=durable)
 
     def attempted(self, task: str, attempts: int) -> None:

@@ -42,6 +42,7 @@ WHO_AND_HOW_OFTEN = (
 ANSWERS = ("ALTER TABLE task ADD COLUMN answers TEXT",)
 CHOICE = ("ALTER TABLE task ADD COLUMN choice TEXT",)
 COURSE = ("ALTER TABLE task ADD COLUMN course TEXT",)
+UNCHECKED = ("ALTER TABLE task ADD COLUMN unchecked TEXT",)
 TIMES_OF_CELLS = (
     # from which second to which a cell did no work; `until_s` is null while it lasts
     "CREATE TABLE down (number INTEGER PRIMARY KEY, cell TEXT NOT NULL, state TEXT NOT NULL,"
@@ -62,6 +63,7 @@ SCHEMA = (
     *CHOICE,
     *COURSE,
     *row_sums.COLUMNS,
+    *UNCHECKED,
 )
 SINCE = {
     1: ("ALTER TABLE journal ADD COLUMN cell TEXT",),
@@ -73,6 +75,7 @@ SINCE = {
     7: CHOICE,
     8: COURSE,
     9: row_sums.COLUMNS,
+    10: UNCHECKED,
 }
 IN_MEMORY = Path(":memory:")
 PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"

@@ -16,7 +16,7 @@ from io import StringIO
 from pathlib import Path
 
 from arboleda.model.errors import ArboledaError
-from arboleda.model.messages import Course, Reason, TaskAnswer, TaskState
+from arboleda.model.messages import Check, Course, Reason, TaskAnswer, TaskState
 from arboleda.model.outside import quoted
 from arboleda.model.sentence import OWN, Sentence, retold
 from arboleda.views.oee import Kept, Oee, oee
@@ -37,7 +37,7 @@ class TaskRow:
     `attempts` how often it was begun or tried again, 0 before, and of tasks that are older than this column.
     `answers` is JSON of what was answered while it ran, None where nothing was, or before it has ended.
     `choice` is JSON of why it is done in its cell, None where it names no other; `course` of how it went,
-    None before it is done.
+    None before it is done. `unchecked` are words for what of a done one nobody confirmed, None for nothing.
     """
 
     number: int
@@ -57,6 +57,7 @@ class TaskRow:
     answers: str | None = None
     choice: str | None = None
     course: str | None = None
+    unchecked: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +167,19 @@ def course_of(row: TaskRow) -> Course | None:
 def course_written(course: Course | None) -> str | None:
     """What `course_of` reads."""
     return course and json.dumps(vars(course), separators=(",", ":"))
+
+
+def unchecked_of(row: TaskRow) -> tuple[Check, ...]:
+    """What of a task that is done nobody confirmed; nothing where that is not as written."""
+    try:
+        return tuple(map(Check, (row.unchecked or "").split()))
+    except ValueError:
+        return ()
+
+
+def unchecked_written(checks: Iterable[Check]) -> str | None:
+    """What `unchecked_of` reads."""
+    return " ".join(each.value for each in checks) or None
 
 
 def answers_of(row: TaskRow) -> tuple[TaskAnswer, ...]:

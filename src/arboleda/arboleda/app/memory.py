@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 from arboleda.adapters.plant_memory import PlantMemory
-from arboleda.adapters.task_rows import TaskQuery, TaskRow, answers_of, choice_of, course_of, sentence_of
+from arboleda.adapters.task_rows import (
+    TaskQuery,
+    TaskRow,
+    answers_of,
+    choice_of,
+    course_of,
+    sentence_of,
+    unchecked_of,
+)
 from arboleda.core.intake import HISTORY
 from arboleda.dispatch.dispatcher import CLEARED, DISPLACED, EMPTIED, LATCHED
 from arboleda.model.errors import StartError
@@ -57,6 +65,7 @@ def kept_task(row: TaskRow, *, clock_s: float, unix_s: float) -> KeptTask:
         recipe=row.recipe,
         choice=choice_of(row),
         course=course_of(row),
+        unchecked=unchecked_of(row),
     )
 
 

@@ -16,7 +16,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from arboleda.adapters.task_rows import History, TaskQuery, TaskRow, answers_of, choice_of, table
+from arboleda.adapters.task_rows import (
+    History,
+    TaskQuery,
+    TaskRow,
+    answers_of,
+    choice_of,
+    table,
+    unchecked_of,
+)
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 
@@ -141,7 +149,7 @@ def _json(rows: Sequence[TaskRow], *, first: bool) -> None:
     for row in rows:
         answers = [vars(each) for each in answers_of(row)]
         parsed = {key: json.loads(text) if text else None for key, text in _json_of(row).items()}
-        said = asdict(row) | parsed | {"answers": answers}
+        said = asdict(row) | parsed | {"answers": answers, "unchecked": unchecked_of(row)}
         print(json.dumps(said, ensure_ascii=False), flush=True)
 
 

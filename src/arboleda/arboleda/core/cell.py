@@ -583,7 +583,7 @@ class CellRun:
         elif task.failure:
             self._finish(task, TaskState.FAILED)
         else:
-            task.course = course
+            task.course, task.unchecked = course, self.context.handling.unchecked
             self._finish(task, TaskState.DONE)
 
     def _fail_again(self, failure: Failure) -> None:

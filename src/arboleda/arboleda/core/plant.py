@@ -39,7 +39,7 @@ from arboleda.model.messages import (
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Cell, PlantModel
 from arboleda.model.recipe import Builders
-from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence
+from arboleda.model.sentence import OWN, Phrase, Sentence
 from arboleda.model.task import Order, Task
 from arboleda.trees.context import Context
 
@@ -250,10 +250,11 @@ class Plant:
             cell=task.order.cell,
             state=task.state,
             reason=task.failure.reason if task.failure else None,
-            sentence=task.failure.sentence if task.failure else sentence or NOTHING,
+            sentence=sentence or task.remark,
             request=request,
             choice=task.choice,
             course=task.course,
+            unchecked=task.unchecked,
         )
         self.dispatcher.outbox.append(change)
         if task.ended_at is not None:

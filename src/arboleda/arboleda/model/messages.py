@@ -89,6 +89,13 @@ class Course:
         return self.seconds - min(at + seconds, following)
 
 
+class Check(str, Enum):
+    """A part of a task's work that no device may have confirmed, though the task is done."""
+
+    GRIP = "grip"
+    RELEASE = "release"
+
+
 @dataclass(frozen=True, kw_only=True)
 class KeptTask:
     """What was kept of a task that an earlier start accepted; times in s of this start's clock.
@@ -109,6 +116,7 @@ class KeptTask:
     recipe: str = ""
     choice: Sentence | None = None
     course: Course | None = None
+    unchecked: tuple[Check, ...] = field(default=(), repr=False)
 
 
 class Verb(str, Enum):
@@ -147,7 +155,7 @@ class SystemStart:
 class TaskChanged:
     """One change of a task; `request` is the token of the request that caused it, if one did. `for_now`
     says of a refused one that the same text may be taken later. `choice` says why it is done in this cell,
-    where several were allowed; `course` how it went that is done."""
+    where several were allowed; `course` how one went that is done, `unchecked` what nobody confirmed."""
 
     task: str
     text: str
@@ -159,6 +167,7 @@ class TaskChanged:
     for_now: bool = False
     choice: Sentence | None = field(default=None, repr=False)
     course: Course | None = field(default=None, repr=False)
+    unchecked: tuple[Check, ...] = field(default=(), repr=False)
 
 
 class Outcome(str, Enum):

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .errors import IllegalTransition
-from .messages import Course, Failure, KeptTask, TaskAnswer, TaskState
-from .sentence import Sentence
+from .messages import Check, Course, Failure, KeptTask, TaskAnswer, TaskState
+from .sentence import NOTHING, Phrase, Sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,6 +30,14 @@ LEGAL: dict[TaskState, frozenset[TaskState]] = {
     TaskState.CANCELLED: frozenset(),
 }
 
+UNCHECKED: dict[tuple[Check, ...], Phrase] = {
+    (Check.GRIP,): Phrase("task.unchecked_grip", "not checked: whether the part was gripped"),
+    (Check.RELEASE,): Phrase("task.unchecked_release", "not checked: whether the part was let go of"),
+    (Check.GRIP, Check.RELEASE): Phrase(
+        "task.unchecked_both", "not checked: whether the part was gripped and let go of"
+    ),
+}
+
 
 class Task:
     """An accepted order on its way through the plant; times in s of the plant's clock.
@@ -49,6 +57,7 @@ class Task:
         self.attempts = 0  # how often its work was begun, or its step given again by a retry
         self.answers: list[TaskAnswer] = []  # in the order in which they came
         self.course: Course | None = None  # how it went, once it is done
+        self.unchecked: tuple[Check, ...] = ()  # what of it nobody confirmed, once it is done
         self.is_kept = False  # whether an earlier start accepted it
 
     @classmethod
@@ -59,7 +68,15 @@ class Task:
         task.state, task.failure = kept.state, kept.failure
         task.started_at, task.ended_at, task.is_kept = kept.started_at, kept.ended_at, True
         task.attempts, task.answers, task.course = kept.attempts, list(kept.answers), kept.course
+        task.unchecked = kept.unchecked
         return task
+
+    @property
+    def remark(self) -> Sentence:
+        """Why it failed, or what of one that is done nobody confirmed."""
+        if self.failure is not None:
+            return self.failure.sentence
+        return UNCHECKED[self.unchecked]() if self.unchecked else NOTHING
 
     def become(self, state: TaskState, now: float) -> None:
         """Move to `state`; IllegalTransition where the table has no such step."""

@@ -9,6 +9,7 @@ from enum import Enum
 from typing import Any
 
 from arboleda.model.messages import (
+    Check,
     Course,
     Event,
     Fact,
@@ -224,6 +225,10 @@ def _course(data: Any) -> Course:
     return course
 
 
+def _checks(data: Any) -> tuple[Check, ...]:
+    return tuple(map(Check, data))
+
+
 def _answers(data: Any) -> tuple[TaskAnswer, ...]:
     return tuple(_made(TaskAnswer, each) for each in data)
 
@@ -242,6 +247,7 @@ READERS: dict[type, dict[str, Reader]] = {
         "answers": _answers,
         "choice": sentence_from,
         "course": _course,
+        "unchecked": _checks,
     },
     Failure: {"reason": Reason, "sentence": sentence_from},
     TaskAnswer: {},

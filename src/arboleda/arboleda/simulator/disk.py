@@ -78,7 +78,12 @@ class Content:
         elif row.ended_at is None:
             failure = Failure(reason=said.reason, sentence=said.sentence) if said.reason else None
             self.tasks[said.task] = replace(
-                row, state=said.state, failure=failure, ended_at=now, course=said.course
+                row,
+                state=said.state,
+                failure=failure,
+                ended_at=now,
+                course=said.course,
+                unchecked=said.unchecked,
             )
 
 

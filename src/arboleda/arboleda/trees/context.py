@@ -19,6 +19,7 @@ from arboleda.model.plant_model import Cell, Evidence, MotionState, Pose, Timing
 from arboleda.model.sentence import Phrase, Sentence
 
 from . import zone_plan
+from .handling import Handling
 from .trail import Known, Planned, Trail
 
 __all__ = ["Context", "Make"]
@@ -70,6 +71,7 @@ class Context:
         self.back: dict[str, Pose] = {}  # where what a robot holds came from, as far as this is known here
         self.origins: set[str] = set()  # the robots whose place in `back` is where they last went empty
         self.used: set[str] = set()  # the robots that the task has told to do something
+        self.handling = Handling(dispatcher.beliefs)
         self.answers: list[TaskAnswer] = []  # those of the task that runs
         self.as_planned: Planned | None = None  # where robots count as standing, while a tree is made anew
         self._occupied: dict[str, frozenset[str]] = {}  # by interlocked device, as it was seen last
@@ -121,6 +123,7 @@ class Context:
         """Forget what the last tree waited for and why it failed."""
         self.wakes, self.awaits_piece, self.carrier = [], False, None
         self.used = set()
+        self.handling.begin()
         self.delivers = True
         for robot in self.cell.holders:
             self._dispatcher.opened.pop(robot, None)
@@ -351,6 +354,7 @@ class Context:
         self.start_afresh()
         self.pause()
         self.carrier, self.origins, self.used = trail.carrier, set(trail.origins), set(trail.used)
+        self.handling.begin(trail.taken, trail.unchecked)
         self.answers[:] = trail.answers
         self._reserved = trail.zones
         poses = {robot: {pose.name: pose for pose in space.poses} for robot, space in self.cell.reach.items()}

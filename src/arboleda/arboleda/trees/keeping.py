@@ -149,6 +149,8 @@ class Keeping:
             cancels=cancels,
             stranded=stranded,
             answers=tuple(context.answers),
+            taken=dict(context.handling.taken),
+            unchecked=context.handling.unchecked,
         )
 
     def _grown(self, order: Order, planned: Planned) -> Behaviour:

@@ -194,6 +194,9 @@ class Act(Leaf):
         return self._failed(failure)
 
     def _done(self) -> Status:
+        kept = command_kept(self.entry) or self.last
+        if kept is not None and kept["grips"] is not None:
+            self.context.handling.note(kept["robot"], grips=kept["grips"])
         if self.then is not None:
             self.then()
         return Status.SUCCESS

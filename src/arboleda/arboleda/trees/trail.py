@@ -17,10 +17,10 @@ from py_trees.common import Status
 from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry, State
 from arboleda.model.commands import Command, Motion, Position, Query, Switch, Work
-from arboleda.model.messages import Failure, Reason, Receipt, TaskAnswer
+from arboleda.model.messages import Check, Failure, Reason, Receipt, TaskAnswer
 from arboleda.model.sentence import Sentence, retold
 
-VERSION = 2
+VERSION = 3
 STATUSES = {status.value[0]: status for status in Status}
 MOTION, PROCESS, SWITCH, QUERY, OTHER = "motion", "process", "switch", "query", "other"
 EFFECTS = ((Motion, MOTION), (Work, PROCESS), (Switch, SWITCH), (Query, QUERY), (Command, OTHER))
@@ -102,7 +102,8 @@ class Begun:
 
 class Trail(NamedTuple):
     """`statuses` has a letter for each node, the root last, `nodes` what else is kept of some, by number.
-    `used` are the devices that the task has told to do something.
+    `used` are the devices that the task has told to do something, `taken` those that hold a part of it, with
+    the boot in which they took that.
 
     `failure` is that of the work, where what runs `recovers` from it; `cancels`: it ends as cancelled.
     """
@@ -122,6 +123,8 @@ class Trail(NamedTuple):
     cancels: bool = False
     stranded: Sentence | None = None
     answers: Sequence[TaskAnswer] = ()
+    taken: Mapping[str, int | None] = {}
+    unchecked: Sequence[Check] = ()
 
     def text(self) -> str:
         """It as it is kept: how the task began, and where it stands."""
@@ -140,6 +143,7 @@ class Trail(NamedTuple):
                 "failure": None if failure is None else _read_failure(*failure),
                 "stranded": None if stranded is None else retold(*stranded),
                 "answers": [TaskAnswer(**each) for each in said["answers"]],
+                "unchecked": [Check(each) for each in said["unchecked"]],
             }
             return cls(begun=Begun.read(*begun), **said)
         except (AttributeError, KeyError, TypeError) as error:
@@ -189,6 +193,7 @@ def command_kept(entry: Entry | None) -> dict[str, Any] | None:
         "effect": next(name for kind, name in EFFECTS if isinstance(command, kind)),
         "goal": entry.way[-1] if entry.way else None,
         "sets": entry.sets,
+        "grips": command.grips if isinstance(command, Switch) else None,
         "before": entry.before,
         "number": entry.number,
         "done": entry.state is State.DONE,

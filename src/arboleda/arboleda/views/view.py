@@ -15,9 +15,9 @@ from arboleda.dispatch.belief import Belief
 from arboleda.dispatch.ledger import Entry
 from arboleda.model.commands import Question
 from arboleda.model.facts import Value
-from arboleda.model.messages import OperatorRequest, TaskChanged, Verb
+from arboleda.model.messages import Check, OperatorRequest, TaskChanged, Verb
 from arboleda.model.plant_model import Cell, PlantModel, Robot
-from arboleda.model.sentence import BOTH, NOTHING, Sentence
+from arboleda.model.sentence import BOTH, Sentence
 from arboleda.model.task import Task
 from arboleda.trees.tree_run import step_of
 
@@ -164,6 +164,7 @@ def change(changed: TaskChanged) -> dict[str, Any]:
         "reason": changed.reason.value if changed.reason else None,
         "sentence": changed.sentence,
         **({"choice": changed.choice} if changed.choice else {}),
+        **({"unchecked": _words(changed.unchecked)} if changed.unchecked else {}),
     }
 
 
@@ -284,14 +285,19 @@ def _task(task: Task, now: float) -> dict[str, Any]:
         "cell": task.order.cell,
         "state": task.state.value,
         "reason": task.failure.reason.value if task.failure else None,
-        "sentence": task.failure.sentence if task.failure else NOTHING,
+        "sentence": task.remark,
         "failed_in": task.failed_in,
         "elapsed_s": None if started is None else ended - started,
         "started_at": started,
         "ended_at": task.ended_at,
         "answers": [dict(vars(each)) for each in task.answers],
         "choice": task.choice,
+        "unchecked": _words(task.unchecked),
     }
+
+
+def _words(checks: Iterable[Check]) -> list[str]:
+    return [each.value for each in checks]
 
 
 def _robot(plant: Plant, belief: Belief) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from arboleda.model.errors import StartError
 from .server import Impatient
 
 PREFIX, LONGEST = "plant_", 63  # PostgreSQL cuts names that are longer, and two plants would be one
-VERSION = 5
+VERSION = 6
 NUMBER = "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"
 TABLES = (
     "CREATE TABLE fact (fact TEXT, name TEXT, value TEXT NOT NULL, PRIMARY KEY (fact, name))",
@@ -51,6 +51,7 @@ SINCE: dict[int, tuple[str, ...]] = {  # what brings the tables of a format to t
     2: ("ALTER TABLE task ADD COLUMN choice TEXT",),
     3: ("ALTER TABLE standby ADD COLUMN url TEXT NOT NULL DEFAULT ''",),  # where the page of each is
     4: ("ALTER TABLE task ADD COLUMN course TEXT",),
+    5: ("ALTER TABLE task ADD COLUMN unchecked TEXT",),
 }
 SUPERSEDED = "AR001"
 

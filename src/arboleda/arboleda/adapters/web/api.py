@@ -24,7 +24,7 @@ from arboleda.model.errors import ArboledaError, PayloadError, QueueFull, TextEr
 from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
 
-from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table
+from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
 from . import limits, listing, login, metrics, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
@@ -321,6 +321,7 @@ def _query(model: type[BaseModel]) -> dict[str, Any]:
 def _kept(row: TaskRow) -> dict[str, Any]:
     answers = [vars(each) for each in answers_of(row)]
     data = asdict(row) | {"sentence": row.sentence or "", "answers": answers, "choice": choice_of(row)}
+    data["unchecked"] = unchecked_of(row)
     said = json.loads(data.pop("said") or "{}")
     del data["course"]  # for the plant, which expects by it how long the next one takes
     return {**data, **said} if row.sentence else data

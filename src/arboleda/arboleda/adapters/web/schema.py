@@ -141,6 +141,7 @@ OUTCOME = (
     "unchecked: devices were told, and report nothing of it. failed."
 )
 CHOICE = "Why it is done in this cell, where several were allowed."
+UNCHECKED = "Of one that is done what no device confirmed: grip, release; its sentence says it for people."
 
 
 class Task(_Told):
@@ -154,6 +155,7 @@ class Task(_Told):
     values: dict[str, Any] | None = None
     answers: list[TaskAnswer] = Field(default=[], description="Of this task, in the order they came.")
     choice: str | None = Field(default=None, description=CHOICE)
+    unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
 class Promise(_Told):
@@ -188,6 +190,7 @@ class KeptTask(_Told):
     )
     attempts: int = Field(default=0, description="How often it was begun, or tried again by `retry`.")
     answers: list[TaskAnswer] = Field(default=[], description="Of one that has ended, in their order.")
+    unchecked: list[str] = Field(default=[], description=UNCHECKED)
 
 
 class CellOee(_Told):

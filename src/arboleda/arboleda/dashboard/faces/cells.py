@@ -84,14 +84,21 @@ def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:
-    """Why the last task failed, and in which step; until the cell is at work again.
+    """Why the last task failed, and in which step, or what of it nobody confirmed; until the cell is at work
+    again.
 
     That of a stop is told by the cell itself.
     """
     if task is not None and task["reason"] == "stopped" and cell["state"] in ("aborting", "aborted"):
         return ""
-    over = cell["state"] != "execute" and task is not None and task["state"] == "failed"
-    return failed_in(words, task, memory.rows) if over and task else ""
+    if task is None or cell["state"] == "execute":
+        return ""
+    return failed_in(words, task, memory.rows) if task["state"] == "failed" else _remark(words, task)
+
+
+def _remark(words: Words, task: Row) -> str:
+    """What of a task that is done nobody confirmed."""
+    return words.say(task["sentence"]) if task["state"] == "done" else ""
 
 
 def _act(moment: Moment, cell: Row) -> list[str]:

@@ -53,14 +53,14 @@ def _row(moment: Moment, task: Row) -> Row:
 
 
 def why(moment: Moment, task: Row) -> str:
-    """Why it failed or waits: the reason in the page's language, and the plant's sentence."""
+    """Why it failed or waits, the reason in the page's language, or what of it nobody confirmed."""
     words = moment.words
     if task["reason"]:
         return f"{words.of('reason', task['reason'])}: {words.say(task['sentence'])}"
     if task["state"] == "queued":
         cell = next(each for each in moment.snapshot["cells"] if each["name"] == task["cell"])
         return words.say(cell["waiting_for"]) if cell["waiting_for"] else ""
-    return ""
+    return words.say(task["sentence"])
 
 
 def _acts(words: Any, task: Row) -> list[Row]:
