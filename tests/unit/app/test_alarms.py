@@ -17,10 +17,12 @@ from arboleda.app.parts.alarms import AlarmsPart
 from arboleda.app.parts.commit_pace import Pace
 from arboleda.core.cell_states import CellState
 from arboleda.core.plant import Plant
+from arboleda.kinds.person import person
 from arboleda.model.errors import StartError
 from arboleda.model.messages import Reason, Shutdown, TaskChanged, TaskState, Verb
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
+from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
@@ -150,6 +152,30 @@ def test_that_the_plant_was_away_is_told_whether_it_held_a_cell_or_not(
     assert "the plant was away for 1." in away["sentence"] and away["sentence"].endswith(what)
     assert (away["cell"], away["state"], away["advice"]) == ("", None, [])
     assert told.kinds == ["plant_away", *(["cell_held"] if at_work else [])]
+
+
+@recipe("both")
+def both(cell: Kit):  # type: ignore[no-untyped-def]
+    ana, ben = cell.devices("ana", "ben")
+    return work(parallel(ana.ask("A?", ["yes"]), work(cell.wait(3.0), ben.ask("B?", ["yes"]))))
+
+
+def test_each_person_who_is_asked_at_the_same_time_is_told(told: Told) -> None:
+    model = attended(both)
+    cells = [replace(each, members=(*each.members, ("ben", person("ben")))) for each in model.cells]
+    rig = heard(Bench(replace(model, cells=tuple(cells))), told)
+    rig.submit("tending both")
+    rig.wait(10.0)
+    assert told.kinds == ["person_asked", "person_asked"]
+    assert [each["sentence"] for each in told.alarms] == [
+        "ana is asked in tending: A?",
+        "ana is asked in tending: A?; ben is asked in tending: B?",
+    ]
+    assert told.alarms[1]["alarm"] == told.alarms[0]["id"]
+    for person_asked in ("ana", "ben"):
+        assert rig.operate(Verb.ANSWER, f"{person_asked} yes") is None
+        rig.wait(1.0)
+    assert told.kinds[-1] == "cell_cleared"
 
 
 def test_a_stop_is_one_hold_from_its_first_state_to_its_last(rig: Rig, told: Told) -> None:

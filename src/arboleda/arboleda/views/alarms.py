@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 from arboleda.core.advice import in_words
@@ -12,7 +13,7 @@ from arboleda.core.plant import AWAY, Plant
 from arboleda.model.commands import Question
 from arboleda.model.messages import TaskChanged
 from arboleda.model.outside import plain
-from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence
+from arboleda.model.sentence import BOTH, NOTHING, OWN, Phrase, Sentence
 
 from .view import standing, waited_for
 
@@ -46,8 +47,8 @@ def need_of(run: CellRun) -> Need | None:
     """Why a cell needs somebody now; None where it does not."""
     if run.state in NEEDS_SOMEBODY:
         return Need(kind=CELL_HELD, of=run.state.value)
-    if (question := _question(run)) is not None:
-        return Need(kind=PERSON_ASKED, of=question.id)
+    if questions := _questions(run):
+        return Need(kind=PERSON_ASKED, of=" ".join(each.id for each in questions))
     if run.queue and run.not_ready is not None and not run.context.open_commands():
         return Need(kind=CELL_BLOCKED, of="")
     return None
@@ -101,15 +102,18 @@ def of_cell(plant: Plant, cell: str) -> Alarm:
 
 
 def _why(run: CellRun) -> Sentence:
-    if (question := _question(run)) is None:
+    asked = [
+        ASKED(person=each.robot, cell=run.cell.name, question=OWN(text=each.text)) for each in _questions(run)
+    ]
+    if not asked:
         return run.waiting_for() or NOTHING
-    return ASKED(person=question.robot, cell=run.cell.name, question=OWN(text=question.text))
+    return reduce(lambda first, second: BOTH(first=first, second=second), asked)
 
 
-def _question(run: CellRun) -> Question | None:
-    """What a person of the cell is being asked."""
+def _questions(run: CellRun) -> list[Question]:
+    """What people of the cell are being asked, the oldest first."""
     open_ = (entry.command for entry in run.context.open_commands())
-    return next((each for each in open_ if isinstance(each, Question)), None)
+    return [each for each in open_ if isinstance(each, Question)]
 
 
 def _alarm(
