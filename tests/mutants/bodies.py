@@ -12,8 +12,14 @@ from arboleda.sim.arm import ArmBody
 from arboleda.sim.board import Board
 from arboleda.trees import steps
 from arboleda.trees.context import Context
+from arboleda.trees.leaves import Piece
 
 from .mutant import SHARED, edit, mutant
+
+LOOKS_AT_NO_PIECE = (
+    edit(Context.part_lost, "if robot is None or", "if True or"),
+    edit(Piece._seen, " is True", " is not None"),
+)
 
 ZONES = (
     mutant(
@@ -93,8 +99,10 @@ MOTION = (
 GRIP = (
     mutant(
         "effector_on_only_between_pick_and_place",
-        "The work at a pose is done before the arm goes there.",
+        "The work at a pose is done before the arm goes there, and no piece is looked for.",
         edit(steps._at, "[go, *work]", "[*work, go]"),
+        edit(steps.grip, "if not check:", "if True:"),
+        edit(steps.let_go, "if not check:", "if True:"),
         weather="none",
     ),
     mutant(
@@ -149,9 +157,23 @@ GRIP = (
 ROBBED = (
     mutant(
         "robbed_task_is_not_done",
-        "An effector that opened by itself is looked after only where pieces are checked.",
+        "Nobody looks whether an effector opened by itself, or has lost its part.",
         edit(Context.part_gone, "if robot is None or", "if True or"),
+        *LOOKS_AT_NO_PIECE,
         weather={"opened_effector": 20.0},
+    ),
+    mutant(
+        "done_task_has_its_part",
+        "A part that was lost is missed neither on the way nor where it belongs.",
+        *LOOKS_AT_NO_PIECE,
+        weather={"lost_part": 20.0},
+    ),
+    mutant(
+        "unchecked_is_as_said",
+        "Where no piece sensor speaks nothing is said of it.",
+        edit(Piece._seen, "handling.miss(Check.GRIP)", "pass"),
+        weather="none",
+        seeds=SHARED,
     ),
 )
 

@@ -27,6 +27,7 @@ STEPS = [
     "effector on/dwell",
     "piece gripped",
     "move to station 7",
+    "piece brought",
     "effector off/switch",
     "effector off/dwell",
     "move to home",

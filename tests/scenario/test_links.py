@@ -67,7 +67,7 @@ def test_a_bridge_that_never_comes_back_leaves_no_task_hanging(evidence: Evidenc
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_what_a_cut_connection_has_kept_moves_nothing_when_it_is_mended(seed: int) -> None:
-    cut = Fault(kind="partition", at=6.0, seconds=8.0, target="ra_1", word="down, held")
+    cut = Fault(kind="partition", at=5.0, seconds=8.0, target="ra_1", word="down, held")
     simulation = Simulation(shipped("sis_a"), seed, explicit((cut,)))
     probes = Probes(simulation.world)
     result = simulation.run(seconds=60.0)

@@ -14,7 +14,7 @@ from arboleda.testing import shipped
 from arboleda.testing.rig import Rig
 
 TASK = "sis_a 0B 4"
-STEPS = ("effector on/dwell", "move to station 4")
+STEPS = ("grip/try 1/effector on/dwell", "move to station 4")
 
 
 @pytest.fixture

@@ -52,7 +52,8 @@ KEYS = {  # id: (text in the shipped file, put in its place, the sentence has in
     "retry before": ("    pickup:", "    retry: {backoff_s: -1}\n    pickup:", "at least 0, is -1"),
     "retry key": ("    pickup:", "    retry: {time: 1}\n    pickup:", 'did you mean "times"?'),
     "retry as number": ("    pickup:", "    retry: 3\n    pickup:", "must be a mapping"),
-    "piece check": ("    pickup:", "    piece_check: yes\n    pickup:", 'true or false, is "yes"'),
+    "piece check": ("    pickup:", "    piece_check: yes\n    pickup:", 'auto, true or false, is "yes"'),
+    "piece check as number": ("    pickup:", "    piece_check: 1\n    pickup:", "auto, true or false, is 1"),
     "no wait": ("    pickup:", "    zone_wait_s: 0\n    pickup:", "must be more than 0, is 0"),
     "long settle": ("paths:", "timing: {effector_timeout_s: 0.1}\npaths:", "is 0.1, else an effector that"),
     "long debounce": ("paths:", "timing: {piece_debounce_s: 2}\npaths:", "piece_wait_s, which is 2"),
@@ -92,7 +93,7 @@ def test_the_shipped_plant_shares_nothing_and_has_the_defaults() -> None:
     assert (plant.zones, plant.timing.piece_wait_s, plant.timing.piece_debounce_s) == ((), 2.0, 0.1)
     for cell in plant.cells:
         assert not any(pose.zones for pose in poses(cell))
-        assert (cell.crossings, cell.zone_wait_s, cell.retry, cell.piece_check) == ((), 30.0, Retry(), False)
+        assert (cell.crossings, cell.zone_wait_s, cell.retry, cell.piece_check) == ((), 30.0, Retry(), "auto")
         assert (cell.arm.piece_on_change, cell.arm.queue_triggers) == (False, True)
         assert (cell.arm.home_at_start, cell.mobile.home_at_start) == (False, False)
 
@@ -157,6 +158,12 @@ def test_what_a_cell_and_its_robots_do_in_trouble_can_be_chosen(tmp_path: Path) 
     cell = load(tmp_path, text).cell("sis_a")
     assert (cell.retry, cell.piece_check, cell.zone_wait_s) == (Retry(times=2, backoff_s=0.5), True, 5)
     assert (cell.arm.piece_on_change, cell.arm.queue_triggers, cell.arm.home_at_start) == (True, False, True)
+
+
+@pytest.mark.parametrize(("word", "check"), [("auto", "auto"), ("true", True), ("false", False)])
+def test_whether_pieces_are_checked_can_be_chosen(tmp_path: Path, word: str, check: object) -> None:
+    text = PLANT.replace("    pickup:", f"    piece_check: {word}\n    pickup:", 1)
+    assert load(tmp_path, text).cell("sis_a").piece_check == check
 
 
 def test_the_times_of_a_piece_check_can_be_chosen(tmp_path: Path) -> None:

@@ -11,7 +11,8 @@ from arboleda.dashboard.faces.stop import face as stop_face
 from arboleda.dashboard.faces.stop import stopped
 from arboleda.dashboard.faces.tasks import sorted_tasks
 from arboleda.dashboard.wording import words
-from arboleda.model.messages import Verb
+from arboleda.model.messages import TaskState, Verb
+from arboleda.model.plant_model import Evidence
 from arboleda.testing import faults
 from arboleda.views.changes import changed
 
@@ -297,6 +298,22 @@ def test_a_release_that_failed_stays_on_the_card_with_the_way_by_hand(told: Call
     assert by_hand["acts"][0]["asks"] == ["Have you taken the part out of {of}? The plant will believe it."]
     assert rig.operate(Verb.RELEASE, "ra1", by_hand=True) is None
     assert rig.face()["text/sis_a.act"] == ["", ""]
+
+
+def test_what_of_a_done_task_nobody_confirmed_is_on_its_row_and_on_its_card(told: Callable[..., Any]) -> None:
+    rig = told(evidence=Evidence.JOINTS)
+    task = rig.submit("sis_a 0B 7").task
+    assert rig.wait(120.0, until=lambda: rig.outcomes()[task].state is TaskState.DONE)
+    rig.wait(1.0)
+    said = "not checked: whether the part was gripped and let go of"
+    face = rig.face()
+    assert face["text/sis_a.cause"] == [said, ""]
+    assert face[f"row/tasks/{task}"]["state"] == "done" and said in face[f"row/tasks/{task}"]["texts"]
+    assert rig.story.task_face(task, "en")["text/task.cause"] == [said, "done"]
+    assert rig.face("es")["text/sis_a.cause"][0] == "sin comprobar: si la pieza quedó sujeta y si se soltó"
+    rig.submit("sis_a 0B 1")
+    rig.wait(1.0)
+    assert rig.face()["text/sis_a.cause"] == ["", ""]
 
 
 def test_the_cause_and_the_failed_step_stay_until_the_cell_works_again(told: Callable[..., Any]) -> None:

@@ -30,6 +30,8 @@ from arboleda.simulator.world import World
 from arboleda.testing.plants import shipped
 from arboleda.trees import steps
 from arboleda.trees.context import Context
+from arboleda.trees.handling import Handling
+from arboleda.trees.leaves import Piece
 from arboleda.wire.payloads import EffectorGoal, Goal, JointsGoal, encode
 from arboleda.wire.rivals import Rivals
 from arboleda.wire.topics import Channel, topic
@@ -325,11 +327,33 @@ def mobile_runs_on(patch: Patch) -> Watch:
 
 def robbed_unnoticed(patch: Patch) -> Watch:
     patch.setattr(Context, "part_gone", lambda self: None)
-    watch = Watch()
+    watch = misses_no_part(patch)
     watch.world.request_task("sis_a 0B 7")
     watch.wait(60.0, until=lambda: watch.body.holding and watch.body.moving)
     watch.world.open_effector(ARM)
     watch.wait(30.0)
+    return watch
+
+
+def misses_no_part(patch: Patch) -> Watch:
+    """Nobody looks for a part on the way, nor where it belongs."""
+    patch.setattr(Context, "part_lost", lambda self: None)
+    patch.setattr(Piece, "_seen", lambda self: True)
+    return Watch()
+
+
+def lost_unnoticed(patch: Patch) -> Watch:
+    watch = misses_no_part(patch)
+    watch.carry()
+    watch.body.lose_piece()
+    watch.wait(30.0)
+    return watch
+
+
+def checked_unseen(patch: Patch) -> Watch:
+    patch.setattr(Handling, "miss", lambda self, check: None)
+    watch = Watch(shipped("sis_a", evidence=Evidence.JOINTS))
+    watch.task(wait_s=60.0)
     return watch
 
 
@@ -356,6 +380,8 @@ BREAKS: list[tuple[str, Callable[[Patch], Watch]]] = [
     ("one_pick_one_place", two_parts),
     ("done_task_is_true", nothing_was_done),
     ("robbed_task_is_not_done", robbed_unnoticed),
+    ("done_task_has_its_part", lost_unnoticed),
+    ("unchecked_is_as_said", checked_unseen),
     ("latched_board_stays_still", moved_while_latched),
     ("stop_holds", moved_while_latched),
     ("speed_never_rises_after_stop", arm_runs_on),

@@ -236,7 +236,7 @@ def test_a_task_that_is_asked_for_again_does_not_begin_again(stage):
 
 def test_what_a_task_that_is_called_done_did_not_do_is_named(stage):
     stage.ask("sis_a palletizing")
-    stage.until(lambda: stage.arm.here == {"pick-up"})
+    stage.until(lambda: stage.arm.on)
     ended = stage.truth.cells["sis_a"].end("sis_a palletizing", done=True)
     assert ended.missing == "the effector was switched on at pick-up"
 

@@ -59,7 +59,7 @@ def test_progress_only_grows_while_a_task_is_carried_out() -> None:
     rig.wait(0.5)
     rig.submit(TASK)
     assert rig.wait(60.0, until=look)
-    assert len(seen) == 7 and seen == sorted(seen) and seen[-1] < 1.0
+    assert len(seen) == 8 and seen == sorted(seen) and seen[-1] < 1.0
 
 
 def levels(rig: Rig) -> dict[str, int]:

@@ -90,6 +90,7 @@ class Belief:
         self.effector: bool | None = None
         self.held_boot: int | None = None  # the boot in which it said whether it holds something
         self.piece: bool | None = None
+        self.piece_boot: int | None = None  # the boot in which it said whether a piece is there
         self.receipt: Receipt | None = None
         self.facts: dict[str, Value] = {}
         self.lost: Sentence | None = None  # why there is no link
@@ -100,6 +101,12 @@ class Belief:
     def numbers_commands(self) -> bool:
         """Whether its board numbers the commands that it takes, and has told of its boot."""
         return self.robot.evidence is Evidence.IDS and self.boot_id is not None
+
+    @property
+    def senses_pieces(self) -> bool:
+        """Whether it has a piece sensor, by its plant file or by what it said since it booted."""
+        said = self.piece is not None and self.piece_boot == self.boot_id
+        return said or self.robot.piece_on_change
 
     def fact(self, name: str) -> Value | None:
         """The last word on a fact; None where there was none."""
@@ -129,6 +136,8 @@ class Belief:
         self.position = self.position_in(self)
         if self.held_in(report) is not None:
             self.held_boot = self.boot_id
+        if report.piece is not None:
+            self.piece_boot = self.boot_id
         if report.epoch is not None:
             self.plant = report.plant  # a bridge that restarted has to hear the plant anew
         self._said, self.lost = report.words, report.lost

@@ -213,7 +213,7 @@ class RobotHandle(Handle):
     def grip(self) -> Step:
         """Take hold of a part."""
         self._context.cell.workspaces[self._device.name].hand.grip(id="")  # what it cannot is told at once
-        return steps.effector(self._context, self._device.name, on=True)
+        return steps.unchecked_grip(self._context, self._device.name)
 
     def let_go(self) -> Step:
         """Let go of what it holds."""

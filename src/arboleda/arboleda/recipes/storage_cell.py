@@ -12,6 +12,7 @@ from arboleda.kinds.mobile import Mobile
 from arboleda.model.commands import Position
 from arboleda.model.plant_model import Cell, Crossing, Pose, Positions, Robot, Workspace
 from arboleda.model.sentence import OWN, Phrase, Sentence
+from arboleda.trees.steps import PieceCheck
 
 HOME = "home"
 ARM, MOBILE = "arm", "mobile"  # its roles, which are keys of the cell as well
@@ -52,7 +53,7 @@ class StorageCell(Cell):
     paths: tuple[Path, ...]
     palletizing: Palletizing
     drive_to_start: bool  # False: a mobile known to be elsewhere fails the task
-    piece_check: bool = False
+    piece_check: PieceCheck = "auto"
     crossings: tuple[Crossing, ...] = ()
     pickups: tuple[tuple[str, Pose], ...] = ()  # by exit
     keyed_roles: ClassVar[tuple[str, ...]] = (ARM, MOBILE)

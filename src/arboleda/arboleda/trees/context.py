@@ -439,7 +439,7 @@ class Context:
         belief = self._dispatcher.beliefs[robot]
         fresh = belief.robot.piece_on_change or belief.piece_at - self._paused_s >= since
         self.awaits_piece = self.awaits_piece or not fresh  # a change of a fresh word wakes the tree anyway
-        if belief.piece is None or not belief.online or not fresh:
+        if belief.piece is None or not (belief.senses_pieces and belief.online and fresh):
             return None
         settled_at = belief.piece_since + self.timing.piece_debounce_s - self._paused_s
         if self.now < settled_at:

@@ -6,6 +6,9 @@ from collections.abc import Iterable, Mapping
 
 from arboleda.dispatch.belief import Belief
 from arboleda.model.messages import Check
+from arboleda.model.plant_model import Evidence
+
+UNKNOWN = -1  # the boot of a board that numbers nothing, and may have booted between two starts of the plant
 
 
 class Handling:
@@ -23,14 +26,28 @@ class Handling:
 
     def begin(self, taken: Mapping[str, int | None] | None = None, unchecked: Iterable[Check] = ()) -> None:
         """A task begins, or goes on with what an earlier start has kept of it."""
-        self.taken, self._unchecked = dict(taken or {}), set(unchecked)
+        earlier = taken or {}
+        numbered = {name for name, each in self._beliefs.items() if each.robot.evidence is Evidence.IDS}
+        self.taken = {hand: boot if hand in numbered else UNKNOWN for hand, boot in earlier.items()}
+        self._unchecked = set(unchecked)
+
+    def miss(self, check: Check) -> None:
+        """Nobody can confirm this part of the work."""
+        self._unchecked.add(check)
+
+    def senses_pieces(self, robot: str) -> bool:
+        """Whether a robot's board says whether a piece is at its effector."""
+        return self._beliefs[robot].senses_pieces
 
     def note(self, hand: str, *, grips: bool) -> None:
-        """What holds parts has gripped, or let go: where its board has booted in between, it may have lost
-        the part by that, which nobody saw.
+        """What holds parts has gripped, or let go, which its board has to say. Where that has booted in
+        between, it may have lost the part by that. Of an effector that is on, a piece sensor says the rest.
         """
-        boot = self._beliefs[hand].boot_id
+        belief = self._beliefs[hand]
+        holds = belief.held_in(belief)
         if grips:
-            self.taken[hand] = boot
-        elif hand in self.taken and self.taken.pop(hand) != boot:
-            self._unchecked.add(Check.RELEASE)
+            self.taken[hand] = belief.boot_id
+            if not (holds or belief.robot.has_effector):
+                self.miss(Check.GRIP)
+        elif hand in self.taken and (self.taken.pop(hand) != belief.boot_id or holds is not False):
+            self.miss(Check.RELEASE)

@@ -11,7 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from arboleda.dispatch.ledger import Entry, State
-from arboleda.model.messages import Failure, Notice, Reason
+from arboleda.model.messages import Check, Failure, Notice, Reason
 from arboleda.model.sentence import NOTHING, OWN, Phrase, Sentence, as_sentence
 
 from .context import Context, Make
@@ -332,7 +332,10 @@ class Await(Leaf):
 
 
 class Piece(Await):
-    """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there."""
+    """Wait at most `seconds` for a robot's piece sensor's fresh, debounced word that a piece is there.
+
+    `needed`: it must be said; else a robot without a sensor goes on, and the task says that nobody checked.
+    """
 
     def __init__(
         self,
@@ -342,12 +345,18 @@ class Piece(Await):
         seconds: float,
         failure: Failure,
         *,
+        needed: bool = True,
         final: bool = True,
     ) -> None:
         super().__init__(name, context, self._seen, seconds, lambda: failure, final=final)
         self.robot = robot
+        self.needed = needed
 
     def _seen(self) -> bool:
+        handling = self.context.handling
+        if not (self.needed or handling.senses_pieces(self.robot)):
+            handling.miss(Check.GRIP)
+            return True
         return self.context.piece(self.robot, self.began) is True
 
 

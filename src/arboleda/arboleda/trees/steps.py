@@ -8,17 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Literal
 
 from py_trees import common, composites
 from py_trees.behaviour import Behaviour
 
 from arboleda.model.commands import Command
-from arboleda.model.messages import Failure, Reason, SystemStart
+from arboleda.model.messages import Check, Failure, Reason, SystemStart
 from arboleda.model.plant_model import Pose
 from arboleda.model.sentence import Phrase, Sentence
 
 from . import zone_plan
-from .context import Context
+from .context import PART_LOST, Context
 from .leaves import (
     Act,
     Announce,
@@ -69,6 +70,7 @@ SWITCHING_ON = Phrase("doing.switch_on", "switching the effector on")
 SWITCHING_OFF = Phrase("doing.switch_off", "switching the effector off")
 PIECE_THERE = Phrase("step.piece_there", "piece there")
 PIECE_GRIPPED = Phrase("step.piece_gripped", "piece gripped")
+PIECE_BROUGHT = Phrase("step.piece_brought", "piece brought")
 GRIP = Phrase("step.grip", "grip")
 TRY = Phrase("step.try", "try {number}")
 ONLY_MISSED = Phrase("step.only_missed", "only missed")
@@ -86,6 +88,7 @@ UNENDED = Phrase("recovery.unended", "{arm} had commands that did not end")
 NO_PIECE = Phrase("part.none", "{arm}: no piece at {pose}")
 NOT_GRIPPED = Phrase("part.not_gripped", "{arm}: the piece at {pose} was not gripped")
 SETTLE_S = 1.0  # after the last stop was confirmed or given up
+PieceCheck = bool | Literal["auto"]  # auto: where the board of the robot says what its piece sensor sees
 Visit = tuple[Pose, list[Behaviour]]  # a pose of a robot, and the work to do there
 
 
@@ -203,26 +206,38 @@ def _note_origin(context: Context, robot: str, pose: Pose) -> None:
         context.origins.add(robot)
 
 
-def grip(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
+def grip(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
     """Effector on; `check`: the piece sensor has to see the part before and after."""
-    on = effector(context, robot, on=True)
     if not check:
-        return [on]
+        return [unchecked_grip(context, robot)]
     retry, wait_s = context.cell.retry, context.timing.piece_wait_s
     none = Failure(reason=Reason.NO_PIECE, sentence=NO_PIECE(arm=robot, pose=pose.said))
     patience_s = wait_s + retry.times * (retry.backoff_s + wait_s)  # to try again is to wait again
-    attempts = [_attempt(context, robot, pose, number) for number in range(retry.times + 1)]
+    needed = check is True
+    attempts = [_attempt(context, robot, pose, number, needed=needed) for number in range(retry.times + 1)]
     return [
-        Piece(PIECE_THERE(), context, robot, patience_s, none),
+        Piece(PIECE_THERE(), context, robot, patience_s, none, needed=needed),
         selector(GRIP(), *attempts),
         Carry(CARRY(), context, robot),
     ]
 
 
-def let_go(context: Context, robot: str, pose: Pose, *, check: bool) -> list[Behaviour]:
-    """Effector off; what it held stays at the pose."""
+def unchecked_grip(context: Context, robot: str) -> Behaviour:
+    """Grip without a look at a piece sensor; a tool of its own says itself whether it holds something."""
+    own = context.cell.workspaces[robot].hand.has_effector
+    missed = partial(context.handling.miss, Check.GRIP) if own else None
+    return effector(context, robot, on=True, then=missed)
+
+
+def let_go(context: Context, robot: str, pose: Pose, *, check: PieceCheck) -> list[Behaviour]:
+    """Effector off; what it held stays at the pose. `check`: the piece sensor has to see it until then."""
     off = effector(context, robot, on=False, then=partial(context.store, pose))
-    return [Carry(ARRIVED(), context, None), off] if check else [off]
+    if not check:
+        return [off]
+    lost = Failure(reason=Reason.PART_LOST, sentence=PART_LOST(arm=robot))
+    wait_s, needed = context.timing.piece_wait_s, check is True
+    brought = Piece(PIECE_BROUGHT(), context, robot, wait_s, lost, needed=needed)
+    return [brought, Carry(ARRIVED(), context, None), off]
 
 
 def _way_home(context: Context, robot: str, *, notes_origins: bool) -> list[Behaviour]:
@@ -350,12 +365,13 @@ def effector(context: Context, robot: str, *, on: bool, then: Callable[[], None]
     return sequence(named[0], act, Dwell(DWELL(), context, context.timing.dwell_s))
 
 
-def _attempt(context: Context, robot: str, pose: Pose, number: int) -> Behaviour:
+def _attempt(context: Context, robot: str, pose: Pose, number: int, *, needed: bool) -> Behaviour:
     """Effector on and the piece seen in it; a later attempt opens the effector first."""
     retry = context.cell.retry
     missed = Failure(reason=Reason.NOT_GRIPPED, sentence=NOT_GRIPPED(arm=robot, pose=pose.said))
     final = number == retry.times
-    seen = Piece(PIECE_GRIPPED(), context, robot, context.timing.piece_wait_s, missed, final=final)
+    wait_s = context.timing.piece_wait_s
+    seen = Piece(PIECE_GRIPPED(), context, robot, wait_s, missed, needed=needed, final=final)
     again = _again(context, robot) if number else []
     return sequence(TRY(number=number + 1), *again, effector(context, robot, on=True), seen)
 

@@ -50,6 +50,12 @@ def _protocol(value: Any) -> Any:
     return "5" if type(value) is int and value == 5 else value
 
 
+def _piece_check(value: Any) -> Any:
+    if value != "auto" and not isinstance(value, bool):
+        raise PydanticCustomError("piece_check", "must be auto, true or false")
+    return value
+
+
 Name = Annotated[str, AfterValidator(_name)]
 Duration = Annotated[float, Field(gt=0, le=DAY_S, allow_inf_nan=False)]
 Wait = Annotated[float, Field(ge=0, le=DAY_S, allow_inf_nan=False)]
@@ -127,7 +133,7 @@ class CellShape(Shape):
     on_absence: OnAbsence = "hold"
     drive_to_start: bool = True
     retry: Any = None
-    piece_check: bool = False
+    piece_check: Annotated[Any, AfterValidator(_piece_check)] = StorageCell.piece_check
     zone_wait_s: Duration = StorageCell.zone_wait_s
 
 

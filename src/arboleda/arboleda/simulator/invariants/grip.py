@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence
 
 from ..truth.arm import ArmTruth
-from ..truth.deeds import CellTruth, Switch, named
+from ..truth.deeds import CellTruth, Ended, Switch, named
 from ..truth.parts import FELL, FLOOR, GRIPPED, POWER, RELEASED
 from .invariant import Look, When, invariant
 
@@ -77,6 +78,39 @@ def robbed_task_is_not_done(look: Look) -> Iterator[str]:
     for ended in look.truth.ended:
         if ended.done and ended.robbed and not _untold(look, ended.cell.arm, ended.began_at):
             yield f"{ended.task} ({ended.text}) is called done, but its part was taken from the effector"
+
+
+@invariant(When.ENDED)
+def done_task_has_its_part(look: Look) -> Iterator[str]:
+    """A task is not called done whose arm came without a part to where that belongs, if its board had said so
+    and it does not say that nobody checked.
+    """
+    for ended in look.truth.ended:
+        arm = ended.cell.arm
+        if not (ended.done and ended.empty_handed) or Check.GRIP in ended.unchecked or arm is None:
+            continue
+        if not (ended.blind or look.truth.deceived_since(arm.robot.mqtt, "piece", ended.began_at)):
+            yield f"{ended.task} ({ended.text}) is called done, and its arm brought no part"
+
+
+@invariant(When.ENDED)
+def unchecked_is_as_said(look: Look) -> Iterator[str]:
+    """A done task says that its grip is unchecked exactly where no piece sensor speaks, or nobody is to ask
+    it, and its release where the board says nothing of its effector, or has booted.
+    """
+    for ended in look.truth.ended:
+        if not ended.done or ended.cell.arm is None:
+            continue
+        silent = ended.cell.arm.robot.evidence is not Evidence.IDS
+        booted = ended.cell.arm.booted_us / 1e6 >= ended.began_at
+        if (Check.GRIP in ended.unchecked) is not (silent or ended.cell.cell.piece_check is False):
+            yield f"{ended.task} is done, and its grip is {_checked(ended, Check.GRIP)}"
+        if (Check.RELEASE in ended.unchecked) is not silent and not booted:
+            yield f"{ended.task} is done, and its release is {_checked(ended, Check.RELEASE)}"
+
+
+def _checked(ended: Ended, check: Check) -> str:
+    return "not checked" if check in ended.unchecked else "checked"
 
 
 def _grips(look: Look) -> Iterator[str]:
@@ -154,4 +188,6 @@ GRIP = (
     one_pick_one_place,
     done_task_is_true,
     robbed_task_is_not_done,
+    done_task_has_its_part,
+    unchecked_is_as_said,
 )

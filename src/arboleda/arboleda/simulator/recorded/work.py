@@ -195,6 +195,6 @@ def _at(pose: Pose, work: list[Step]) -> Iterator[Step]:
 
 def _grip(cell: StorageCell) -> Iterator[Step]:
     yield "effector", True
-    for _ in range(cell.retry.times if cell.piece_check else 0):
+    for _ in range(cell.retry.times if cell.piece_check is not False else 0):
         yield OPTIONAL, ("effector", False)
         yield OPTIONAL, ("effector", True)

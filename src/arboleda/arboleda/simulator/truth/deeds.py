@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from arboleda.model.messages import Check
 from arboleda.model.plant_model import Evidence, Pose
 from arboleda.model.task import Order
 from arboleda.recipes.storage_cell import StorageCell
@@ -43,6 +44,8 @@ class Ended:
 
     `robbed`: somebody else opened the effector while it held its part elsewhere than where that belongs;
     `missing`: why it is not done if it is called so; `unprovable`: its mobile's evidence cannot show that.
+    `empty_handed`: its arm's board had said that no part is there before the effector was told to let go.
+    `unchecked`: what nobody confirmed, as the plant says.
     """
 
     cell: CellTruth
@@ -57,6 +60,8 @@ class Ended:
     robbed: bool
     missing: str | None
     unprovable: bool
+    empty_handed: bool
+    unchecked: tuple[Check, ...]
 
 
 class CellTruth:
@@ -82,6 +87,8 @@ class CellTruth:
         self.puts_down = False
         self.let_go = False  # the effector was opened where the part belongs
         self.blind = False  # nobody could know for some time what its arm does
+        self.empty_handed = False  # its effector is on without a part, and its board has said so
+        self._lets_go = False  # the effector was told to let go since it was told to grip
         self._switches: list[Switch] = []
         self._heading = self._arrived = False
         self._carries = False  # the arm was told to move since its effector went on
@@ -111,6 +118,7 @@ class CellTruth:
         self.task, self.order, self.began_at = task, order, now
         self.earlier = self._over.pop(task, (0, 0))
         self.robbed = self.released = self.let_go = self.blind = False
+        self.empty_handed = self._lets_go = False
         self._heading = self._arrived = False
         self.picks = self.places = 0
         self._switches = []
@@ -122,7 +130,19 @@ class CellTruth:
             self._over[self.task] = (picks + self.picks, places + self.places)
         self.end()
 
-    def end(self, text: str = "", *, done: bool = False) -> Ended:
+    def tell(self, *, grips: bool) -> None:
+        """The plant tells its effector to grip, or to let go."""
+        self._lets_go = not grips
+        if grips:
+            self.empty_handed = False
+
+    def feel(self) -> None:
+        """The plant hears from the board of its arm that no part is there."""
+        arm = self.arm
+        if arm is not None and arm.on and not arm.holding and not self._lets_go:
+            self.empty_handed = True
+
+    def end(self, text: str = "", *, done: bool = False, unchecked: tuple[Check, ...] = ()) -> Ended:
         """The running task has ended, or nobody knows of it any more."""
         task, self.task = self.task, None
         of_arm = self._missing_of_arm() if done and self.arm is not None else None
@@ -140,6 +160,8 @@ class CellTruth:
             robbed=self.robbed,
             missing=of_arm or of_way,
             unprovable=of_arm is None and self._proves_no_way,
+            empty_handed=self.empty_handed,
+            unchecked=unchecked,
         )
 
     def look(self) -> None:

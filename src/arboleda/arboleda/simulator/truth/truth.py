@@ -74,6 +74,12 @@ class Truth(RobotsTruth):
                 cell.blind = cell.blind or self.unseen(cell.arm)
                 self.parts.look(cell, cell.arm)
 
+    def _look_at_plant(self) -> None:
+        for report in self.world.moment.heard:
+            if report.piece is False and report.robot in self.arms:
+                self.cells[self.world.model.cell_of[report.robot].name].feel()
+        super()._look_at_plant()
+
     def _take_in(self, message: object) -> None:
         if isinstance(message, TaskChanged):
             self._task(message)
@@ -82,8 +88,11 @@ class Truth(RobotsTruth):
 
     def _command(self, command: Command) -> None:
         super()._command(command)
-        grips = isinstance(command, Switch) and command.grips
-        if grips and self.cells[self.world.model.cell_of[command.robot].name].task is None:
+        if not isinstance(command, Switch) or command.grips is None:
+            return
+        cell = self.cells[self.world.model.cell_of[command.robot].name]
+        cell.tell(grips=command.grips)
+        if command.grips and cell.task is None:
             self.stray_grips.append(command.robot)
 
     def _answered(self, answer: OperatorAnswer) -> None:
@@ -102,7 +111,8 @@ class Truth(RobotsTruth):
             cell.begin(change.task, self._order(change.text), self.world.now)
             self.begun.append(cell)
         elif change.task == cell.task and change.state is not TaskState.QUEUED:
-            self.ended.append(cell.end(change.text, done=change.state is TaskState.DONE))
+            is_done = change.state is TaskState.DONE
+            self.ended.append(cell.end(change.text, done=is_done, unchecked=change.unchecked))
             self.parts.empty(cell.cell.name)
 
     def _order(self, words: str) -> Order:
