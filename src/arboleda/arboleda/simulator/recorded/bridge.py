@@ -18,6 +18,7 @@ from arboleda.kinds.mobile import FollowPath
 from arboleda.model.commands import Command, Home, Motion, Stop, StopMode
 from arboleda.model.messages import Heartbeat, Report
 from arboleda.model.plant_model import Evidence, Link, MotionState, PlantModel, Robot
+from arboleda.wire import rejections
 from arboleda.wire.hop import FromPlant
 from arboleda.wire.rejections import FOREIGN, ForeignCommand, Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication
@@ -121,7 +122,7 @@ class _Bridge:
         if board is not None and isinstance(message, Rejection):
             board.reject(message)
         elif board is not None:
-            board.obey_foreign()
+            board.obey_foreign(taken=message.sentence.key == rejections.TAKEN.key)
 
     def _event(self, event: Any, now: float) -> None:
         if isinstance(event, Delivery):
@@ -195,6 +196,7 @@ class _Board:
         self._rejections: list[Rejection] = []  # that the bridge told of it in this step
         self._foreign = (0, 0)  # commands of others that were refused, and obeyed, as people were told
         self._is_foreign_new = False  # whether there was one in this step
+        self._may_halt = False  # whether the board took one that the bridge has not answered
         self._heard_beat = False  # in this step
         self._is_new_plant = False  # whether a plant is heard since this step
         self._newest: tuple[int, int] | None = None  # (epoca, seq) of the last motion
@@ -229,8 +231,9 @@ class _Board:
         if told.reason == FOREIGN:
             self._foreign, self._is_foreign_new = (self._foreign[0] + 1, self._foreign[1]), True
 
-    def obey_foreign(self) -> None:
-        """People are told of an obeyed command of somebody else."""
+    def obey_foreign(self, *, taken: bool) -> None:
+        """People are told of an obeyed command of somebody else; `taken`: it may be halted for it."""
+        self._may_halt |= taken
         self._foreign, self._is_foreign_new = (self._foreign[0], self._foreign[1] + 1), True
         self.touched = True
 
@@ -422,6 +425,10 @@ class _Board:
     def _compare_orders(self, reports: list[Report], published: list[Publication]) -> None:
         orders = [each for each in published if not each.topic.endswith("/latido")]
         name = self.robot.name
+        asked = sum(
+            isinstance(each, Stop) and each.mode is StopMode.HALT for each, word in self._orders if not word
+        )
+        own = sum(map(_halts, orders)) > asked
         for place, (command, word) in enumerate(self._orders):
             if word:
                 self._refused.add((command.id, word))
@@ -432,6 +439,9 @@ class _Board:
             if (command.id, "no_link") in [(each.rejected, each.refusal) for each in reports] and self._late:
                 self._refused.add((command.id, "no_link"))  # a bridge that was away does not trust its link
                 continue
+            if own and _halts(orders[0]):
+                own = False
+                self._halt_by_itself(orders.pop(0), place)
             publication = orders.pop(0) if orders else None
             is_it = publication is not None and publication.topic.endswith("/" + CHANNELS[type(command)])
             if publication is None or not is_it:
@@ -439,11 +449,23 @@ class _Board:
                 return
             self._check_body(command, publication, place)
         for publication in orders:
+            if own and _halts(publication):
+                own = False
+                self._halt_by_itself(publication, len(self._orders))
+                continue
             again = publication.topic.endswith("/paro") and b'"paro":1' in publication.payload
             if again and self._latched and (self._rose or self._is_heard_again(reports)):
                 self._number_of("", publication, len(self._orders))
             else:
                 self._say(COMMANDS, f"{name} is sent {publication.payload!r}, which nobody commanded")
+
+    def _halt_by_itself(self, publication: Publication, place: int) -> None:
+        """The bridge halts what a board does at the word of somebody else, once for each that is told of."""
+        if not self._may_halt:
+            self._say(COMMANDS, f"{self.robot.name} is halted, which nobody commanded")
+        self._may_halt = False
+        self._motion, self._moved = None, True
+        self._number_of("", publication, place)
 
     def _is_heard_again(self, reports: list[Report]) -> bool:
         """Whether a lost board is reported by telemetry that counts only in hindsight."""
@@ -559,6 +581,10 @@ class _Board:
 
     def _say(self, rule: str, sentence: str) -> None:
         self._wrong[rule].append(sentence)
+
+
+def _halts(publication: Publication) -> bool:
+    return publication.topic.endswith("/paro") and b'"paro":2' in publication.payload
 
 
 def _content(report: Report) -> tuple[Any, ...]:
