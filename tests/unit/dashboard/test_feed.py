@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import asyncio
 import json
 from collections.abc import Callable
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.feed import Feed
-from arboleda.dashboard.frames import BEHIND
+from arboleda.dashboard.frames import BEHIND, Background
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 
@@ -157,3 +158,20 @@ def test_a_browser_cannot_claim_to_have_seen_the_future(side: Side, feed: Feed) 
 def test_what_happens_while_nobody_looks_is_in_the_time_line(side: Side, feed: Feed) -> None:
     news(side, feed)
     assert any(event["what"] == "running" for event in feed.events)
+
+
+@pytest.mark.parametrize("turns", range(6))
+def test_the_page_ends_however_soon_after_news(side: Side, turns: int) -> None:
+    async def run() -> None:
+        feed = Feed(side)  # type: ignore[arg-type]
+        feed.start()
+        background = Background(feed.run)
+        background.start()
+        await asyncio.sleep(0.2)  # more than between two frames: it waits for news
+        side.told(side.snapshot())
+        for _ in range(turns):
+            await asyncio.sleep(0)
+        await background.stop()
+        feed.stop()
+
+    asyncio.run(run())

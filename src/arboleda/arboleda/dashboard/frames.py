@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from typing import Protocol
+from collections.abc import Callable, Coroutine
+from typing import Any, Protocol
 
 from arboleda.views.changes import changed
 
@@ -83,6 +84,21 @@ class Frames:
             return True
         seen.whole = True
         return False
+
+
+class Background:
+    """What a page has running in the server's loop, from `start` to `stop`."""
+
+    def __init__(self, *works: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        self._works = works
+        self._running: list[asyncio.Task[None]] = []
+
+    def start(self) -> None:
+        self._running += [asyncio.create_task(work()) for work in self._works]
+
+    async def stop(self) -> None:
+        """Cancel all of it and wait for its end."""
+        await asyncio.gather(*map(ended, self._running))
 
 
 async def ended(task: asyncio.Task[None]) -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import time
-from contextlib import suppress
 from functools import cache
 from typing import Annotated
 
@@ -20,6 +18,7 @@ from . import demo, header, links, panel, reports, shell, tasks, timeline, trees
 from .desk import Desk
 from .faces import history, oee
 from .feed import Feed
+from .frames import Background
 from .past import page as past_page
 from .past.stills import Stills
 from .past.turns import BESIDE_S, Turns
@@ -107,18 +106,15 @@ def open_page(client: Client, desk: Desk, feed: Feed) -> None:
 
 
 def _keep_running(feed: Feed, show: Show) -> None:
-    running: list[asyncio.Task[None]] = []
+    background = Background(feed.run, show.run)
 
     async def start() -> None:
         feed.start()
-        running.extend(asyncio.create_task(each.run()) for each in (feed, show))
+        background.start()
 
     async def stop() -> None:
         feed.stop()
-        for task in running:
-            task.cancel()
-            with suppress(asyncio.CancelledError):
-                await task
+        await background.stop()
 
     app.on_startup(start)
     app.on_shutdown(stop)

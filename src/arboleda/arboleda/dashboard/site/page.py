@@ -17,7 +17,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import Verb
 
 from .. import header, shell
-from ..frames import Frames, ended
+from ..frames import Background, Frames
 from ..open_page import LONGEST, OpenPage
 from ..plant_side import Layout
 from ..shell import language_of, role_shown
@@ -127,8 +127,6 @@ class Desk(OpenPage):
 
 
 def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None:
-    running: list[asyncio.Task[None]] = []
-
     async def run() -> None:
         number = 0
         while True:
@@ -142,12 +140,14 @@ def _keep_running(site: SiteSide, frames: Frames, opened: asyncio.Event) -> None
             with suppress(asyncio.TimeoutError):  # who opens a page does not wait for the next frame
                 await asyncio.wait_for(opened.wait(), FRAME_S)
 
+    background = Background(run)
+
     async def start() -> None:
         site.start()
-        running.append(asyncio.create_task(run()))
+        background.start()
 
     async def stop() -> None:
-        await asyncio.gather(*map(ended, running))
+        await background.stop()
         await site.close()
 
     app.on_startup(start)
