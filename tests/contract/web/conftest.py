@@ -16,6 +16,7 @@ from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.server_tls import ServerTls, pinned
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
+from arboleda.adapters.web.apart import Apart
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
@@ -234,7 +235,7 @@ def running(
     mount(app)
     bound = "0.0.0.0" if tokens and not public_url else "127.0.0.1"
     names = names_for(bound, public_url, scheme="https" if tls else "http")
-    guarded = Guard(app, names, door, sockets=sockets, plant=name)
+    guarded = Guard(Apart(app), names, door, sockets=sockets, plant=name)
     server = Server(guarded, **{"port": 0, **options}, tls=tls)
     web = Web(server, door, tls)
     try:

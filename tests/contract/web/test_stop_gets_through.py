@@ -6,16 +6,21 @@ import asyncio
 import http.client
 import json
 import socket
+import threading
 import time
-from concurrent.futures import Future
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
-from threading import Semaphore
+from threading import Event, Semaphore
 from typing import Any
 
 import pytest
 from fastapi import FastAPI
+from starlette.types import Receive, Scope, Send
 
+from arboleda.adapters.web import apart
 from arboleda.adapters.web.auth import Role
+from arboleda.adapters.web.server import Server
 from arboleda.model.messages import OperatorAnswer, Verb
 
 from .conftest import TOKENS, VIEW, Plant, Web
@@ -169,3 +174,67 @@ def slow_page(app: FastAPI, built: list[int]) -> None:
         time.sleep(0.02)  # as NiceGUI does: nothing else runs in the loop meanwhile
         built.append(len(built))
         return "a page"
+
+
+def test_while_something_else_is_made_that_takes_long(serve, plant: Plant) -> None:
+    making, stopped = Event(), Event()
+
+    def slow(app: FastAPI) -> None:
+        @app.get("/slow")
+        async def make() -> bool:  # in the loop, as a page or a snapshot is made
+            making.set()
+            return stopped.wait(10)
+
+    web = serve(mount=slow)
+    with ThreadPoolExecutor() as browser:
+        page = browser.submit(web.client().get, "/slow")
+        assert making.wait(10)
+        assert stop(web, {}) == 200
+        stopped.set()
+        assert page.result().json() is True
+    assert plant.acts == [(Verb.STOP, "", False)]
+
+
+@pytest.fixture
+def hanging(serve, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Web, Event]]:
+    """A server whose page is never made, and the event that lets its thread go."""
+    monkeypatch.setattr(apart, "END_S", 0.1)
+    making, going_on = Event(), Event()
+
+    def slow(app: FastAPI) -> None:
+        @app.get("/slow")
+        async def make() -> bool:
+            making.set()
+            return going_on.wait(10)
+
+    web = serve(mount=slow)
+    with ThreadPoolExecutor() as browser:
+        browser.submit(web.client().get, "/slow")
+        assert making.wait(10)
+        yield web, going_on
+        going_on.set()
+
+
+def test_the_server_ends_while_a_page_is_made_for_ever(hanging: tuple[Web, Event]) -> None:
+    web, going_on = hanging
+    web.server.stop()
+    assert not going_on.is_set()
+    left = [thread for thread in threading.enumerate() if thread.name == "http pages"]
+    going_on.set()
+    for thread in left:
+        thread.join(10)
+
+
+def test_the_server_ends_with_an_application_that_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(apart, "END_S", 0.1)
+
+    async def endless(scope: Scope, receive: Receive, send: Send) -> None:
+        await receive()
+        await send({"type": "lifespan.startup.complete"})
+        await receive()
+        await asyncio.Event().wait()
+
+    server = Server(apart.Apart(endless), port=0)
+    server.start()
+    server.stop()
+    assert not {"http", "http pages"} & {thread.name for thread in threading.enumerate()}

@@ -16,6 +16,7 @@ from fastapi import FastAPI
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
+from arboleda.adapters.web.apart import Apart
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import DEFAULT_PORT, is_loopback, names_for
@@ -124,7 +125,7 @@ class WebPart:
             mount(app, self.side)
         sockets = limits.lasting(limits.SOCKETS, connections)
         names = names_for(options.address, options.public_url, scheme=options.scheme)
-        guarded = Guard(app, names, options.door_of(state), sockets=sockets, plant=name)
+        guarded = Guard(Apart(app), names, options.door_of(state), sockets=sockets, plant=name)
         self._server = Server(
             guarded,
             host=options.address,
