@@ -24,6 +24,7 @@ NAMES = (
     "bridge",
     "step",
     "kept",
+    "stop",
     "modbus_driver",
     "opcua_driver",
     "trajectory_driver",
