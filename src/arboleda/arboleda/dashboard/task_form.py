@@ -177,6 +177,7 @@ def _grid(cell: Row, words: Words) -> None:
     rows, columns = cell["grid"]["rows"], cell["grid"]["columns"]
     ends = {nodes[0]: "start" for nodes in cell["paths"].values()}
     ends |= {nodes[-1]: "end" for nodes in cell["paths"].values()}
+    letters = {nodes[-1]: code.removeprefix(str(nodes[0])) for code, nodes in cell["paths"].items()}
     with tag("div", classes="grid", style=f"--columns: {columns}", data_columns=str(columns)):
         tag("div", classes="way", aria_hidden="true")
         for node in range(rows * columns):
@@ -184,7 +185,7 @@ def _grid(cell: Row, words: Words) -> None:
             label = words(f"tasks.node_{kind}", node=node)
             tag(
                 "button",
-                str(node),
+                f"{node} {letters.get(node, '')}".strip(),
                 type="button",
                 classes=f"place {kind}",
                 data_node=str(node),
