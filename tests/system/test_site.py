@@ -105,7 +105,7 @@ def test_the_stop_of_all_names_who_did_not_hear_it_and_that_of_one_is_confirmed(
     page.wait_for_selector(row("arboleda", "inactiva"))
     page.click("#stop")
     page.wait_for_selector(f"#answer[data-s=bad]:has-text('SIN PARAR'):has-text('{NOBODY}')")
-    page.wait_for_selector(row("arboleda", "abortada"))
+    page.wait_for_selector(row("arboleda", "parada (abortada)"))
     assert all(cell["state"] == "aborted" for cell in PlantClient(state).status()["cells"])
     page.click("[data-row=arboleda] [data-act=stop]")
     page.wait_for_selector("#answer[data-s=good]:has-text('arboleda ha recibido el paro')")

@@ -215,6 +215,11 @@ def test_the_panel_suggests_what_comes_next_and_says_what_would_be_refused(told:
         assert face["text/suggested.sis_a"][0] == face["text/suggested.plant"][0] == following
         assert following not in json.loads(face["text/refused.sis_a"][0])
         assert following not in json.loads(face["text/refused.plant"][0])
+        if following == "clear":
+            for scope, language in (("sis_a", "en"), ("plant", "en"), ("sis_a", "es")):
+                refused = json.loads(rig.face(language)[f"text/refused.{scope}"][0])
+                after = {"en": "After Clear", "es": "Después de: Desenclavar"}[language]
+                assert (refused["reset"], refused.get("resume", after)) == (after, after)
     assert "clear" in json.loads(rig.face()["text/refused.plant"][0])
 
 

@@ -31,6 +31,11 @@ class Words:
         """What the plant's `word` is called; the word itself where nobody said."""
         return self.flat.get(f"{group}.{word}", word)
 
+    def cell(self, state: str) -> str:
+        """The word for a state of a cell, behind plain ones where only PackML knows it."""
+        word, plain = self.of("cell_state", state), self.flat.get(f"cell_plain.{state}")
+        return word if plain is None else f"{plain} ({word})"
+
     def say(self, said: Sentence | str) -> str:
         """A sentence of the plant in this language; what is none, as of a user's own step, as it is."""
         if isinstance(said, str):

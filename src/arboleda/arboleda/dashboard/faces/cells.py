@@ -46,7 +46,7 @@ def _card(moment: Moment, cell: Row, memory: TreeMemory) -> Face:
     failed = task is not None and task["state"] == "failed"
     state = "failed" if stands == "idle" and failed else stands
     return {
-        f"text/{name}.state": [words.of("cell_state", stands), stands],
+        f"text/{name}.state": [words.cell(stands), stands],
         f"text/{name}.cause": [_cause(words, cell, task, memory), "failed" if failed else ""],
         f"text/{name}.report": _report(words, cell, task),
         f"text/{name}.failure": [words("record.link") if name in moment.failed else "", ""],

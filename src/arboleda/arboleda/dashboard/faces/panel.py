@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from typing import Any
 
 from arboleda.views.view import standing
@@ -18,16 +19,18 @@ def face(moment: Moment) -> Face:
     found: Face = {}
     for cell in moment.snapshot["cells"]:
         name = cell["name"]
-        found[f"text/scope.{name}"] = [moment.words.of("cell_state", standing(cell)), standing(cell)]
+        found[f"text/scope.{name}"] = [moment.words.cell(standing(cell)), standing(cell)]
         found[f"text/advice.{name}"] = [trouble(moment, cell), standing(cell)]
         found[f"text/suggested.{name}"] = [" ".join(suggested(cell)), ""]
     cells = moment.snapshot["cells"]
     every = {verb for cell in cells for verb in suggested(cell) if verb in FOR_ALL}
     found["text/suggested.plant"] = [" ".join(sorted(every)), ""]
     found.update(_for_all(moment, [verb for verb in FOR_ALL if verb in every]))
-    for row in (*cells, *moment.snapshot["robots"]):
-        found[f"text/refused.{row['name']}"] = [_refused(moment, row["refused"]), ""]
-    found["text/refused.plant"] = [_refused(moment, refused_everywhere(cells)), ""]
+    for cell in cells:
+        found[f"text/refused.{cell['name']}"] = [_refused(moment, cell["refused"], suggested(cell)), ""]
+    for robot in moment.snapshot["robots"]:
+        found[f"text/refused.{robot['name']}"] = [_refused(moment, robot["refused"]), ""]
+    found["text/refused.plant"] = [_refused(moment, refused_everywhere(cells), every), ""]
     found.update(_zones(moment))
     return found
 
@@ -62,8 +65,15 @@ def refused_everywhere(cells: list[Row]) -> dict[str, str]:
     return {verb: why for verb, why in first.items() if all(verb in cell["refused"] for cell in cells)}
 
 
-def _refused(moment: Moment, refused: dict[str, str]) -> str:
-    return json.dumps({verb: moment.words.say(why) for verb, why in sorted(refused.items())})
+def _refused(moment: Moment, refused: dict[str, str], wanted: Collection[str] = ()) -> str:
+    """Why each verb would be refused; of those that follow one of the `wanted`, that it comes first."""
+    words = moment.words
+    reasons = {verb: words.say(why) for verb, why in sorted(refused.items())}
+    first = next((verb for verb in FOR_ALL if verb in wanted), None)
+    if first is not None:
+        after = words("ways.after", first=words.of("verb", first))
+        reasons |= {verb: after for verb in FOR_ALL[FOR_ALL.index(first) + 1 :] if verb in reasons}
+    return json.dumps(reasons)
 
 
 def _zones(moment: Moment) -> Face:

@@ -68,7 +68,7 @@ def _counts(moment: Moment) -> Face:
     for state in there:
         found[f"row/counts/{state}"] = {
             "state": state,
-            "texts": [f"{moment.words.of('cell_state', state)}: {states[state]}"],
+            "texts": [f"{moment.words.cell(state)}: {states[state]}"],
             "link": {"column": 0, "to": {"tab": "cells", "cell": first[state], "task": None}},
         }
     return found
@@ -87,7 +87,7 @@ def _needs(moment: Moment) -> list[str]:
 def _title(moment: Moment) -> list[str]:
     """What a browser's tab says: the plant, and before it the cells that wait for somebody."""
     states = {cell["name"]: standing(cell) for cell in moment.snapshot["cells"]}
-    bad = {name: moment.words.of("cell_state", state) for name, state in states.items() if state not in WELL}
+    bad = {name: moment.words.cell(state) for name, state in states.items() if state not in WELL}
     waits = {name: _waits(moment, people) for name, people in waited_for(moment.snapshot).items()}
     said = "; ".join(f"{name}: {word}" for name, word in (*bad.items(), *waits.items()))
     plant = moment.snapshot["plant"]

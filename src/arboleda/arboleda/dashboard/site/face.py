@@ -76,7 +76,7 @@ def _stop(plant: PlantSeen, words: Words) -> Row:
 
 
 def _said(state: str, words: Words) -> str:
-    return words("site.silent") if state == SILENT else words.of("cell_state", state)
+    return words("site.silent") if state == SILENT else words.cell(state)
 
 
 def _is_heard(plant: PlantSeen) -> bool:
@@ -90,7 +90,7 @@ def _why(plant: PlantSeen, words: Words) -> str:
         stands = standing(cell)
         if stands not in WELL:
             why = cell["held_by"] or cell["not_ready"]
-            parts.append(f"{cell['name']}: {why or words.of('cell_state', stands)}")
+            parts.append(f"{cell['name']}: {why or words.cell(stands)}")
     if plant.standbys and plant.silent is None:
         parts.append(words("site.stands_by", count=plant.standbys))
     return "; ".join(parts)
