@@ -172,7 +172,7 @@ def test_what_comes_later_says_why_not_yet(stage: Stage) -> None:
     clear, reset, resume = rig.plant.advice("sis_a")
     assert [each.do for each in (clear, reset, resume)] == [Verb.CLEAR, Verb.RESET, Verb.RESUME]
     assert clear.refusal is None
-    assert str(reset.refusal) == "sis_a is aborted; this needs a cell that is stopped"
+    assert str(reset.refusal) == "sis_a is not cleared after its stop yet; clear sis_a first"
     assert "only a held cell or a paused queue can be resumed" in str(resume.refusal)
 
 

@@ -214,8 +214,8 @@ def test_what_is_refused_says_why(open_page: Open) -> None:
     page.click("[data-scope=sis_a]")
     page.wait_for_selector(".verb[data-verb=reset] button:disabled")
     said = page.inner_text(".verb[data-verb=reset] p")
-    assert said == "sis_a is idle; this needs a cell that is stopped"
-    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; this needs a cell that is in execute"
+    assert said == "sis_a is idle; a cell is reset after a stop, once it has been cleared"
+    assert page.inner_text(".verb[data-verb=hold] p") == "sis_a is idle; only a cell at work can be held"
 
 
 def test_the_advice_on_the_card_leads_out_and_the_tab_shows_trouble(open_page: Open) -> None:

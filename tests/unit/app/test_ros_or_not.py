@@ -29,7 +29,7 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.Capt
     apps: list[App] = []
 
     class Unrun:
-        def __init__(self, app: App, *_: Any, stay: bool) -> None:
+        def __init__(self, app: App, *_: Any, **_options: Any) -> None:
             apps.append(app)
 
         def run(self) -> int:

@@ -81,8 +81,8 @@ def test_the_changes_tell_of_steps_each_once(told: Callable[..., Any]) -> None:
     rig.submit("sis_a 0B 7")
     rig.wait_for("sis_a", "effector on/dwell")
     told_of = [(str(change.name), change.status) for change in rig.story.trees["sis_a"].changes]
-    done = [(name, "success") for name in ("system start", "drive path 0B", "move to pick-up")]
-    assert told_of == [*done, ("effector on", "running")]
+    done = ("system start", "drive path 0B", "move to pick-up", "piece there")
+    assert told_of == [*((name, "success") for name in done), ("grip", "running")]
 
 
 def test_the_changes_name_the_leaf_that_failed_within_a_step() -> None:

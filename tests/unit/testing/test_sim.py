@@ -45,7 +45,7 @@ def test_a_task_is_followed_to_its_end(sim: Sim) -> None:
     sim.run(until=lambda: task.ended)
     assert task.history == ["queued", "running", "done"]
     assert task.id is not None
-    assert sim.now == pytest.approx(8.35, abs=0.1)
+    assert sim.now == pytest.approx(8.47, abs=0.1)
 
 
 def test_a_step_that_a_recipe_repeats_may_give_its_command_in_each_turn() -> None:
@@ -208,7 +208,7 @@ def test_a_recipe_of_ones_own_carries_tasks_out(sim: Sim) -> None:
     assert sim.cell("sis_a").step == "unhurried"
     sim.run(until=lambda: task.ended)
     assert task.state == "done"
-    assert sim.now == pytest.approx(11.35, abs=0.1)
+    assert sim.now == pytest.approx(11.47, abs=0.1)
 
 
 def test_a_recipe_of_ones_own_outlives_the_plant_process(sim: Sim) -> None:

@@ -94,6 +94,11 @@ RELEASING = Phrase("doing.release", "releasing by hand")
 NOT_OPENED = Phrase("refusal.not_opened", "{why}: no releasing by hand")
 HOLD_FIRST = Phrase("refusal.hold_first", "{cell} is {state}; hold or stop it first")
 NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
+CLEAR_FIRST = Phrase("refusal.clear_first", "{cell} is not cleared after its stop yet; clear {cell} first")
+NOT_STOPPED = Phrase(
+    "refusal.not_stopped", "{cell} is {state}; a cell is reset after a stop, once it has been cleared"
+)
+NOT_AT_WORK = Phrase("refusal.not_at_work", "{cell} is {state}; only a cell at work can be held")
 OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cell that is {allowed}")
 NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
@@ -604,6 +609,20 @@ def _in(*states: CellState) -> Callable[[Operator, CellRun, set[str]], Sentence 
     return check
 
 
+def _not_resettable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
+    if cell.state is CellState.STOPPED:
+        return None
+    if cell.state in STOPPING:
+        return CLEAR_FIRST(cell=cell.cell.name)
+    return NOT_STOPPED(cell=cell.cell.name, state=cell.state.said)
+
+
+def _not_holdable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
+    if cell.state is CellState.EXECUTE:
+        return None
+    return NOT_AT_WORK(cell=cell.cell.name, state=cell.state.said)
+
+
 def _not_retryable(operator: Operator, cell: CellRun, robots: set[str]) -> Sentence | None:
     refusal = _in(CellState.HELD)(operator, cell, robots)
     if refusal is None and cell.stranded:
@@ -661,8 +680,8 @@ Do = Callable[[Operator, CellRun, "set[str]"], None]
 ACTS: dict[Verb, tuple[Check, Do]] = {
     Verb.STOP: (_always, lambda operator, cell, robots: cell.stop()),
     Verb.CLEAR: (Operator._not_clearable, Operator._clear),
-    Verb.RESET: (_in(CellState.STOPPED), Operator._reset),
-    Verb.HOLD: (_in(CellState.EXECUTE), lambda operator, cell, robots: cell.hold()),
+    Verb.RESET: (_not_resettable, Operator._reset),
+    Verb.HOLD: (_not_holdable, lambda operator, cell, robots: cell.hold()),
     Verb.RESUME: (Operator._not_resumable, lambda operator, cell, robots: cell.resume()),
     Verb.CANCEL: (_not_cancellable, lambda operator, cell, robots: cell.cancel(CANCELLED_BY_OPERATOR)),
     Verb.RETRY: (_not_retryable, lambda operator, cell, robots: cell.retry()),

@@ -214,8 +214,8 @@ class Attendant:
                 self._world.request_verb(Verb.ANSWER, f"{name} {answer}")
 
     def _see_to(self, ways: tuple[Advice, ...]) -> None:
-        """The first; who has looked into a zone, or was at a robot's reference, goes on with what comes next, as
-        the plant cannot know.
+        """The first; who has looked into a zone, or was at a robot's reference, goes on with what comes next,
+        as the plant cannot know.
         """
         for advice in ways:
             if advice.refusal is not None or advice.do in BY_THEMSELVES:
