@@ -116,10 +116,10 @@ TASKS = (
         "An operator's verb is in the journal before anybody knows whether it can be done.",
         edit(
             Operator.act,
-            "self._planned(request, scope)()",
-            "act = Journal(verb=request.verb, scope=scope, cell=None, sentence=NONE())\n"
-            "    self._dispatcher.outbox.append(act)\n"
-            "    self._planned(request, scope)()",
+            "do = self._planned(request, scope)",
+            "early = Journal(verb=request.verb, scope=scope, cell=None, sentence=NONE())\n"
+            "    self._dispatcher.outbox.append(early)\n"
+            "    do = self._planned(request, scope)",
         ),
     ),
     mutant(

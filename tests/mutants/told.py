@@ -159,6 +159,7 @@ ADVICE = (
         "advice_leads_out",
         "After a reboot it is advised to retry, which is held again, for ever.",
         edit(Advisor._readying, "obstacle.reason is Reason.NOT_HOMED", "False"),
+        edit(Advisor._recovering, "(Verb.RETRY, name) in run.in_vain", "False"),
         weather={"reboot": 10.0},
         likely=70,
         cycles=1,
