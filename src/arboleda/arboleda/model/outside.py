@@ -26,16 +26,16 @@ def plain(text: str, most: int = LINE) -> str:
 
 
 def quoted(value: object, most: int = 40) -> str:
-    """A foreign value as a sentence names it: in ASCII, text in quotes and clipped to `most` characters.
+    """A foreign value as a sentence names it: printable, text in quotes and clipped to `most` characters.
 
-    >>> quoted("sis_z"), quoted(b"\\x1b[2J"), quoted(7)
-    ("'sis_z'", "b'\\\\x1b[2J'", '7')
+    >>> quoted("sis_z"), quoted("sí"), quoted(b"\\x1b[2J"), quoted(7)
+    ("'sis_z'", "'sí'", "b'\\\\x1b[2J'", '7')
     """
     if isinstance(value, str):
-        return ascii(value if len(value) <= most else value[: most - 3] + "...")
+        return repr(value if len(value) <= most else value[: most - 3] + "...")
     if isinstance(value, bytes):
-        return ascii(value if len(value) <= most else value[: most - 3] + b"...")
-    return plain(ascii(value), most)
+        return repr(value if len(value) <= most else value[: most - 3] + b"...")
+    return plain(repr(value), most)
 
 
 def said_by(error: BaseException, most: int = LINE) -> str:
