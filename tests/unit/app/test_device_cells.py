@@ -198,19 +198,19 @@ MISTAKES = {  # id: (text, put in its place, the sentence starts with, and has i
     "more facts than a message holds": (
         "facts: {lid:",
         "facts: {a: text, b: text, c: text, d: text, e: text, f: text, lid:",
-        "24:20: ",
+        "5:5: kinds.oven: ",
         "all that a oven can say at once: the message would have 572 bytes; at most 512 are allowed",
     ),
     "a word that is too long for its board": (
         "answers: [good, bad]",
         f"answers: [good, {'b' * 33}]",
-        "25:20: ",
+        "20:45: kinds.eye.verbs.look.answers[1]: ",
         "an answer to look of eye: it is 'bbb",
     ),
     "a switch that nothing confirms": (
         "      look: {",
         "      blink: {effect: switch}\n      look: {",
-        "26:20: ",
+        "20:14: kinds.eye.verbs.blink: ",
         "blink of eye is a switch that sets no fact: nothing would say that it is done",
     ),
     "same name": (

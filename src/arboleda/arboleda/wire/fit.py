@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType
 from arboleda.model.errors import PayloadError
@@ -18,39 +19,53 @@ SMALLEST = -2.2250738585072014e-300  # no number takes more characters
 TEXT = "x" * LONGEST
 
 
-def objections(kind: DeviceKind) -> list[str]:
-    """What keeps a kind of device from MQTT, a sentence each."""
+Place = tuple[str | int, ...]
+"""Keys of a kind in a plant file, down to the index of a word in a list."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objection:
+    """What of a kind keeps it from MQTT, and why."""
+
+    place: Place
+    sentence: str
+
+
+def objections(kind: DeviceKind) -> list[Objection]:
+    """All that keeps a kind of device from MQTT."""
     found = [*_names(kind), *_silent(kind)]
     return found or [*_lengths(kind)]
 
 
-def _names(kind: DeviceKind) -> Iterator[str]:
+def _names(kind: DeviceKind) -> Iterator[Objection]:
     for name, type in kind.facts.items():
-        yield from _refused(f"a fact of {kind.name}", strict.name, "its name", name)
-        yield from _values(f"{name} of {kind.name}", type.words)
+        place: Place = ("facts", name)
+        yield from _refused(place, f"a fact of {kind.name}", strict.name, "its name", name)
+        yield from _values(place, f"{name} of {kind.name}", type.words)
     for verb in kind.verbs.values():
-        whose = f"a verb of {kind.name}"
-        yield from _refused(whose, strict.name, "its name", verb.name)
+        place = ("verbs", verb.name)
+        yield from _refused(place, f"a verb of {kind.name}", strict.name, "its name", verb.name)
         for name, type in verb.parameters:
             whose = f"a value of {verb.name} of {kind.name}"
-            yield from _refused(whose, strict.name, "its name", name)
-            yield from _values(f"{name} of {verb.name} of {kind.name}", type.words)
-        yield from _values(f"an answer to {verb.name} of {kind.name}", verb.answers)
+            yield from _refused((*place, "with", name), whose, strict.name, "its name", name)
+            yield from _values((*place, "with", name), f"{name} of {verb.name} of {kind.name}", type.words)
+        yield from _values((*place, "answers"), f"an answer to {verb.name} of {kind.name}", verb.answers)
 
 
-def _values(whose: str, values: tuple[Value, ...]) -> Iterator[str]:
-    for value in values:
-        yield from _refused(whose, strict.fact, "it", value)
+def _values(place: Place, whose: str, values: tuple[Value, ...]) -> Iterator[Objection]:
+    for index, value in enumerate(values):
+        yield from _refused((*place, index), whose, strict.fact, "it", value)
 
 
-def _silent(kind: DeviceKind) -> Iterator[str]:
+def _silent(kind: DeviceKind) -> Iterator[Objection]:
     for verb in kind.verbs.values():
         if verb.effect is Effect.SWITCH and not verb.sets_facts:
             what = f"{verb.name} of {kind.name} is a switch that sets no fact"
-            yield f"{what}: nothing would say that it is done"
+            sentence = f"{what}: nothing would say that it is done"
+            yield Objection(place=("verbs", verb.name), sentence=sentence)
 
 
-def _lengths(kind: DeviceKind) -> Iterator[str]:
+def _lengths(kind: DeviceKind) -> Iterator[Objection]:
     for verb in kind.verbs.values():
         goal = OrderGoal(
             verb=verb.name,
@@ -59,8 +74,9 @@ def _lengths(kind: DeviceKind) -> Iterator[str]:
             epoch=UINT32,
             heard=UINT32,
         )
-        yield from _refused(f"{verb.name} of {kind.name} with its longest values", encode, goal)
-    yield from _refused(f"all that a {kind.name} can say at once", encode, _telemetry(kind))
+        whose = f"{verb.name} of {kind.name} with its longest values"
+        yield from _refused(("verbs", verb.name), whose, encode, goal)
+    yield from _refused((), f"all that a {kind.name} can say at once", encode, _telemetry(kind))
 
 
 def _telemetry(kind: DeviceKind) -> Telemetry:
@@ -98,11 +114,13 @@ def _length(value: Value) -> int:
     return len(json.dumps(value))
 
 
-def _refused(whose: str, look: Callable[..., object], *arguments: object) -> Iterator[str]:
+def _refused(
+    place: Place, whose: str, look: Callable[..., object], *arguments: object
+) -> Iterator[Objection]:
     try:
         look(*arguments)
     except PayloadError as error:
-        yield f"{whose}: {error}"
+        yield Objection(place=place, sentence=f"{whose}: {error}")
 
 
 LONGEST_OF: dict[type, Value] = {bool: False, int: -UINT32, float: SMALLEST, str: TEXT}

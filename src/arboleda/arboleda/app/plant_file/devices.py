@@ -10,7 +10,6 @@ from arboleda.kinds import WrittenKind
 from arboleda.kinds.declared import Device, DeviceKind, DeviceVerb, Effect
 from arboleda.model.plant_model import Cell, Evidence, Retry, Robot
 from arboleda.recipes.storage_cell import StorageCell
-from arboleda.wire import fit
 
 from . import own_kinds, shared, targets
 from .arrays import arrays
@@ -171,7 +170,7 @@ def _machine(document: Document, place: Place, kinds: Kinds) -> Device | None:
     evidence = EVIDENCE.get(shape.evidence) or Evidence(shape.evidence)
     name = shape.name or str(place[-1])
     proven = [_is_proven(document, place, kind, verb, evidence) for verb in kind.verbs.values()]
-    if not all(proven) or not _fits(document, (*place, "kind"), kind):
+    if not all(proven):
         return None
     return Device(
         name=name,
@@ -196,14 +195,6 @@ def _kind(document: Document, place: Place, kinds: Kinds) -> DeviceKind | None:
         own = "" if hint else '; one of your own is declared under "kinds" at the top of the file'
         document.problem(place, f"must be {choice(kinds.known)}, is {shown(name)}{hint or own}")
     return None
-
-
-def _fits(document: Document, place: Place, kind: DeviceKind) -> bool:
-    """Whether its board can be told and can say all that the kind has, in messages as MQTT has them here."""
-    objections = fit.objections(kind)
-    for objection in objections:
-        document.problem(place, objection)
-    return not objections
 
 
 def _is_proven(

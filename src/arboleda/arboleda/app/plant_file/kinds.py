@@ -12,6 +12,7 @@ from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Sl
 from arboleda.kinds.rules import SLOT
 from arboleda.model.facts import Value
 from arboleda.recipes.handles import DeviceHandle
+from arboleda.wire import fit
 
 from .document import Document, Place, choice, nearest, shown
 from .registry import RESERVED
@@ -49,7 +50,16 @@ def _kind(document: Document, name: str) -> DeviceKind | None:
         return None
     if not _is_free_of(document, place, rules.release_objection(whole)):
         return None
-    return DeviceKind(name=name, facts=types, verbs=whole) if named else None
+    kind = DeviceKind(name=name, facts=types, verbs=whole)
+    return kind if named and _fits(document, place, kind) else None
+
+
+def _fits(document: Document, place: Place, kind: DeviceKind) -> bool:
+    """Whether a board can be told and can say all that the kind has, in messages as MQTT has them here."""
+    objections = fit.objections(kind)
+    for each in objections:
+        document.problem((*place, *each.place), each.sentence)
+    return not objections
 
 
 def _verb(document: Document, place: Place, facts: Types) -> DeviceVerb | None:

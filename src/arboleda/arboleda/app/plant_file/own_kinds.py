@@ -15,6 +15,7 @@ from arboleda.kinds.declared import DeviceKind
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Robot
+from arboleda.wire import fit
 
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
@@ -99,7 +100,7 @@ def device(
     except (Exception, SystemExit) as error:  # noqa: BLE001 - it is user code: whatever it raises is told
         _tell(document, place, kind, error, used)
         return None
-    wrong = next(_misnamed(made), None)
+    wrong = next(_unusable(made), None)
     if wrong is not None:
         _keep(document, place, spot, f"{kind.name}: {wrong}", used)
     return None if wrong is not None else (shape, made)
@@ -185,8 +186,13 @@ def _keep(document: Document, place: Place, spot: Spot, what: str, used: Used) -
         document.problem(place, plain(what, LONGEST))
 
 
+def _unusable(kind: DeviceKind) -> Iterator[str]:
+    """What of a kind has a name that it cannot have, or cannot go over MQTT."""
+    yield from _misnamed(kind)
+    yield from (each.sentence for each in fit.objections(kind))
+
+
 def _misnamed(kind: DeviceKind) -> Iterator[str]:
-    """What of a kind has a name that it cannot have."""
     rows = [(name, "a fact", OF_FACTS) for name in kind.facts]
     rows += [(name, "a verb", OF_STEPS) for name in kind.verbs]
     rows += [(name, "a parameter", ("self",)) for verb in kind.verbs.values() for name, _ in verb.parameters]
