@@ -8,7 +8,7 @@ namespace arboleda {
 
 namespace {
 
-constexpr size_t kLongest = 32;  // characters of a name, and of a text
+constexpr size_t kLongest = 32;  // bytes of a name, and of a text
 constexpr double kLargest = 1e9;
 constexpr double kLargestWhole = UINT32_MAX;
 
@@ -29,7 +29,11 @@ bool in_name(uint32_t point) {
            point == '.' || point == '-';
 }
 
-bool in_text(uint32_t point) { return within(point, ' ', '~') && point != '"' && point != '\\'; }
+// Outside ASCII only the plant knows what can be printed.
+bool in_text(uint32_t point) {
+    const bool half = point >= 0xD800 && point <= 0xDFFF;  // of a pair, without the other
+    return (within(point, ' ', '~') && point != '"' && point != '\\') || (point > 0xA0 && !half);
+}
 
 bool is_name(Text text) { return text.size > 0 && consists_of(text, kLongest, in_name); }
 

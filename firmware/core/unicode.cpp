@@ -87,6 +87,14 @@ uint32_t decode(Text text, size_t* at) {
     return 0x10000 + ((point - 0xD800) << 10) + (low - 0xDC00);
 }
 
+size_t size_in_utf8(uint32_t point) {
+    size_t form = 0;
+    while (form < 3 && point >= kForms[form + 1].least) {
+        ++form;
+    }
+    return form + 1;
+}
+
 }  // namespace
 
 bool is_utf8(const uint8_t* bytes, size_t size) {
@@ -100,9 +108,11 @@ bool is_utf8(const uint8_t* bytes, size_t size) {
 }
 
 bool consists_of(Text text, size_t longest, bool (*is_one)(uint32_t)) {
-    size_t count = 0;
-    for (size_t at = 0; at < text.size; ++count) {
-        if (count == longest || !is_one(decode(text, &at))) {
+    size_t bytes = 0;
+    for (size_t at = 0; at < text.size;) {
+        const uint32_t point = decode(text, &at);
+        bytes += size_in_utf8(point);
+        if (bytes > longest || !is_one(point)) {
             return false;
         }
     }

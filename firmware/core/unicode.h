@@ -10,7 +10,7 @@ namespace arboleda {
 
 bool is_utf8(const uint8_t* bytes, size_t size);  // shortest forms only, no surrogates
 
-// Whether a JSON string, well-formed and without quotes, has at most so many characters, all of a kind.
+// Whether a JSON string, well-formed and without quotes, has at most so many bytes in UTF-8, and all its code points are of a kind.
 bool consists_of(Text text, size_t longest, bool (*is_one)(uint32_t));
 
 // Whether two JSON strings, well-formed and without quotes, stand for the same text.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import ClassVar
+from unicodedata import normalize
 
 from arboleda.model.commands import Command, Motion, OnStop, Process, Query, Switch, Work
 from arboleda.model.errors import ArboledaError
@@ -83,9 +84,14 @@ class FactType:
         return self.words or tuple(dict.fromkeys((self.first, *ends)))
 
     def read(self, value: object) -> Value | None:
-        """The value as this type has it, where whole numbers are numbers, too; None for any other value."""
+        """The value as this type has it, where whole numbers are numbers, too; None for any other value.
+
+        How the accent of a word is written does not count.
+        """
         if self.type is float and type(value) is int:
             value = float(value)
+        if type(value) is str:
+            value = normalize("NFC", value)
         return value if self.takes(value) else None  # type: ignore[return-value]
 
     def allowed(self) -> str:

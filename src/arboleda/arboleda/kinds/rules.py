@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from unicodedata import normalize
 
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
@@ -28,6 +29,7 @@ class ListError(Exception):
 
 def listed(values: Sequence[object], shown: Callable[[object], str] = quoted) -> FactType:
     """One of some words, or of some numbers; a virtual device begins with the first. Else ListError."""
+    values = [normalize("NFC", value) if isinstance(value, str) else value for value in values]
     types = {type(value) for value in values}
     if types == {int, float}:
         values, types = [float(value) for value in values], {float}  # type: ignore[arg-type]

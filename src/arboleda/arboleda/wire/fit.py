@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -54,7 +53,7 @@ def _names(kind: DeviceKind) -> Iterator[Objection]:
 
 def _values(place: Place, whose: str, values: tuple[Value, ...]) -> Iterator[Objection]:
     for index, value in enumerate(values):
-        yield from _refused((*place, index), whose, strict.fact, "it", value)
+        yield from _refused((*place, index), whose, strict.shown_fact, "it", value)
 
 
 def _silent(kind: DeviceKind) -> Iterator[Objection]:
@@ -106,12 +105,12 @@ def _answers(verb: DeviceVerb) -> tuple[Value, ...]:
 
 
 def longest(type: FactType) -> Value:
-    """The value of a type that takes most characters."""
+    """The value of a type that takes most bytes."""
     return max(type.words or (LONGEST_OF[type.type],), key=_length)
 
 
 def _length(value: Value) -> int:
-    return len(json.dumps(value))
+    return len(strict.to_json(value).encode())
 
 
 def _refused(

@@ -7,7 +7,6 @@ what it ends.
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 from arboleda.kinds.declared import Device, Told, UseError
@@ -29,7 +28,8 @@ def write(command: Command, *, copied: bool = False) -> str:
     else:
         raise TypeError(f"{type(command).__name__} is no command of a device")
     text = said | ({"copied": 1} if copied else {})
-    return json.dumps(text, separators=(",", ":"))  # never longer than what the board is told
+    # Never longer than what the board is told; half a pair of surrogates is no letter, and stays an escape.
+    return strict.to_json(text).encode(errors="backslashreplace").decode()
 
 
 def read(device: Device, text: str) -> tuple[Command, bool]:

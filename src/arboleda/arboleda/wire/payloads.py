@@ -209,8 +209,8 @@ def _telemetry_of_device(fields: strict.Fields) -> Telemetry:
         refusal=fields.word("rechazo", DEVICE_REFUSALS) if "rechazo" in fields else None,
         refused_seq=fields.optional("rechazo_seq"),
         boot_id=fields.optional("arranque"),
-        facts=fields.facts("datos"),
-        answer=fields.fact("respuesta"),
+        facts=fields.facts("datos", strict.shown_fact),
+        answer=fields.shown_fact("respuesta"),
         answered_seq=fields.optional("respuesta_seq"),
         failures=fields.named("fallos", FAILURES_KEPT),
     )

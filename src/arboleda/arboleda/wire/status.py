@@ -186,11 +186,11 @@ def _word(key: str, text: str) -> str:
 
 
 def _answer(key: str, text: str) -> Value:
-    return strict.fact(key, _in_json(key, text))
+    return strict.shown_fact(key, _in_json(key, text))
 
 
 def _facts(key: str, text: str) -> Facts:
-    return strict.facts(key, _in_json(key, text))
+    return strict.facts(key, _in_json(key, text), strict.shown_fact)
 
 
 def _in_json(key: str, text: str) -> object:
@@ -211,7 +211,7 @@ def _write_receipt(receipt: Receipt) -> str:
 
 
 def _write_facts(facts: Facts) -> str:
-    return json.dumps(dict(facts), separators=(",", ":"))
+    return strict.to_json(dict(facts))
 
 
 def written_number(number: int) -> str:
@@ -242,7 +242,7 @@ _ROWS: dict[str, tuple[str, Callable[[str, str], object], Callable[..., str]]] =
     "failed": ("failed", command_id, str),
     "failure": ("failure", _word, str),
     "answered": ("answered", command_id, str),
-    "answer": ("answer", _answer, json.dumps),
+    "answer": ("answer", _answer, strict.to_json),
     "state": ("state", _state, _write_state),
     "q": ("q", _joints, _write_joints),
     "node": ("node", _count, str),

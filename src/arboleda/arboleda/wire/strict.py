@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Collection
+from unicodedata import normalize
 
 from arboleda.model.errors import PayloadError
 from arboleda.model.facts import Facts, Value
@@ -14,10 +15,14 @@ from arboleda.model.outside import quoted
 LIMIT_BYTES = 512
 UINT32 = 2**32 - 1
 LARGEST = 1e9  # of a fact that is a number
-LONGEST = 32  # characters of a name, and of a text
+LONGEST = 32  # characters of a name, and bytes of a text
 LONGEST_WORD = 16  # of a word for why
+TEXT_RULE = (
+    f"at most {LONGEST} bytes of printable characters without double quotes and backslashes are allowed, "
+    "where an accented letter takes 2 bytes, and one of other scripts up to 4"
+)
 _NAME = re.compile(r"[A-Za-z0-9_.-]+", re.ASCII)
-_TEXT = re.compile(r"[ !#-\[\]-~]{0,32}", re.ASCII)  # each of them one byte in JSON
+_TEXT = re.compile(r"[ !#-\[\]-~\u00a1-\ud7ff\ue000-\U0010ffff]*")  # each is as long in JSON as in UTF-8
 
 
 def read(raw: bytes) -> Fields:
@@ -47,7 +52,7 @@ def parse(raw: bytes) -> object:
 
 def write(values: dict[str, object]) -> bytes:
     """Compact JSON; PayloadError when it would exceed the limit that `read` allows."""
-    raw = _to_json(values).encode()
+    raw = to_json(values).encode()
     if len(raw) > LIMIT_BYTES:
         raise PayloadError(f"the message would have {len(raw)} bytes; at most {LIMIT_BYTES} are allowed")
     return raw
@@ -80,24 +85,37 @@ def name(key: str, value: object, longest: int = LONGEST) -> str:
 
 
 def fact(key: str, value: object) -> Value:
-    """A value of a fact, a parameter or an answer: true, false, a number or a short text."""
+    """A value of a fact, a parameter or an answer: true, false, a number or a short text of any language.
+
+    Boards do not know which letters can be printed, so that is no matter here.
+    """
     if isinstance(value, bool):
         return value
     if isinstance(value, str):
-        if not _TEXT.fullmatch(value):
-            allowed = "printable ASCII without quotes and backslashes"
-            raise PayloadError(f"{key} is {_shown(value)}; at most {LONGEST} of {allowed} are allowed")
+        if not _TEXT.fullmatch(value) or len(value.encode()) > LONGEST:
+            raise PayloadError(f"{key} is {_shown(value)}; {TEXT_RULE}")
         return value
     if isinstance(value, int):
         return integer(key, value, bottom=-UINT32)
     return number(key, value, LARGEST)
 
 
-def facts(key: str, values: object) -> Facts:
-    """An object of named values."""
+def shown_fact(key: str, value: object) -> Value:
+    """A value that a device says: people see it, so its text is printable; and in NFC, as those of kinds."""
+    value = fact(key, value)
+    if not isinstance(value, str):
+        return value
+    text = normalize("NFC", value)
+    if not text.isprintable():
+        raise PayloadError(f"{key} is {_shown(value)}; {TEXT_RULE}")
+    return text
+
+
+def facts(key: str, values: object, value: Callable[[str, object], Value] = fact) -> Facts:
+    """An object of named values, each of which is read by `value`."""
     if not isinstance(values, dict):
         raise PayloadError(f"{key} is {_shown(values)}; an object is needed")
-    return tuple((name(f"a name in {key}", each), fact(f"{key}.{each}", values[each])) for each in values)
+    return tuple((name(f"a name in {key}", each), value(f"{key}.{each}", values[each])) for each in values)
 
 
 class Fields:
@@ -150,13 +168,13 @@ class Fields:
             raise PayloadError(f"{key} is {_shown(value)}; a text is needed")
         return check(key, value)
 
-    def fact(self, key: str) -> Value | None:
-        """A value that may be absent."""
-        return fact(key, self._values[key]) if key in self._values else None
+    def shown_fact(self, key: str) -> Value | None:
+        """A value that a device says, which may be absent."""
+        return shown_fact(key, self._values[key]) if key in self._values else None
 
-    def facts(self, key: str) -> Facts | None:
+    def facts(self, key: str, value: Callable[[str, object], Value] = fact) -> Facts | None:
         """An object of named values that may be absent."""
-        return facts(key, self._values[key]) if key in self._values else None
+        return facts(key, self._values[key], value) if key in self._values else None
 
     def named(self, key: str, most: int) -> tuple[tuple[int, str], ...] | None:
         """Up to `most` pairs of a number and a word, `[[12, "atasco"]]`, that may be absent."""
@@ -211,4 +229,5 @@ def _shown(value: object) -> str:
 
 
 _from_json = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_constant).decode
-_to_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
+to_json = json.JSONEncoder(separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode
+"""Compact JSON, its letters as they are: escapes would make it longer than a message may be."""

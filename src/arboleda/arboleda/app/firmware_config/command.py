@@ -45,7 +45,7 @@ def add_to(cli: typer.Typer) -> None:
         if output is None:
             print(text, end="")
             return
-        output.write_text(text, encoding="ascii")
+        output.write_text(text, encoding="utf-8")
         typer.echo(f"wrote {output}", err=True)
 
     cli.command("firmware-config", help=HELP, short_help=HELP.partition("\n")[0])(firmware_config)

@@ -214,8 +214,9 @@ def _slot(document: Document, place: Place, fact: FactType, slots: Types) -> Slo
 
 def _value(document: Document, place: Place, type: FactType) -> Value | None:
     value = document.value(place)
-    if type.takes(value):
-        return type.type(value)
+    read = type.read(value)
+    if read is not None:
+        return read
     hint = nearest(value, map(str, type.words)) if isinstance(value, str) else ""
     slot = f"; {SLOT} stands for a parameter in sets only" if str(value).startswith(SLOT) else ""
     document.problem(place, f"must be {type.allowed()}, is {shown(value)}{hint}{slot}")
