@@ -11,6 +11,7 @@ import signal
 import socket
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from unittest import mock
 from uuid import uuid4
@@ -152,7 +153,8 @@ def no_thread_left(request: pytest.FixtureRequest) -> Iterator[None]:
     started = set(threading.enumerate()) - before
     if not by_hand(request.node):
         for thread in started:
-            thread.join(timeout=2.0)
+            with suppress(RuntimeError):  # it is being started in this very moment, by one that ends
+                thread.join(timeout=2.0)
     left = sorted(thread.name for thread in started if thread.is_alive())
     assert not left, f"threads left behind: {', '.join(left)}"
 

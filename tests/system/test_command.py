@@ -12,6 +12,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.app.build import Options, build
+from arboleda.app.config import load
+
 from .conftest import paths
 
 pytestmark = pytest.mark.system
@@ -230,14 +233,19 @@ def test_virtual_boards_do_not_fight_boards_that_are_there(
 
 
 def test_real_boards_are_driven_where_no_virtual_ones_are_wanted(
-    arboleda: Callable[..., Any], mosquitto: Callable[[int], Any], free_port: int, tmp_path: Path
+    arboleda: Callable[..., Any],
+    mosquitto: Callable[[int], Any],
+    free_port: int,
+    tmp_path: Path,
+    request: pytest.FixtureRequest,
 ) -> None:
     mosquitto(free_port)
-    broker = ("--no-ros", "--broker", f"127.0.0.1:{free_port}")
-    boards = arboleda("up", *broker, "--rate", "10")
-    boards.wait_for("HTTP API")
+    address = f"127.0.0.1:{free_port}"
+    boards = build(load(None), ["devices"], Options(broker=address, rate=10.0, state_dir=tmp_path / "boards"))
+    boards.start()
+    request.addfinalizer(boards.stop)
     state = ("--state", str(tmp_path / "second"))
-    run = arboleda("run", "sis_b 0B 7", *broker, *state, "--boards", "real")
+    run = arboleda("run", "sis_b 0B 7", "--no-ros", "--broker", address, *state, "--boards", "real")
     assert run.wait() == 0, run.output
 
 

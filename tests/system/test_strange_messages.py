@@ -34,6 +34,7 @@ def test_a_mobile_that_names_an_effector_ends_nothing(
     status = parts.observer.publisher(DiagnosticStatus, "/rm_sis_c/status")
     said = [KeyValue(key=key, value=value) for key, value in (("state", "0"), ("effector", "true"))]
     status.publish(DiagnosticStatus(level=b"\0", name="arboleda: rm_sis_c", values=said))
-    parts.plant.wait_for("effector was said; rm_sis_c is a mobile robot")
+    parts.plant.wait_for("rm_sis_c: more than one node publishes on /rm_sis_c/status")
+    parts.observer.node.destroy_publisher(status)
     parts.submit("sis_c 0A 4")
     assert parts.outcome("sis_c 0A 4")["state"] == "done"

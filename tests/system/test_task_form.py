@@ -66,7 +66,7 @@ def test_a_person_gives_a_task_by_the_form_of_its_recipe(page: Any) -> None:
     page.click("[data-fields=sis_b] [data-parameter=station] [data-station='4']")
     page.click("[data-fields=sis_b] [data-parameter=path] [data-path='2A']")
     assert page.input_value("#task-text") == "sis_b 2A 4"
-    assert pressed(page) == ["sis_b", "Almacenar una pieza", "2", "6", "4", "2A"]
+    assert pressed(page) == ["sis_b", "Almacenar una pieza", "2", "6 A", "4", "2A"]
     task = sent(page)
     page.wait_for_selector(f'[data-rows=tasks] [data-row="{task}"][data-s=done]', state="attached")
 

@@ -22,6 +22,7 @@ def test_the_description_has_every_route_and_what_it_takes_and_gives(web: httpx.
         "/api/tasks",
         "/api/tasks/{task_id}",
         "/api/plant/{verb}",
+        "/api/acts/{number}",
         "/api/cells/{scope}/{verb}",
         "/api/events",
     }
