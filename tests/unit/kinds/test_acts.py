@@ -202,7 +202,7 @@ def test_a_release_that_failed_says_why_and_gives_way_to_a_hand(way: str) -> Non
     assert act.outcome is Outcome.FAILED and str(act.why).startswith("oven: ")
     ends = [each for each in here.sent if isinstance(each, Journal) and each.outcome is not None]
     assert [str(each.sentence) for each in ends] == [f"release oven: failed ({act.why})"]
-    told = "release oven --by-hand or release oven, then abandon bench"
+    told = "release oven --by-hand or release oven, then resume bench"
     assert str(sentence(here.plant.advice("bench"))) == told
 
 
@@ -314,7 +314,7 @@ def test_of_two_that_hold_both_are_named() -> None:
     assert here.operate(Verb.ABANDON, "bench") == (
         "oven, kiln may each hold a part; release oven and release kiln first"
     )
-    told = "release oven, then release kiln, then abandon bench"
+    told = "release oven, then release kiln, then resume bench"
     assert str(sentence(here.plant.advice("bench"))) == told
 
 

@@ -113,7 +113,7 @@ def test_a_part_from_nobody_knows_where_is_to_be_released() -> None:
     here = Bench(plant(load))
     here.set_by_hand("jaw", (("gripped", True),))
     assert here.wait(5.0, lambda: bool(here.plant.advice("tending")))
-    assert str(sentence(here.plant.advice("tending"))) == "release jaw, then abandon tending"
+    assert str(sentence(here.plant.advice("tending"))) == "release jaw, then resume tending"
 
 
 def test_a_recovery_does_not_let_go_of_a_part_from_nobody_knows_where() -> None:

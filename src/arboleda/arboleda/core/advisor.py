@@ -90,7 +90,10 @@ class Advisor:
             yield retry
         for number, robot in enumerate(holding):
             yield from _releasing(run, robot, run.why_held, instead=helps and not failed and number == 0)
-        yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding and not failed)
+        if holding and run.waits_for_grip:
+            yield from _running_again(run)
+        else:
+            yield Advice(do=Verb.ABANDON, scope=name, why=run.why_held, instead=not holding and not failed)
         if helps and failed:
             yield replace(retry, instead=True)
 

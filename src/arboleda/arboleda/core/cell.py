@@ -148,6 +148,12 @@ class CellRun:
         return self.state is CellState.HELD
 
     @property
+    def waits_for_grip(self) -> bool:
+        """Whether only a part in a gripper holds the cell, so that it is idle as soon as that is out."""
+        trouble = self.trouble if self.is_held and self.task is None else None
+        return trouble is not None and trouble.reason is Reason.INTERRUPTED
+
+    @property
     def goes_on(self) -> bool:
         """Whether it gets out of its hold by itself, once its devices have proved what they did."""
         return self._goes_on is not None
@@ -399,7 +405,7 @@ class CellRun:
 
     def _settled(self) -> bool:
         """Leave `held` where only the effector was the trouble; else keep what goes wrong meanwhile."""
-        if self.task is None and self._grip_settled():
+        if self.waits_for_grip and not self.context.holding:
             self._leave_as_it_is()
             return True
         if self.keeping.walk is not None:
@@ -462,10 +468,6 @@ class CellRun:
             self.trouble = Failure(reason=Reason.STOP_UNCONFIRMED, sentence=sentence)
         self.become(Cause.HALTED)
         return True
-
-    def _grip_settled(self) -> bool:
-        only_grip = self.trouble is not None and self.trouble.reason is Reason.INTERRUPTED
-        return only_grip and not self.context.holding
 
     def _unready(self) -> Sentence | None:
         if busy := self._busy():
