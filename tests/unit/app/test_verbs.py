@@ -132,12 +132,12 @@ def test_a_stop_that_nobody_confirms_names_the_button(
 
 
 def test_a_robot_is_declared_homed_by_hand(acts: Notes) -> None:
-    assert arboleda("home", "ra1", "--by-hand")[0] == 0
+    assert arboleda("home", "ra1", "--by-hand") == (0, "done: home by hand, ra1\n")
     assert acts == [(Verb.HOME, "ra1", True)]
 
 
 def test_a_part_is_declared_taken_out_by_hand(acts: Notes) -> None:
-    assert arboleda("release", "jaw", "--by-hand")[0] == 0
+    assert arboleda("release", "jaw", "--by-hand") == (0, "done: release by hand, jaw\n")
     assert acts == [(Verb.RELEASE, "jaw", True)]
 
 

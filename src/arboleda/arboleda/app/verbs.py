@@ -148,7 +148,8 @@ def _ask(verb: Verb, scope: str | None, reached: PlantClient, *, by_hand: bool =
         if verb is not Verb.STOP or isinstance(error, Refused | TextError):
             raise
         raise ArboledaError(f"The stop was not confirmed, use the hard-wired button: {error}") from error
-    _tell(answer, f"{LABELS.get(verb, verb.value)}, {plain(scope or 'the whole plant')}")
+    did = LABELS.get(verb, verb.value) + (" by hand" if by_hand else "")
+    _tell(answer, f"{did}, {plain(scope or 'the whole plant')}")
 
 
 def _tell(answer: dict[str, Any], did: str) -> None:
