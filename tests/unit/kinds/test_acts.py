@@ -220,6 +220,12 @@ def test_an_act_is_under_way_until_its_device_has_ended_it() -> None:
     assert told == [("did", "release oven"), ("done", "release oven: done")]
 
 
+def test_a_verb_that_nobody_can_do_by_hand_is_told_as_what_it_is() -> None:
+    here = Bench(model())
+    assert here.operate(Verb.STOP, "oven", by_hand=True) is None
+    assert str(here.plant.acts[-1].sentence) == "stop oven"
+
+
 def test_a_stop_is_told_as_sent() -> None:
     here = Bench(model())
     assert here.operate(Verb.STOP) is None
@@ -282,9 +288,10 @@ def test_the_next_word_of_the_device_itself_counts_again() -> None:
 
 def test_nobody_takes_out_what_is_not_held_or_at_work() -> None:
     here = Bench(model())
-    said = "oven is not known to hold a part"
+    said = "no part is known to be in oven"
     assert here.operate(Verb.RELEASE, "oven", by_hand=True) == said
     assert here.operate(Verb.RELEASE, "eye", by_hand=True) == "eye has no effector"
+    assert here.operate(Verb.RELEASE, "bench", by_hand=True) == said
     here.submit("bench bake 10")
     assert here.wait(30.0, lambda: bool(here.plant.cells["bench"].context.holding))
     assert "hold or stop it first" in str(here.operate(Verb.RELEASE, "oven", by_hand=True))

@@ -31,7 +31,7 @@ class Refused(ArboledaError):
 
 PLANT = Phrase("scope.plant", "plant")
 DID = Phrase("did.verb", "{verb}")
-DID_BY_HAND = Phrase("did.by_hand", "{verb} by hand")
+DID_BY_HAND = Phrase("did.by_hand", "{verb} by hand")  # only read, in journals
 DECLARED_BY_HAND = {
     Verb.HOME: Phrase("did.declared_homed", "home {scope} by hand"),
     Verb.RELEASE: Phrase("did.declared_empty", "release {scope} by hand: the part was taken out"),
@@ -103,7 +103,7 @@ OTHER_STATE = Phrase("refusal.other_state", "{cell} is {state}; this needs a cel
 NO_FAULT = Phrase("refusal.no_fault", "{cell} is held without a fault; resume {cell} goes on")
 RELEASE_FIRST = Phrase("refusal.release_first", "{arm} may hold a part; release {arm} first")
 RELEASE_ALL_FIRST = Phrase("refusal.release_all_first", "{devices} may each hold a part; {releases} first")
-HOLDS_NOTHING = Phrase("refusal.holds_nothing", "{devices} is not known to hold a part")
+HOLDS_NOTHING = Phrase("refusal.holds_nothing", "no part is known to be in {devices}")
 NO_PERSON = Phrase("refusal.no_person", "{person} is no person of this plant; people: {known}")
 NOT_ASKED = Phrase("refusal.not_asked", "nobody asks {person} anything now")
 NO_ANSWER = Phrase("refusal.no_answer", "{word} is no answer to what {person} is asked; answers: {known}")
@@ -586,7 +586,7 @@ def _did(request: OperatorRequest, scope: str) -> Sentence:
         scope = f"{person} {word}"
     if request.by_hand and request.verb in DECLARED_BY_HAND:
         return DECLARED_BY_HAND[request.verb](scope=_whole(scope))
-    did = DID_BY_HAND if request.by_hand else DID_BY_CLIENT if request.client else DID
+    did = DID_BY_CLIENT if request.client else DID
     return did(verb=DO[request.verb](scope=_whole(scope)))
 
 
