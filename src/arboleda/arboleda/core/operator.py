@@ -90,8 +90,8 @@ QUEUE_RUNS = Phrase("refusal.queue_runs", "{cell} is idle and its queue runs")
 ONLY_HELD = Phrase(
     "refusal.only_held", "{cell} is {state}; only a held cell or a paused queue can be resumed"
 )
-RELEASING = Phrase("doing.release", "releasing by hand")
-NOT_OPENED = Phrase("refusal.not_opened", "{why}: no releasing by hand")
+RELEASING = Phrase("doing.release", "letting go on the operator's word")
+NOT_OPENED = Phrase("refusal.not_opened", "{why}: it cannot let go")
 HOLD_FIRST = Phrase("refusal.hold_first", "{cell} is {state}; hold or stop it first")
 NO_EFFECTOR = Phrase("refusal.no_effector", "{robot} has no effector")
 CLEAR_FIRST = Phrase("refusal.clear_first", "{cell} is not cleared after its stop yet; clear {cell} first")
