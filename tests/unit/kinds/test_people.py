@@ -163,7 +163,10 @@ def test_a_question_stays_while_the_cell_is_held() -> None:
     assert here.operate(Verb.HOLD, "tending") is None
     here.wait(1.0)
     assert question(here) is not None
+    told = "tending is held (by the operator); ana has a question to answer first"
+    assert str(here.plant.cells["tending"].held_by) == told
     assert here.operate(Verb.ANSWER, "ana yes") is None
+    assert not any("ana" in each.moves for each in here.plant.advice("tending"))
     assert here.operate(Verb.RESUME, "tending") is None
     assert here.outcome().state.value == "done"
 

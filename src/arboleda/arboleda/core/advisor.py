@@ -290,7 +290,7 @@ def _recovered(run: CellRun) -> tuple[str, ...]:
 
 
 def _movers(run: CellRun) -> tuple[str, ...]:
-    return tuple(robot.name for robot in run.cell.reached)
+    return tuple(robot.name for robot in run.cell.reached if not robot.is_asked)
 
 
 STOPPING = (CellState.ABORTING, CellState.ABORTED, CellState.CLEARING, CellState.STOPPED)

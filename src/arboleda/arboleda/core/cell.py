@@ -12,7 +12,7 @@ from py_trees.common import Status
 from arboleda.dispatch.belief import Moment
 from arboleda.dispatch.dispatcher import BROKEN_OFF
 from arboleda.dispatch.ledger import State
-from arboleda.model.commands import Motion
+from arboleda.model.commands import Motion, Question
 from arboleda.model.errors import QueueFull
 from arboleda.model.grips import Grip
 from arboleda.model.messages import Failure, Reason, TaskState, Verb
@@ -478,9 +478,13 @@ class CellRun:
         return next((failure.sentence for failure in found if failure), None)
 
     def _busy(self) -> Sentence | None:
-        """What a robot of the cell is still doing."""
+        """What a robot of the cell is still doing, or who is still to answer."""
         first = next(iter(self.context.open_commands()), None)
-        return STILL_DOING(robot=first.command.robot, doing=first.doing) if first else None
+        if first is None:
+            return None
+        if isinstance(first.command, Question):
+            return STILL_ASKED(person=first.command.robot)
+        return STILL_DOING(robot=first.command.robot, doing=first.doing)
 
     def _grip_unsettled(self) -> Failure | None:
         robot = next(iter(self.context.holding), None)
@@ -628,6 +632,7 @@ ABANDONED = Phrase("task.abandoned", "abandoned by the operator")
 ASKED_TO_END = Phrase("task.plant_ends", "the plant was asked to end")
 NO_CAUSE = Phrase("cell.no_cause", "{cell} failed without a cause")
 STOP_UNCONFIRMED = Phrase("cell.stop_unconfirmed", "{robots} did not confirm the stop")
+STILL_ASKED = Phrase("robot.still_asked", "{person} has a question to answer first")
 STILL_DOING = Phrase("robot.still_doing", "{robot} is still {doing}")
 MAY_HOLD = Phrase("part.may_hold", "{arm} may hold a part, its effector is {grip}")
 MAY_HOLD_BY_FACT = Phrase("part.may_hold_by_fact", "{device} may hold a part: {fact} is {grip}")

@@ -138,7 +138,7 @@ def _ways(words: Words, cell: Row) -> Face:
     """What leads the cell out: a row for each advice, in the order to do it."""
     name, found = cell["name"], {}
     for number, advice in enumerate(cell["advice"]):
-        before = cell["advice"][number - 1] if number else None
+        before = _before(cell["advice"], number)
         found[f"row/ways.{name}/{number}"] = {
             "state": "hand" if advice["hand"] else "next" if number == 0 else "later",
             "texts": [_said(words, advice) if advice["hand"] else "", _note(words, advice, before)],
@@ -154,10 +154,18 @@ def _said(words: Words, advice: Row) -> str:
     return said[:1].upper() + said[1:]
 
 
-def _note(words: Words, advice: Row, before: Row | None) -> str:
+def _before(ways: list[Row], number: int) -> list[Row]:
+    """What stands right before an advice: one thing to do, or all that may be done instead of each other."""
+    first = number - 1
+    while first > 0 and ways[first]["instead"]:
+        first -= 1
+    return ways[max(first, 0) : number]
+
+
+def _note(words: Words, advice: Row, before: list[Row]) -> str:
     """What comes first, or why not now; else what comes of it."""
     if advice["refusal"] and before and not advice["instead"]:
-        note = words("ways.after", first=_said(words, before))
+        note = words("ways.after", first=words("ways.or").join(_said(words, each) for each in before))
     elif advice["refusal"]:
         note = words("ways.not_yet", why=words.say(advice["refusal"]))
     elif advice["drops"]:
