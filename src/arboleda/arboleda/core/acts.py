@@ -51,7 +51,7 @@ class Acts:
     def __init__(self) -> None:
         self.last: deque[OperatorAct] = deque(maxlen=KEPT)
         self._count = 0
-        self._under_way: dict[int, tuple[OperatorAct, Sequence[Entry]]] = {}
+        self.under_way: dict[int, tuple[OperatorAct, Sequence[Entry]]] = {}
 
     @property
     def next_number(self) -> int:
@@ -62,15 +62,15 @@ class Acts:
         self._count = act.number
         self.last.append(act)
         if act.outcome is Outcome.UNDER_WAY:
-            self._under_way[act.number] = (act, entries)
+            self.under_way[act.number] = (act, entries)
 
     def ended(self, now: float) -> Iterator[tuple[OperatorAct, Sequence[Entry]]]:
         """Each act that has come to its end since the last look, with its commands."""
-        for number, (act, entries) in list(self._under_way.items()):
+        for number, (act, entries) in list(self.under_way.items()):
             outcome, why = outcome_of(entries)
             if outcome is Outcome.UNDER_WAY:
                 continue
-            del self._under_way[number]
+            del self.under_way[number]
             over = replace(act, outcome=outcome, why=why, ended_at=now)
             for place, each in enumerate(self.last):
                 if each.number == number:

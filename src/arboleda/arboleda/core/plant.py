@@ -144,7 +144,8 @@ class Plant:
         if self.zones.is_used:
             self._watch_zones()
         self._advance()
-        self._changes += self._operator.look()
+        if self._operator.acts.under_way:
+            self._changes += self._operator.look()
         self._beat()
         self.next_deadline = self._earliest()
         out, self.dispatcher.outbox = self.dispatcher.outbox, []

@@ -587,10 +587,10 @@ class Dispatcher:
 
         What a person has emptied stays so until it says that itself.
         """
-        if grip is Grip.OFF:
+        if self._kept.get((Fact.EMPTIED, robot)) is not None:
+            if grip is not Grip.OFF:
+                return
             self.remember(Fact.EMPTIED, robot, None)
-        elif self.kept(Fact.EMPTIED, robot) is not None:
-            return
         switches = self._switches(robot) or (grip is Grip.ON and robot in self.grips.opening)
         if self.grips[robot] is not grip and not switches:
             self._grip(robot, grip)
