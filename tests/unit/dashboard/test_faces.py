@@ -256,6 +256,18 @@ def test_what_would_be_refused_is_disabled_with_the_reason(told: Callable[..., A
     assert resume["texts"][1] == "After Reset sis_a"
 
 
+def test_what_may_come_first_is_named_with_what_may_be_done_instead(told: Callable[..., Any]) -> None:
+    rig = told()
+    rig.submit("sis_a 0B 7")
+    rig.wait_for("sis_a", "move to station 7")
+    truth, rig.carry = rig.carry, faults.says("ra_1", estado=2)
+    rig.wait(20.0)
+    rig.carry = truth
+    rig.wait(2.0)
+    assert ways(rig.face())[-1]["texts"][1] == "After Retry sis_a or Release ra1"
+    assert ways(rig.face("es"))[-1]["texts"][1] == "Después de: Reintentar sis_a o Soltar la pieza de ra1"
+
+
 def test_what_only_a_hand_can_do_has_no_button(told: Callable[..., Any]) -> None:
     rig = told()
     rig.power_off("ra_1")
