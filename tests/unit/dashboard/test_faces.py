@@ -206,7 +206,7 @@ def test_the_panel_suggests_what_comes_next_and_says_what_would_be_refused(told:
     rig = told()
     assert rig.face()["text/suggested.plant"][0] == ""
     refused = json.loads(rig.face("es")["text/refused.sis_a"][0])
-    assert refused["reset"] == "sis_a está inactiva; para esto la celda debe estar parada"
+    assert refused["reset"] == "sis_a está inactiva; una celda se rearma tras un paro, una vez desenclavada"
     assert "home" not in refused and "home_by_hand" in json.loads(rig.face()["text/refused.ra1"][0])
     for verb, following in ((Verb.STOP, "clear"), (Verb.CLEAR, "reset"), (Verb.RESET, "resume")):
         rig.operate(verb, "sis_a")
