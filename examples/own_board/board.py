@@ -25,7 +25,8 @@ FRESH_S, MARK_S = 2.0, 0.25  # how long what it told is news, and how exactly it
 UINT32 = 2**32 - 1
 AHEAD_S, HORIZON = 366 * 86_400, 4_102_444_800  # no plant starts a year after the last one, or after 2100
 NAME = re.compile(r"[A-Za-z0-9_.-]{1,32}", re.ASCII)
-TEXT = re.compile(r"[ !#-\[\]-~]{0,32}", re.ASCII)
+TEXT = re.compile(r"[ !#-\[\]-~\u00a1-\ud7ff\ue000-\U0010ffff]*")  # letters of any language, no controls
+LONGEST = 32  # bytes of a text in UTF-8
 Out = Callable[[str, bytes], None]  # channel, payload
 
 VERBS: dict[str, dict[str, Any]] = {
@@ -257,7 +258,8 @@ def plain(value: Any) -> None:
         return
     number = type(value) is int and abs(value) <= UINT32
     number = number or (type(value) is float and math.isfinite(value) and abs(value) <= 1e9)
-    if not number and not (isinstance(value, str) and TEXT.fullmatch(value)):
+    text = isinstance(value, str) and TEXT.fullmatch(value) and len(value.encode()) <= LONGEST
+    if not number and not text:
         raise Bad("no value")
 
 
