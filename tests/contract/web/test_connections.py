@@ -36,6 +36,9 @@ def ended(talk: socket.socket) -> bool:
         return True
 
 
+KEPT_ALIVE_S = 5  # by uvicorn
+
+
 @pytest.mark.parametrize("said", [b"", b"GET /api/plant HT", b"GET / HTTP/1.1\r\nX-A: "])
 def test_a_request_that_does_not_come_is_waited_for_only_so_long(local, monkeypatch, said):
     monkeypatch.setattr(connections, "REQUEST_S", 0.1)
@@ -49,6 +52,16 @@ def test_a_second_request_that_does_not_come_is_not_waited_for_either(local, mon
     with idle(local, 1, asked) as (talk,):
         assert talk.recv(65536).startswith(b"HTTP/1.1 200 ")
         talk.sendall(b"GET /")
+        while not ended(talk):
+            pass
+
+
+def test_a_second_request_that_begins_with_the_first_is_not_waited_for_either(local, monkeypatch):
+    monkeypatch.setattr(connections, "REQUEST_S", 0.1)
+    asked = f"GET /api/plant HTTP/1.1\r\nHost: 127.0.0.1:{local.port}\r\n\r\nGET /".encode()
+    with idle(local, 1, asked) as (talk,):
+        talk.settimeout(KEPT_ALIVE_S - 1)  # an idle connection would be closed then
+        assert talk.recv(65536).startswith(b"HTTP/1.1 200 ")
         while not ended(talk):
             pass
 

@@ -88,6 +88,12 @@ class Connection(_MustRead, H11Protocol):
         else:
             self._request.off()
 
+    def on_response_complete(self) -> None:
+        super().on_response_complete()
+        head, _ = self.conn.trailing_data
+        if head and self.idles and not self.transport.is_closing():
+            self._request.on()  # it began to come before the last answer was whole
+
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         self._request.off()
         super().handle_websocket_upgrade(event)
