@@ -47,8 +47,7 @@ class ModbusWire:
         self.told: Callable[[Order], None] = lambda order: None
         self._changed = threading.Lock()
         self._holding = [0, 0, 0]
-        self._inputs = [0] * 16
-        self._guard = 0
+        self.say(Words())  # a driver that reads zeros first finds a board that has booted then
         self._silent = threading.Event()
         self._server = ModbusServer(self, trace=self._pass)
         self.port = self._server.start()
