@@ -43,10 +43,12 @@ def test_a_goal_is_accepted_told_of_each_step_and_done(execute: Execute) -> None
     assert (status, result.outcome, result.reason, result.sentence) == (SUCCEEDED, "done", "", "")
     steps = [step for step, _ in goal.feedback]
     assert steps[0] == "system start" and steps[-1] == "move to home"
-    assert {"drive path 0B", "move to pick-up", "effector on", "move to station 7"} <= set(steps)
+    assert {"drive path 0B", "move to pick-up", "grip", "move to station 7"} <= set(steps)
     progress = [share for _, share in goal.feedback]
     assert (
-        progress == sorted(progress) and progress[0] == 0.0 and progress[-1] == pytest.approx(6 / 7, abs=0.01)
+        progress == sorted(progress)
+        and progress[0] == 0.0
+        and progress[-1] == pytest.approx(10 / 11, abs=0.01)
     )
 
 
