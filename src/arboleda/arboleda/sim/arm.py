@@ -117,7 +117,8 @@ class ArmBody(Robotic):
         self._grip()
 
     def take_out(self) -> None:
-        """The effector stays as it is switched, and does not notice."""
+        """Somebody opens the effector, also one that does not follow its switch, and takes the piece."""
+        self.effector = False
         self.lose_piece()
 
     def lose_piece(self) -> None:

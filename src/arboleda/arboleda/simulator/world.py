@@ -255,9 +255,12 @@ class World:
     def take_out(self, scope: str) -> None:
         """Somebody takes out what the still robots of a scope hold."""
         for name in self._boards_of(scope):
-            if not self.boards[name].body.moving:
-                self.boards[name].body.take_out()
+            body = self.boards[name].body
+            if not body.moving:
+                opens = isinstance(body, ArmBody) and body.effector
+                body.take_out()
                 self.moment.put_right.append(name)
+                self.moment.opened += [name] if opens else []
 
     def open_effector(self, board: str) -> None:
         """Somebody else than this plant opens an effector; its board says that it is off."""
