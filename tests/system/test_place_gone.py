@@ -60,8 +60,8 @@ def make_anew(state: Path) -> None:
 @pytest.mark.parametrize(
     ("harm", "sentence"),
     [
-        (shutil.rmtree, "plant.(sqlite|lock) was deleted or moved away"),
-        (make_anew, "plant.(sqlite|lock) was deleted or moved away"),
+        (shutil.rmtree, "plant.(sqlite|sqlite-wal|lock) was deleted or moved away"),
+        (make_anew, "plant.(sqlite|sqlite-wal|lock) was deleted or moved away"),
         (unlink_memory, "plant's memory .*plant.sqlite was deleted or moved away"),
         (unlink_lock, "state directory .*plant.lock was deleted or moved away"),
     ],

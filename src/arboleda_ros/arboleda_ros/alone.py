@@ -14,6 +14,8 @@ _POLL_S = 0.02
 # Fast DDS answers a newcomer once, often before that can listen, and announces itself again after 3 s
 DISCOVERY_S = 3.2
 _NAME_S = 3.0  # how much longer to wait for the name of a publisher that was found
+_SETTLED_S = 1.0  # how soon a node that has just been found tells its publishers on a busy machine
+_UNSETTLED_S = 10.0  # how much longer to wait at most where nodes come and go
 UNNAMED = "a node without a name"  # discovery may show a publisher before it knows the node
 _LOOKED_AT = 5  # topics in one look: each takes as long as the whole graph is large
 _ALERT = 5  # looks at all topics once nodes have come or gone; what they publish is discovered a little later
@@ -38,13 +40,18 @@ class Alone:
     def check(self, wait_s: float) -> None:
         """Raise StartError as soon as discovery names another publisher.
 
-        Returns `wait_s` after this was made; one shorter than DISCOVERY_S misses publishers that were there
-        before, about one in two.
+        Returns `wait_s` after this was made, or later where nodes have come or gone within _SETTLED_S; a time
+        shorter than DISCOVERY_S misses publishers that were there before, about one in two.
         """
         until = self._born + wait_s
+        latest = until + _UNSETTLED_S
+        nodes = self._node.get_node_names_and_namespaces()
         while not _named(found := self.others()):
-            patience_s = _NAME_S if found else 0.0
-            if time.monotonic() >= until + patience_s:
+            now, known = time.monotonic(), nodes
+            nodes = self._node.get_node_names_and_namespaces()
+            if sorted(nodes) != sorted(known):
+                until = min(max(until, now + _SETTLED_S), latest)
+            if now >= until + (_NAME_S if found else 0.0):
                 break
             time.sleep(_POLL_S)
         for topic, name in _named(found) or found:

@@ -79,7 +79,7 @@ SINCE = {
 }
 IN_MEMORY = Path(":memory:")
 PUT_BACK = f"put it, or a backup, in its place and start again; {LOST_WITH_IT}"
-IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself"
+IN_PLACE = "start again; as the plant ends now, all that it kept goes into the memory itself, if it is there"
 
 
 class Store(PlantMemory):
