@@ -11,7 +11,7 @@ from importlib.resources import files
 from types import ModuleType
 
 from arboleda.model.errors import ArboledaError
-from arboleda_ros import missing
+from arboleda_ros import missing_libraries
 
 NAMES = (
     "reaction",
@@ -38,7 +38,7 @@ def module(name: str) -> ModuleType:
     try:
         return importlib.import_module(f".{name}", __package__)
     except ImportError as error:
-        raise ArboledaError(missing.sentence(error)) from error
+        raise ArboledaError(missing_libraries.sentence(error)) from error
 
 
 def about(name: str) -> str:

@@ -21,7 +21,7 @@ from arboleda.recipes.storage_cell import StorageCell
 from arboleda.wire.hop import PLAIN
 from arboleda.wire.joints import joint_states_topic
 from arboleda_ros import convert, qos
-from arboleda_ros.voice import JointsMessage
+from arboleda_ros.robot_publisher import JointsMessage
 
 from . import steps
 from .clockwork import Clockwork, now

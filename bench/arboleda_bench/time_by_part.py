@@ -19,7 +19,7 @@ PARTS = {  # what part of the house a file belongs to; the first that fits
     "/simulator/truth/": "truth",
     "/simulator/record": "record",
     "/simulator/invariants/": "invariants",
-    "/simulator/watched.py": "invariants",
+    "/simulator/judged_world.py": "invariants",
     "/simulator/trace.py": "trace",
     "/simulator/world.py": "network and time",
     "/simulator/network.py": "network and time",

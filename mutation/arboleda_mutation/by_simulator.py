@@ -68,8 +68,8 @@ def _runner(root: Path) -> Any:
     from importlib.resources import as_file, files
 
     from arboleda.app import config
-    from arboleda.app.simulate.drawn import Drawn
     from arboleda.app.simulate.plants import Plant
+    from arboleda.app.simulate.random_plants import Drawn
     from arboleda.app.simulate.setting import Setting
     from arboleda.app.simulate.workers import collect_rarely
 

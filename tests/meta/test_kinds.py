@@ -31,7 +31,7 @@ NAMED_AS_ROLES = {
     "simulator/invariants/screens.py",
     "simulator/plants/cells.py",  # plant files of cells of storage
     "simulator/plants/draw.py",
-    "simulator/plants/smaller.py",
+    "simulator/plants/reductions.py",
     "simulator/plants/timing.py",
 }
 """Where the two robots of a cell of storage are called by their roles, or the model of one by its name."""

@@ -10,7 +10,7 @@ import pytest
 
 from arboleda.app import config
 from arboleda.model.plant_model import PlantModel
-from arboleda.simulator import watched
+from arboleda.simulator import judged_world
 from arboleda.simulator.invariants import INVARIANTS, Invariant
 from arboleda.simulator.invariants.hosts import HOSTS
 from arboleda.simulator.run import Simulation
@@ -53,7 +53,7 @@ def _broken(mutant: Mutant, seed: int, invariants: Sequence[Invariant]) -> str |
     """The name of the invariant that breaks first."""
     model = plants()[seed % 2]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(watched, "REST_S", mutant.rest_s)
+        patch.setattr(judged_world, "REST_S", mutant.rest_s)
         faults = mutant.climate(model, seed).faults
         simulation = Simulation(
             model,

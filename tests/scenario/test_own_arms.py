@@ -8,8 +8,8 @@ import pytest
 
 from arboleda.app import config
 from arboleda.app.plant_file.robot_models import mobile_models
-from arboleda.app.simulate.drawn import ATTEMPTS, as_yaml
 from arboleda.app.simulate.plants import InTurn, Plant
+from arboleda.app.simulate.random_plants import ATTEMPTS, as_yaml
 from arboleda.app.simulate.setting import Setting
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel

@@ -661,7 +661,7 @@ def test_answers_to_others_are_passed_over(links):
 
 
 def test_a_plant_that_does_not_answer_is_said_to_and_keeps_the_topics(links, monkeypatch):
-    monkeypatch.setattr("arboleda_ros.asking.ANSWER_S", 0.1)
+    monkeypatch.setattr("arboleda_ros.plant_queries.ANSWER_S", 0.1)
     side, operator = Side(links(), "orchestrator", PLANT), Operator(links(), "operator")
     call = operator.call("/plant/stop")
     eventually(call.done)

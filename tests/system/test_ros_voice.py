@@ -17,7 +17,7 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
 from arboleda.testing import shipped
 from arboleda_ros import statuses
-from arboleda_ros.voice import JointsMessage, StatusMessage
+from arboleda_ros.robot_publisher import JointsMessage, StatusMessage
 
 PLANT = shipped("sis_a")
 ARM, MOBILE = PLANT.robots["ra1"], PLANT.robots["rm_sis_a"]

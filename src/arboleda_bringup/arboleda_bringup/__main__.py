@@ -9,7 +9,7 @@ from dataclasses import asdict
 
 def main() -> int:
     """0 with the plan on stdout, or 1 with a sentence on stderr."""
-    from arboleda_ros.missing import sentence
+    from arboleda_ros.missing_libraries import sentence
 
     try:
         from arboleda.model.errors import ArboledaError

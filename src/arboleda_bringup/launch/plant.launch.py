@@ -10,7 +10,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
 from arboleda_bringup.arguments import ARGUMENTS, Argument
-from arboleda_bringup.asked import asked
+from arboleda_bringup.plan_query import asked
 from arboleda_bringup.row import Row
 
 SHARE = Path(__file__).parents[1]

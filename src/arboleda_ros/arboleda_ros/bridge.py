@@ -25,8 +25,8 @@ from arboleda.wire.status import ERROR, OK, WARN
 
 from . import convert, qos, statuses
 from .port import Port
+from .robot_publisher import Voice
 from .senders import Senders
-from .voice import Voice
 
 NEWS_S = 10.0  # for so long `/diagnostics` warns of a command of somebody else
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from .missing import sentence
+from .missing_libraries import sentence
 
 NAMES = ("orchestrator", "mqtt_bridge", "virtual_devices")
 

@@ -15,7 +15,7 @@ from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String, UInt8, UInt32
 
-from arboleda.adapters.seldom import Seldom
+from arboleda.adapters.rate_limit import Seldom
 from arboleda.app import view_text
 from arboleda.kinds.arm import Arm
 from arboleda.kinds.declared import Device
@@ -40,9 +40,9 @@ from arboleda.wire.hop import HEARTBEAT, PLAIN, kind_of
 from arboleda.wire.joints import joint_states_topic
 
 from . import convert, qos, statuses
-from .asking import Asker
 from .diagnostics import Diagnostic, Diagnostics
 from .overhear import OwnTopic
+from .plant_queries import Asker
 from .port import NAMED, Port
 from .senders import Senders
 from .speakers import Speakers

@@ -15,12 +15,12 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
-from arboleda.adapters.seldom import Seldom
+from arboleda.adapters.rate_limit import Seldom
 from arboleda.model.errors import PayloadError
 from arboleda.wire.status import ERROR, OK, WARN
 
 from . import qos, statuses
-from .alone import DISCOVERY_S, Alone
+from .exclusive_topics import DISCOVERY_S, Alone
 from .speakers import Speakers
 
 NAMED = "arboleda: "  # how the names of all our statuses begin

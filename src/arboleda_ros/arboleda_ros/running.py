@@ -26,7 +26,7 @@ from arboleda.app.web_options import WebOptions
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.model.plant_model import Link as LinkKind
 
-from . import missing
+from . import missing_libraries
 from .link import Link, connect
 from .ros_log import RosLog
 
@@ -153,7 +153,7 @@ def _has_web() -> bool:
         import arboleda.app.parts.web
         import arboleda.dashboard.page  # noqa: F401
     except ImportError as error:
-        LOG.warning("the dashboard is off: %s", missing.sentence(error))
+        LOG.warning("the dashboard is off: %s", missing_libraries.sentence(error))
         return False
     return True
 

@@ -8,7 +8,7 @@ from rclpy.node import Node
 
 from arboleda.wire.hop import HEARTBEAT
 
-from .alone import full_name
+from .exclusive_topics import full_name
 
 _FRESH_S = 1.0  # a flood of messages must not ask the graph for each of them
 _SHOWN = 3

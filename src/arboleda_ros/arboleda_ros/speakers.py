@@ -15,7 +15,7 @@ from arboleda.model.sentence import Sentence
 from arboleda.wire.speaker import Speaker
 
 from . import qos
-from .alone import UNNAMED, full_name
+from .exclusive_topics import UNNAMED, full_name
 
 LOG = logging.getLogger("arboleda.ros.speakers")
 _FRESH_S = 0.2  # in which nobody is looked for again for each message

@@ -9,7 +9,7 @@ from std_srvs.srv import Trigger
 
 from arboleda.model.messages import Verb
 
-from .asking import Asker
+from .plant_queries import Asker
 
 
 class VerbServices:

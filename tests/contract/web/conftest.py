@@ -16,11 +16,11 @@ from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.server_tls import ServerTls, pinned
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
-from arboleda.adapters.web.apart import Apart
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
+from arboleda.adapters.web.second_loop import Apart
 from arboleda.adapters.web.server import Server
 from arboleda.core.leaving import stop_left
 from arboleda.core.text import alternatives, spelled

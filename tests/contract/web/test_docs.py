@@ -6,7 +6,7 @@ import re
 
 import httpx
 
-from arboleda.adapters.web import listing
+from arboleda.adapters.web import openapi
 from arboleda.model.messages import Verb
 
 
@@ -64,4 +64,4 @@ def test_whatever_a_description_says_is_text(web: httpx.Client) -> None:
         "paths": {f"/{evil}": {"get": {"description": evil, "responses": {evil: {"description": evil}}}}},
         "components": {"schemas": {evil: {"properties": {evil: {"type": evil, "description": evil}}}}},
     }
-    assert "<script" not in listing.render(api)
+    assert "<script" not in openapi.render(api)

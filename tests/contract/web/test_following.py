@@ -15,12 +15,12 @@ from pathlib import Path
 import pytest
 
 from arboleda.adapters.web.auth import Role
-from arboleda.app import elsewhere
+from arboleda.app import remote_plant
 from arboleda.app.client import PlantClient
-from arboleda.app.elsewhere import Elsewhere, Nobody
-from arboleda.app.led import Led
+from arboleda.app.leader import Led
 from arboleda.app.line import Silent
 from arboleda.app.parts.waiting_room import WaitingRoom
+from arboleda.app.remote_plant import Elsewhere, Nobody
 from arboleda.app.state import StateDir
 from arboleda.app.tokens import TOKENS as FILE
 from arboleda.app.web_options import WebOptions
@@ -63,7 +63,7 @@ class Database:
         self.led: Led | None = None
         self.standbys = 0
         self.name = STORE
-        monkeypatch.setattr(elsewhere, "leadership_of", lambda store, plant: self)
+        monkeypatch.setattr(remote_plant, "leadership_of", lambda store, plant: self)
 
     def leader(self):
         from arboleda.adapters.postgres.leadership import Leader

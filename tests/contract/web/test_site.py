@@ -18,7 +18,7 @@ from arboleda.adapters.web.auth import Door, Role
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
 from arboleda.adapters.web.server import Server
-from arboleda.app.places import Place
+from arboleda.app.endpoints import Place
 from arboleda.app.site.reach import ANSWER_S, NO_ANSWER
 from arboleda.app.site.watch import NOT_SEEN, NOT_STOPPED, STANDS_BY, STOPPED, STOPPED_ALL, Site
 from arboleda.dashboard.frames import ended

@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from arboleda.app.places import Place
+from arboleda.app.endpoints import Place
 from arboleda.app.site.watch import Site
 from arboleda.dashboard.site.side import Asked
 

@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from arboleda.app import tokens
-from arboleda.app.led import Led
+from arboleda.app.leader import Led
 from arboleda.app.parts.waiting_room import WaitingRoom
 from arboleda.app.web_options import WebOptions
 

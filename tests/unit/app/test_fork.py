@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from arboleda.app.fork.command import compared
-from arboleda.app.fork.happenings import Pair
+from arboleda.app.fork.plant_events import Pair
 from arboleda.app.fork.run import Asked, Forked, forked
 from arboleda.app.replay_command import sentence_of
 from arboleda.model.messages import Verb

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from arboleda.app.led import Led, of_standby, said_of
+from arboleda.app.leader import Led, of_standby, said_of
 from arboleda.app.web_options import WebOptions
 
 LED = Led(plant="demo", host="host-a", process=7, url="http://10.0.0.5:8080", epoch=3)

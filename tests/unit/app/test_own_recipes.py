@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from arboleda.app import config, recipe_trial
 from arboleda.app.cli import cli
-from arboleda.app.plant_file.used import Spot
+from arboleda.app.plant_file.python_uses import Spot
 from arboleda.core.text import parse
 from arboleda.model.errors import ConfigError, TextError
 from arboleda.model.plant_model import PlantModel

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from arboleda.app import places
-from arboleda.app.places import Place, named, tokens_of, with_tokens
+from arboleda.app import endpoints
+from arboleda.app.endpoints import Place, named, tokens_of, with_tokens
 from arboleda.model.errors import ConfigError, StartError
 
 HERE = Place(url="http://127.0.0.1:8080", plant="here", token="h" * 20, certificate="PEM")
@@ -15,7 +15,7 @@ HERE = Place(url="http://127.0.0.1:8080", plant="here", token="h" * 20, certific
 
 @pytest.fixture(autouse=True)
 def _one_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(places, "of_this_machine", lambda: [HERE])
+    monkeypatch.setattr(endpoints, "of_this_machine", lambda: [HERE])
 
 
 def test_a_plant_of_this_machine_is_shown_what_its_own_commands_show() -> None:

@@ -16,8 +16,8 @@ from arboleda.app.build import Options, build
 from arboleda.app.cli import cli
 from arboleda.model.errors import ConfigError
 from arboleda.recorder import copying, files, reader
-from arboleda.recorder.beginning import PlantFiles
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import PlantFiles
 from arboleda.recorder.steps import TOPIC
 
 SHIPPED = config.load_recorded()[1]

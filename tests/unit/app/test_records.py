@@ -10,9 +10,9 @@ import pytest
 
 from arboleda.app.parts import records
 from arboleda.app.parts.records import Records
-from arboleda.recorder.beginning import Limits, PlantFiles
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import part_path
+from arboleda.recorder.preamble import Limits, PlantFiles
 from arboleda.recorder.simulated import SimulatedRecorder
 from arboleda.simulator.world import World
 from arboleda.testing import shipped

@@ -15,8 +15,8 @@ import pytest
 from arboleda.app import config
 from arboleda.app.cli import main
 from arboleda.app.simulate import setting
-from arboleda.app.simulate.drawn import Drawn
 from arboleda.app.simulate.plants import Plant
+from arboleda.app.simulate.random_plants import Drawn
 from arboleda.app.simulate.request import Request, shared
 from arboleda.model.plant_model import Evidence
 from arboleda.simulator import judged

@@ -13,11 +13,11 @@ import pytest
 import yaml
 
 from arboleda.app import cli as command
-from arboleda.app import elsewhere
+from arboleda.app import remote_plant
 from arboleda.app.cli import main
 from arboleda.app.client import PlantClient
+from arboleda.app.plant_options import located
 from arboleda.app.state import StateDir, default_state, running_plants
-from arboleda.app.where import located
 from arboleda.model.errors import ArboledaError
 
 Typed = Callable[..., tuple[int, str, str]]
@@ -130,7 +130,7 @@ def test_the_database_is_the_one_that_is_named_else_of_the_file_else_of_the_last
     shipped = yaml.safe_load(SHIPPED.read_text())
     file.write_text(yaml.safe_dump(shipped | {"name": "attic", "store": "postgresql://file"}))
     found: list[tuple[str, str]] = []
-    monkeypatch.setattr(elsewhere, "leadership_of", lambda *which: found.append(which) or Others())
+    monkeypatch.setattr(remote_plant, "leadership_of", lambda *which: found.append(which) or Others())
     chosen = [str(file) if word == "FILE" else word for word in options]
     status, _, said = typed("status", "--state", str(state), *chosen)
     assert (status, found) == (1, [asked])

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.faces import Face
-from arboleda.dashboard.story import Story
+from arboleda.dashboard.page_state import Story
 from arboleda.testing import Rig, shipped
 from arboleda.views import view
 

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from arboleda.dashboard.faces import Face
+from arboleda.dashboard.page_state import Story
 from arboleda.dashboard.past.moments import address, moment_of
 from arboleda.dashboard.past.past import Past
-from arboleda.dashboard.story import Story
 from arboleda.model.messages import Verb
 from arboleda.recorder import reader, recorder
 from arboleda.recorder.views import Views

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from arboleda.dashboard.past.frame_queue import Turns
 from arboleda.dashboard.past.side import Start
 from arboleda.dashboard.past.stills import Stills
-from arboleda.dashboard.past.turns import Turns
 from arboleda.dashboard.past.visitor import Arrival, Visitor
 from arboleda.dashboard.wording import words
 from arboleda.recorder.errors import NoRecord

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from arboleda.dashboard.unopened import Unopened
+from arboleda.dashboard.page_budget import Unopened
 
 
 class Page:

@@ -10,7 +10,7 @@ from arboleda.drivers import MoveJoints, Report
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.testing.plants import shipped
 from arboleda.virtual.dobot.faults import FAULTS
-from arboleda.virtual.dobot.joined import Joined as Pair
+from arboleda.virtual.dobot.loopback import Joined as Pair
 from arboleda.virtual.dobot.machine import VirtualDobot
 from arboleda.virtual.faults import Faults
 

@@ -12,7 +12,7 @@ from arboleda.drivers import MotionState, NotSent, Stop, StopMode
 from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw, blocks, joined
 from arboleda.drivers.modbus.registers import Register
 from arboleda.drivers.modbus.settings import Settings
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 

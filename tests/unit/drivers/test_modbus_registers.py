@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from arboleda.drivers.modbus.registers import Register, Write
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.drivers.port import DriverError
 
 ONE_OF = "needs exactly one of coil, discrete, holding, input with its address, has "

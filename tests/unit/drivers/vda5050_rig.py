@@ -16,7 +16,7 @@ from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 from arboleda.virtual.faults import Faults
 from arboleda.virtual.vda5050.faults import FAULTS
-from arboleda.virtual.vda5050.joined import Joined
+from arboleda.virtual.vda5050.loopback import Joined
 from arboleda.virtual.vda5050.machine import VirtualAgv
 
 EXAMPLE = Path(__file__).parents[3] / "examples/agv/plant.yaml"

@@ -16,8 +16,8 @@ from arboleda.model.messages import Heartbeat, Reason, Report, TaskState, Verb
 from arboleda.model.plant_model import Evidence, MotionState
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.wire.bridge import Bridge, Message
-from arboleda.wire.fit import objections
 from arboleda.wire.hop import FromPlant
+from arboleda.wire.mqtt_limits import objections
 from arboleda.wire.payloads import Telemetry, encode
 from arboleda.wire.rejections import Rejection
 from arboleda.wire.transport import Connection, Delivery, Publication

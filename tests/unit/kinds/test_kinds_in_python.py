@@ -14,7 +14,7 @@ from arboleda.kinds.shipped import SHIPPED
 from arboleda.model.facts import Value
 from arboleda.model.plant_model import Evidence, Link
 from arboleda.sim.machine import MachineBody
-from arboleda.wire import fit
+from arboleda.wire import mqtt_limits
 from arboleda.wire.payloads import OrderGoal
 
 
@@ -217,7 +217,7 @@ def test_a_kind_that_cannot_be_says_why(mistake: tuple[Callable[[], object], str
 def test_a_kind_that_comes_with_it_is_one_like_others(shipped: WrittenKind) -> None:
     made = shipped.of(None if shipped.settings is None else shipped.settings())
     assert made.name == shipped.name and shipped.about
-    assert fit.objections(made) == [], "a board can be told and can say all that it has"
+    assert mqtt_limits.objections(made) == [], "a board can be told and can say all that it has"
 
 
 def test_a_gripper_closes_with_a_width_and_a_force_and_lets_go() -> None:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from arboleda.app import config
 from arboleda.app.cli import cli, main
-from arboleda.dashboard.story import Story
+from arboleda.dashboard.page_state import Story
 from arboleda.kinds.declared import Device
 from arboleda.model.errors import ConfigError, PayloadError
 from arboleda.model.messages import Report

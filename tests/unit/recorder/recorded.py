@@ -12,8 +12,8 @@ import pytest
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder import recorder as thread
-from arboleda.recorder.beginning import Beginning, Limits, PlantFiles
 from arboleda.recorder.files import FOLDER, parts_in
+from arboleda.recorder.preamble import Beginning, Limits, PlantFiles
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.ros_log import RosLog
 from arboleda.recorder.writing import Writing

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from arboleda.model.messages import Verb
-from arboleda.recorder import followed, reader, recorder
+from arboleda.recorder import cell_history, reader, recorder
 from arboleda.recorder.views import Views
 
 from .recorded import Site
@@ -16,7 +16,7 @@ from .recorded import Site
 @pytest.fixture
 def views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Views:
     """Of a cell that was held for a minute and a half in the middle of its task, and others that waited."""
-    monkeypatch.setattr(followed, "AT_ONCE_NS", 5 * 10**9)
+    monkeypatch.setattr(cell_history, "AT_ONCE_NS", 5 * 10**9)
     monkeypatch.setattr(
         recorder, "SHARE", 1e9
     )  # time runs faster here than where snapshots are bounded by it
@@ -31,9 +31,9 @@ def views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Views:
 
 
 def test_every_change_is_found_and_in_order(views: Views, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = [*followed.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
-    monkeypatch.setattr(followed, "AT_ONCE_NS", 10**15)
-    every = [*followed.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
+    found = [*cell_history.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
+    monkeypatch.setattr(cell_history, "AT_ONCE_NS", 10**15)
+    every = [*cell_history.followed(views, "sis_a", views.began_ns - 1, views.ended_ns)]
     assert found == every
     times = [looked.unix_ns for looked in found]
     assert times == sorted(times) and len(times) > 12
@@ -50,7 +50,7 @@ def test_where_nothing_happens_nothing_is_read(views: Views, monkeypatch: pytest
 
     monkeypatch.setattr(views, "told", counted)
     after_ns = views.began_ns + 20 * 10**9
-    assert [*followed.followed(views, "sis_a", after_ns, after_ns + 70 * 10**9)] == []
+    assert [*cell_history.followed(views, "sis_a", after_ns, after_ns + 70 * 10**9)] == []
     assert read == []
-    assert [*followed.followed(views, "sis_a", after_ns, views.ended_ns)] != []
+    assert [*cell_history.followed(views, "sis_a", after_ns, views.ended_ns)] != []
     assert 0 < sum(read) < 45 * 10**9

@@ -13,9 +13,9 @@ import pytest
 from mcap.reader import make_reader
 
 from arboleda.recorder import files, reader, recorder, writing
-from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.files import PartFile, parts_in, prune
+from arboleda.recorder.preamble import Limits
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Step
 from arboleda.recorder.writing import Writing

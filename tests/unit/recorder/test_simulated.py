@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from arboleda.recorder import reader
-from arboleda.recorder.beginning import Limits
 from arboleda.recorder.files import parts_in
+from arboleda.recorder.preamble import Limits
 from arboleda.recorder.replay import plant_of, replayed
 from arboleda.recorder.simulated import SimulatedRecorder
 from arboleda.recorder.tape import SECOND

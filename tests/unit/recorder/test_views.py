@@ -11,8 +11,8 @@ import pytest
 from arboleda.model.messages import Verb
 from arboleda.model.sentence import Sentence
 from arboleda.recorder import channels, copying, files, reader, recorder, writing
-from arboleda.recorder.beginning import Limits
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import Limits
 from arboleda.recorder.recorder import Recorder
 from arboleda.recorder.steps import TOPIC
 from arboleda.recorder.view_log import DIGEST_S

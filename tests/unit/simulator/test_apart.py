@@ -6,8 +6,8 @@ import pytest
 
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import MotionState
-from arboleda.simulator.apart import TwoTopics
 from arboleda.simulator.chance import Dice
+from arboleda.simulator.split_reports import TwoTopics
 
 
 def _comes(topics: TwoTopics, at: float) -> float:

@@ -13,9 +13,9 @@ from arboleda.simulator.chance import Dice
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import KINDS, OF_CRASHES, Fault
 from arboleda.simulator.faults.crashes import IN_ONE_PROCESS
+from arboleda.simulator.judged_world import Watched
 from arboleda.simulator.people import Customers
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.watched import Watched
 from arboleda.simulator.world import PLANT, Fuse, Side, World
 from arboleda.testing import shipped
 

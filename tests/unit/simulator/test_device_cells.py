@@ -7,8 +7,8 @@ from arboleda.model.messages import OperatorRequest, Verb
 from arboleda.recipes import Kit, parallel, recipe, work
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.general import GeneralTruth
+from arboleda.simulator.judged_world import Watched
 from arboleda.simulator.people import Attendant
-from arboleda.simulator.watched import Watched
 from arboleda.simulator.world import BRIDGE, World
 
 from ..kinds.lab import bake

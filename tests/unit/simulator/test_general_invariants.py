@@ -27,8 +27,8 @@ from arboleda.simulator.faults import OF_DEVICES as FAULTS_OF_DEVICES
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.general import GENERAL, OF_DEVICES
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.judged_world import Broken, Watched
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.watched import Broken, Watched
 from arboleda.trees.context import Context
 from arboleda.wire.bridge import Bridge
 from arboleda.wire.payloads import OrderGoal, encode

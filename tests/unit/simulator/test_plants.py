@@ -11,8 +11,8 @@ import pytest
 
 from arboleda.app.plant_file import shapes
 from arboleda.app.plant_file.robot_models import arm_models, mobile_models
-from arboleda.app.simulate.drawn import Drawn, loaded
 from arboleda.app.simulate.plants import Plant
+from arboleda.app.simulate.random_plants import Drawn, loaded
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.simulator.plants import NOT_DRAWN, draw, smaller

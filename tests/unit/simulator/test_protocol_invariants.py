@@ -23,10 +23,10 @@ from arboleda.model.sentence import Phrase
 from arboleda.sim.board import Board
 from arboleda.sim.freshness import Freshness
 from arboleda.sim.receipts import Receipts
-from arboleda.simulator.invariants.books import BOOKS
 from arboleda.simulator.invariants.commands import COMMANDS
 from arboleda.simulator.invariants.invariant import Judges, Look
 from arboleda.simulator.invariants.liveness import LIVENESS
+from arboleda.simulator.invariants.memory_bounds import BOOKS
 from arboleda.simulator.invariants.tasks import TASKS
 from arboleda.simulator.invariants.wire import WIRE
 from arboleda.simulator.record import Record

@@ -13,10 +13,10 @@ from arboleda.model.messages import OperatorAnswer, TaskChanged, TaskState, Verb
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import NOT_WITH_STANDBY, OF_HOSTS, Fault
-from arboleda.simulator.hosts.former import Said
+from arboleda.simulator.hosts.former_leader import Said
 from arboleda.simulator.hosts.hosts import STARTS_S, Hosts
+from arboleda.simulator.judged_world import Broken, Watched
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.watched import Broken, Watched
 from arboleda.simulator.world import PLANT
 from arboleda.testing import shipped
 from arboleda.wire.payloads import StopGoal

@@ -21,8 +21,8 @@ from arboleda.simulator.general import GENERAL
 from arboleda.simulator.invariants import INVARIANTS
 from arboleda.simulator.invariants.starts import EVERYWHERE, STARTS
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.judged_world import Broken
 from arboleda.simulator.run import Simulation
-from arboleda.simulator.watched import Broken
 from arboleda.testing import shipped
 from arboleda.trees.walk_back import WalkBack
 

@@ -9,7 +9,7 @@ import pytest
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.run import Result, Simulation
-from arboleda.simulator.told import script_from
+from arboleda.simulator.scripted_people import script_from
 from arboleda.testing import shipped
 
 MODEL = shipped("sis_a")

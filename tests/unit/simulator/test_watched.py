@@ -9,7 +9,7 @@ import pytest
 from arboleda.model.messages import SystemStart
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants.invariant import Look, When, invariant
-from arboleda.simulator.watched import Broken, Watched
+from arboleda.simulator.judged_world import Broken, Watched
 from arboleda.testing import shipped
 
 

@@ -12,7 +12,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.model.sentence import in_json
 from arboleda.recipes import Kit, Number, recipe, work
 from arboleda.testing import Rig, shipped
-from arboleda.views import diagnostics, forms, places, twin_view, view
+from arboleda.views import diagnostics, forms, geometry, twin_view, view
 
 from ..kinds.lab import Bench, model
 
@@ -117,7 +117,7 @@ def test_diagnostics_have_each_fact(bench: Bench) -> None:
 
 
 def test_nothing_is_drawn_of_what_offers_no_drawing(bench: Bench) -> None:
-    assert places.places(bench.plant.model) == {"robots": [], "cells": [], "zones": []}
+    assert geometry.places(bench.plant.model) == {"robots": [], "cells": [], "zones": []}
     assert twin_view.positions(bench.plant)["parts"] == {"bench": None}
 
 

@@ -11,7 +11,7 @@ from arboleda.app.config import load
 from arboleda.drivers import MotionState, Report, Stop, StopMode
 from arboleda.drivers.opcua.machine import OpcUaDevice, Read
 from arboleda.drivers.opcua.settings import Settings
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.kinds.declared import Device
 from arboleda.model.commands import Command
 from arboleda.virtual.faults import Faults

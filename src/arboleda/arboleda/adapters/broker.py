@@ -24,7 +24,7 @@ from .mqtt_broker.client import Client
 from .mqtt_broker.packets import Answer, connack
 from .mqtt_broker.router import Router
 from .mqtt_broker.sessions import Sessions
-from .seldom import Seldom
+from .rate_limit import Seldom
 
 if TYPE_CHECKING:  # it takes a while to load, and only who speaks TLS needs it
     import ssl

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver, lost
 from arboleda.drivers.modbus.machine import Block, ModbusDevice, Put, Raw
 from arboleda.drivers.modbus.settings import Settings
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.drivers.port import DriverError
 
 if TYPE_CHECKING:

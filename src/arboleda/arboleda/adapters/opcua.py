@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, Stop, driver, lost
 from arboleda.drivers.opcua.machine import Call, OpcUaDevice, Read
 from arboleda.drivers.opcua.settings import Settings
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.drivers.port import DriverError
 
 from .opcua_login import Login, login

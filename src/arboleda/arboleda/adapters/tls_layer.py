@@ -15,7 +15,7 @@ from typing import Any
 
 from arboleda.model.outside import plain
 
-from .seldom import Seldom
+from .rate_limit import Seldom
 
 LOG = logging.getLogger(__name__)
 HANDSHAKE = 0x16  # how TLS begins

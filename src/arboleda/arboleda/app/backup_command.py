@@ -11,8 +11,8 @@ from arboleda.adapters import backups
 from arboleda.model.errors import StartError
 
 from . import config
+from .plant_options import PlantFile, StateFolder, folder, located, name_of, store_of
 from .state import STORE, StateDir, find_running, holder
-from .where import PlantFile, StateFolder, folder, located, name_of, store_of
 
 MEMORY = "Tasks, stop latches, what effectors hold, quarantined zones and the operators' journal are in it."
 COPY = "Copy the plant's memory to a file, while the plant runs or not."

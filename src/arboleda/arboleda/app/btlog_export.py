@@ -10,7 +10,7 @@ from typing import Any
 from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED, TaskState
 from arboleda.model.outside import plain
-from arboleda.recorder.followed import followed
+from arboleda.recorder.cell_history import followed
 from arboleda.recorder.reader import Record
 from arboleda.recorder.views import Views
 from arboleda.viewers.btlog import Look, btlog

@@ -28,12 +28,12 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import OperatorAnswer, TaskChanged, Verb
 from arboleda.model.plant_model import Link, MqttVersion, PlantModel
 from arboleda.model.sentence import OWN, Sentence, from_data
-from arboleda.recorder.beginning import Beginning, Recording
+from arboleda.recorder.preamble import Beginning, Recording
 from arboleda.views.oee import Oee
 
 from .alarm_options import AlarmOptions
 from .demo import Demo
-from .led import way_to
+from .leader import way_to
 from .log_queue import Output
 from .parts.alarms import alarms_part
 from .parts.bridge import BridgePart

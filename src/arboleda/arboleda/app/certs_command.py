@@ -24,8 +24,8 @@ from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Link, PlantModel
 
 from . import config, invocation, mosquitto_files
+from .plant_options import PlantFile
 from .user_file import read_bytes
-from .where import PlantFile
 
 if TYPE_CHECKING:  # most installs are without its library
     from arboleda.adapters.authority import Authority, Pair

@@ -25,8 +25,8 @@ from arboleda.model.errors import ArboledaError, ConfigError, QueueFull, StartEr
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.recorder.beginning import Recording
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import Recording
 
 from . import (
     backup_command,
@@ -58,13 +58,13 @@ from .conformance import command as conformance
 from .firmware_config import command as firmware_config
 from .line import Refused, Silent
 from .overview import Overview
+from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client, folder
 from .rate import check_rate
 from .screen import table
 from .simulate import command as simulate
 from .state import find_running, holder
 from .urdf import robot_urdf
 from .web_options import WebOptions
-from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client, folder
 
 if TYPE_CHECKING:
     from arboleda.adapters.server_tls import ServerTls

@@ -15,10 +15,10 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.messages import ENDED, Outcome, TaskState, Verb
 from arboleda.model.outside import plain
 
-from . import places
-from .elsewhere import Elsewhere, Nobody
-from .led import of_standby
+from . import endpoints
+from .leader import of_standby
 from .line import TIMEOUT_S, Answer, FarLine, Line, Silent
+from .remote_plant import Elsewhere, Nobody
 from .state import Running, find_running, running_plants
 
 LONGEST = 500  # characters of a line
@@ -188,7 +188,9 @@ class PlantClient:
         running = find_running(self._state)
         if running is None or running.port is None:
             return None
-        return Line(places.here(self._state, running), f"The plant on {self._state} (process {running.pid})")
+        return Line(
+            endpoints.here(self._state, running), f"The plant on {self._state} (process {running.pid})"
+        )
 
     def _beyond(self, answer: Answer) -> FarLine:
         """To the process that leads the plant, as one that stands by says it."""

@@ -17,7 +17,7 @@ from arboleda.model.recipe import Recipe
 from arboleda.recipes.storage import RECIPES
 from arboleda.recipes.storage_cell import ARM, MOBILE, StorageCell
 from arboleda.recipes.storage_cell import Path as Route
-from arboleda.recorder.beginning import Limits, PlantFiles, Recording
+from arboleda.recorder.preamble import Limits, PlantFiles, Recording
 
 from . import user_file
 from .plant_file import drivers, own_kinds, own_recipes, rack
@@ -29,6 +29,7 @@ from .plant_file.names import check_names
 from .plant_file.paths import check_nodes_show, paths
 from .plant_file.pickups import default_pickup, pickups
 from .plant_file.poses import PoseReader
+from .plant_file.python_uses import Used, Watch
 from .plant_file.recipe_check import MOST, Trial, combinations
 from .plant_file.robot_models import ArmModel
 from .plant_file.robots import arm, arm_model, check_absence, mobile
@@ -41,7 +42,6 @@ from .plant_file.shapes import (
     RetryShape,
     TimingShape,
 )
-from .plant_file.used import Used, Watch
 from .plant_file.yaml_marks import LARGEST
 from .plant_file.zones import with_zones, with_zones_of_targets, zones
 from .recipe_trial import Verdict, brought

@@ -6,7 +6,7 @@ import time
 
 from arboleda.model.errors import ArboledaError, StartError
 
-from .where import PlantFile, StateFolder, StoreAddress, database
+from .plant_options import PlantFile, StateFolder, StoreAddress, database
 
 PATIENCE_S = 30.0
 LOOK_S = 0.05

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from arboleda.adapters.web.asked import PLANT
 from arboleda.adapters.web.limits import BEAT_S
 from arboleda.adapters.web.plant_side import COMMAND_LINE
+from arboleda.adapters.web.request_head import PLANT
 from arboleda.model.errors import ArboledaError, QueueFull, TextError
 from arboleda.model.outside import plain, said_by
 
-from .places import Place
+from .endpoints import Place
 
 if TYPE_CHECKING:  # it takes a while to load, and only who asks a plant needs it
     import httpx

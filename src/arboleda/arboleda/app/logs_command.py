@@ -16,10 +16,10 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.outside import among, plain
 from arboleda.recorder.errors import NoRecord
 
+from .plant_options import PlantFile, StateFolder, folder
 from .record_command import last_of, moment
 from .replay_command import sentence_of
 from .state import find_running
-from .where import PlantFile, StateFolder, folder
 
 LOOK_S = 0.5
 STEPS, EVENTS = "/arboleda/steps", "/arboleda/events"  # their channels: to import them takes a while

@@ -13,7 +13,7 @@ from arboleda.bt_xml.recipe import TreeRecipe
 from arboleda.model.plant_model import PlantModel
 
 from . import config
-from .where import PlantFile
+from .plant_options import PlantFile
 
 CellName = Annotated[str | None, typer.Option("--cell", help="Those of one cell. [default: of all]")]
 

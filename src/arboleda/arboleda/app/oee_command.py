@@ -16,9 +16,9 @@ from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.model.outside import plain
 from arboleda.views.oee import Oee
 
-from . import where
+from . import plant_options
+from .plant_options import PlantFile, StateFolder, StoreAddress
 from .tasks_command import moment
-from .where import PlantFile, StateFolder, StoreAddress
 
 HEADINGS = ("cell", "OEE", "availability", "performance", "quality", "planned", "done", "failed")
 
@@ -42,7 +42,7 @@ def oee(
     Exit status: 0 printed, 1 the plant's memory cannot be read, 2 bad input.
     """
     query = OeeQuery(cell=cell, since_s=moment(since), until_s=moment(until))
-    rows = where.history(plant, state, store).oee(query)
+    rows = plant_options.history(plant, state, store).oee(query)
     if as_json:
         for row in rows:
             print(json.dumps(row.data(), ensure_ascii=False))

@@ -22,7 +22,7 @@ from .plant_file import drivers, own_kinds, own_recipes
 from .plant_file.devices import CELLS, is_of_devices
 from .plant_file.document import Document
 from .plant_file.problems import Kept
-from .plant_file.used import Spot, Used, unwatched
+from .plant_file.python_uses import Spot, Used, unwatched
 
 LONGEST_S = 10.0  # for the import of a file, and for each build of a recipe
 STUCK_S = 60.0  # after which not even the watch in the other process has done its work

@@ -19,7 +19,7 @@ from arboleda.model.outside import plain
 from arboleda.recorder.errors import NoRecord
 
 from .overview import WholeSentences
-from .where import PlantFile, StateFolder, folder
+from .plant_options import PlantFile, StateFolder, folder
 
 LONGEST = 300  # characters of a line
 EXIT = "Exit status: 0 done, 2 no record, or one that cannot be read."

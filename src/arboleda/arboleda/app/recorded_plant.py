@@ -8,8 +8,8 @@ from tempfile import TemporaryDirectory
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.recorder.beginning import Beginning, PlantFiles
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import Beginning, PlantFiles
 
 from . import config
 from .rate import at_rate

@@ -17,13 +17,13 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import ENDED
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.beginning import Beginning
 from arboleda.recorder.errors import NoRecord
 from arboleda.recorder.plain_data import sentence_from
+from arboleda.recorder.preamble import Beginning
 
+from .plant_options import StateFolder
 from .record_command import File, changes, last_of, moment
 from .recorded_plant import model_of
-from .where import StateFolder
 
 if TYPE_CHECKING:
     from arboleda.recorder.reader import Record

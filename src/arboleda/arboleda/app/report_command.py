@@ -11,7 +11,7 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.recorder.errors import NoRecord
 
-from .where import PlantFile, StateFolder, folder
+from .plant_options import PlantFile, StateFolder, folder
 
 LONGEST = 300  # characters of a line
 WHAT = "Write why a task failed: one HTML file, without network, in English and Spanish."
@@ -41,8 +41,8 @@ def report(
 ) -> None:
     from arboleda.recorder.files import FOLDER
 
-    from .report.making import made
     from .report.reading import read
+    from .report.report_builder import made
 
     where = folder(plant, state) / FOLDER if record is None else record.parent
     found = read(task, record, where)

@@ -19,9 +19,9 @@ from arboleda.model.outside import plain
 
 from . import config
 from .overview import WholeSentences
+from .plant_options import PlantFile, StateFolder
 from .service_unit import unit
 from .state import default_state
-from .where import PlantFile, StateFolder
 
 TIMEOUT_S = 100.0  # longer than a unit may take to end
 HELP = "Have systemd run the plant: from the start of the machine on, and again where it breaks down."

@@ -17,7 +17,7 @@ from .web_options import WebOptions
 if TYPE_CHECKING:  # they take a while to load, and only who shows a page needs them
     from arboleda.adapters.server_tls import ServerTls
 
-    from .places import Find
+    from .endpoints import Find
 
 Addresses = Annotated[
     list[str] | None,
@@ -120,15 +120,15 @@ def _tls(certificate: Path | None, key: Path | None) -> ServerTls | None:
 
 def _find(addresses: list[str], store: str, file: Path | None) -> Find:
     """Where the plants are, as the options say it; StartError."""
-    from . import places
+    from . import endpoints
 
-    known = {} if file is None else places.tokens_of(file)
-    found = [places.named(addresses)] if addresses else []
+    known = {} if file is None else endpoints.tokens_of(file)
+    found = [endpoints.named(addresses)] if addresses else []
     if store:
         refuse_without_library()
         from arboleda.adapters.postgres.leaders import Leaders
 
-        found.append(places.of_database(Leaders(store)))
+        found.append(endpoints.of_database(Leaders(store)))
     if not found:
-        found.append(places.of_this_machine)
-    return places.with_tokens(lambda: [place for find in found for place in find()], known)
+        found.append(endpoints.of_this_machine)
+    return endpoints.with_tokens(lambda: [place for find in found for place in find()], known)

@@ -19,7 +19,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.wire.status import OK, WARN
 
 from .build import App, Options, build
-from .led import Led, of_leader
+from .leader import Led, of_leader
 from .parts.waiting_room import WaitingRoom
 from .state import StateDir, default_state
 from .waiting import heed, interruptible

@@ -28,9 +28,9 @@ from arboleda.adapters.task_rows import (
 from arboleda.model.messages import TaskState
 from arboleda.model.outside import plain
 
-from . import where
+from . import plant_options
+from .plant_options import PlantFile, StateFolder, StoreAddress
 from .screen import STYLES, heard
-from .where import PlantFile, StateFolder, StoreAddress
 
 AGO = re.compile(r"(\d{1,6})\s*([smhdw])")
 SECONDS = {"s": 1.0, "m": 60.0, "h": 3600.0, "d": 86_400.0, "w": 604_800.0}
@@ -101,7 +101,7 @@ def tasks(
         until_s=moment(until),
         limit=limit,
     )
-    history = where.history(plant, state, store)
+    history = plant_options.history(plant, state, store)
     show = _json if as_json else _csv if as_csv else _lines if follow else _table
     if not follow:
         show(list(reversed(history.select(query))), first=True)

@@ -10,8 +10,8 @@ from arboleda.adapters.web.auth import Role
 from arboleda.model.errors import StartError
 
 from . import tokens
+from .plant_options import PlantFile, StateFolder, located
 from .state import LOCK
-from .where import PlantFile, StateFolder, located
 
 New = Annotated[bool, typer.Option("--new", help="Make a new one first; the old one is void at once.")]
 

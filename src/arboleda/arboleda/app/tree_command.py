@@ -19,7 +19,7 @@ from arboleda.views import tree_view
 from . import config, tree_file
 from .client import PlantClient
 from .draw import Format, draw
-from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client
+from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 Drawn = Annotated[
     Format, typer.Option("--format", help="How to draw it; svg and png need no Graphviz, xml is for editors.")

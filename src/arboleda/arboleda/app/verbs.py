@@ -14,7 +14,7 @@ from arboleda.views.verb_words import ABOUT, PLANT, VerbWords
 
 from .client import LONGEST, PlantClient
 from .line import Refused
-from .where import PlantFile, StateFolder, StoreAddress, TokensFile, client
+from .plant_options import PlantFile, StateFolder, StoreAddress, TokensFile, client
 
 STATUS = "Exit status: 0 done, 1 no plant, 2 refused, 3 failed, 4 still under way."
 FAILED, UNENDED = 3, 4

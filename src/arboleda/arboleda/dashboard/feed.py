@@ -14,8 +14,8 @@ from arboleda.adapters.task_rows import TaskRow
 
 from .faces import Face
 from .frames import Frames, Viewer
+from .page_state import Story
 from .plant_side import PlantSide
-from .story import Story
 
 FRAMES_HZ = 10.0
 BEAT_S = 1.0  # after so long without news the plant is asked, and pages are told that it answers

@@ -20,8 +20,8 @@ from .faces import history, oee
 from .feed import Feed
 from .frames import Background
 from .past import page as past_page
+from .past.frame_queue import BESIDE_S, Turns
 from .past.stills import Stills
-from .past.turns import BESIDE_S, Turns
 from .plant_side import PlantSide
 from .shell import Parts, language_of, role_shown
 from .twin import pane, window

@@ -15,9 +15,9 @@ from arboleda.adapters.web.api import refuse
 from arboleda.model.errors import StartError
 
 from . import trees
+from .page_budget import Unopened
 from .plant_side import Layout
 from .tags import markup, tag
-from .unopened import Unopened
 from .wording import LANGUAGES, Words
 
 RECONNECT_S = 30.0

@@ -13,8 +13,8 @@ from mcap.writer import CompressionType, Writer
 
 from arboleda import __version__
 
-from .beginning import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
 from .channels import OURS, Channel, register
+from .preamble import DAY_S, FORMAT, MEGABYTE, Beginning, Limits
 
 FOLDER = "record"
 NAME = re.compile(r"([0-9]{1,10})-([0-9]{4,9})\.mcap")

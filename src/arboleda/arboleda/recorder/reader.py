@@ -31,9 +31,9 @@ from mcap.writer import MCAP0_MAGIC as MAGIC
 
 from arboleda.model.outside import quoted
 
-from .beginning import FORMAT, Beginning, beginning_from
 from .errors import NoRecord
 from .files import BEGINNING, METADATA, OF_PLANT, Part, part_at, parts_in
+from .preamble import FORMAT, Beginning, beginning_from
 from .steps import TOPIC, Recorded, from_json
 
 LARGEST = 64 * 1024 * 1024  # bytes of one piece of a file, also once it is unpacked; ours are much smaller

@@ -9,8 +9,8 @@ from typing import Any
 from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 
-from .beginning import Beginning
 from .plain_data import TYPE
+from .preamble import Beginning
 from .state import state_of
 from .steps import Recorded, hash_of, outcome
 

@@ -10,7 +10,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.views import twin_view, view
 
-from .beginning import Limits, PlantFiles
+from .preamble import Limits, PlantFiles
 from .ros_log import RosLog
 from .steps import Step
 from .tape import SECOND, ToldPlant

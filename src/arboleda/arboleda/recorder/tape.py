@@ -10,7 +10,7 @@ from arboleda.core.plant import Plant
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import PlantModel
 
-from .beginning import NO_FILES, Beginning, PlantFiles
+from .preamble import NO_FILES, Beginning, PlantFiles
 from .state import state_of
 from .steps import Recorded, Step, hash_of, outcome
 

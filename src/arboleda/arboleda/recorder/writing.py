@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from .beginning import Beginning, Limits
 from .channels import OURS, Channel
 from .files import DIGEST, PartFile, part_bytes, part_path, prune
+from .preamble import Beginning, Limits
 from .steps import TOPIC, Step, as_json
 from .view_log import Message, Seen, ViewLog
 

@@ -24,17 +24,17 @@ from .commands import goal as goal_of
 from .invariants import bridge, commands, liveness, motion, tasks, verbs, wire
 from .invariants.advice import ADVICE
 from .invariants.beliefs import BELIEFS
-from .invariants.books import BOOKS
 from .invariants.choices import CHOICES
 from .invariants.done import tiny_moves_succeed
 from .invariants.invariant import Invariant, Look, When, invariant
 from .invariants.memory import MEMORY
+from .invariants.memory_bounds import BOOKS
 from .invariants.oee import OEE
 from .invariants.proofs import PROOFS
 from .invariants.starts import EVERYWHERE as OVER_ALL_STARTS
 from .invariants.stop import STOP
 from .invariants.zones import ZONES
-from .truth.books import Booked
+from .truth.ended_commands import Booked
 from .truth.robot import RobotTruth
 from .truth.robots import RobotsTruth
 from .truth.stops import is_order_of, robots_of

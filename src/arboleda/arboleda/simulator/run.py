@@ -11,12 +11,12 @@ from arboleda.core.plant import Plant
 from arboleda.model.plant_model import PlantModel
 from arboleda.model.recipe import Builders
 
-from .apart import come_apart
 from .faults import Fault
 from .invariants import Invariant
+from .judged_world import Broken, Watched
 from .people import Attendant, Customers, answer_anything
-from .told import Script, Told
-from .watched import Broken, Watched
+from .scripted_people import Script, Told
+from .split_reports import come_apart
 
 MINUTE_S = 60.0
 PATIENCE = 20  # minutes of faults so dense that nothing gets done, and one more for each cycle that is wanted

@@ -14,14 +14,14 @@ from arboleda.model.recipe import Build
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.invariants import Invariant
 from arboleda.simulator.judged import judged_by
+from arboleda.simulator.judged_world import Broken, Watched
 from arboleda.simulator.levels import LEVELS
 from arboleda.simulator.people import Attendant
 from arboleda.simulator.run import NO_EXCEPTION
-from arboleda.simulator.watched import Broken, Watched
 from arboleda.simulator.world import World
 from arboleda.views import view
 
-from . import asked, looks, seeds, wording
+from . import arguments, looks, seeds, wording
 from .desk import Desk, Handle
 from .words import Misuse, known
 
@@ -49,7 +49,7 @@ class Sim:
     def plant(self, plant: PlantModel | Path | str | None = None) -> PlantModel:
         """Choose the plant by its file or as a model; None, and no choice at all, is the shipped plant."""
         self._before_start("plant")
-        self._model = asked.plant(plant, self._folder)
+        self._model = arguments.plant(plant, self._folder)
         return self._model
 
     def recipe(self, name: str, build: Build) -> None:
@@ -93,7 +93,7 @@ class Sim:
         """
         if at is not None and at < 0:
             raise Misuse(f"at is how many s from now a fault begins, 0 or more; is {at:g}")
-        fault = asked.fault(
+        fault = arguments.fault(
             self.world.model,
             kind,
             target,
@@ -109,7 +109,7 @@ class Sim:
     def faults(self, faults: Iterable[Fault]) -> None:
         """Have faults go wrong at their own times, in s since the start of the simulation."""
         for fault in faults:
-            asked.must_fit(fault, self.world.model)
+            arguments.must_fit(fault, self.world.model)
             self._watched.expect(fault)
 
     def run(
@@ -177,7 +177,7 @@ class Sim:
 
     def robot(self, name: str) -> looks.RobotLook:
         """A robot, by its name or its name on MQTT, as it is now and as the plant believes it to be."""
-        return looks.robot(self.world, asked.robot(name, self.world.model))
+        return looks.robot(self.world, arguments.robot(name, self.world.model))
 
     def timeline(self) -> list[str]:
         """What happened, a line each with its time in s, oldest first."""
@@ -202,7 +202,7 @@ class Sim:
 
     @property
     def _chosen(self) -> PlantModel:
-        return self._model or asked.plant(None, None)
+        return self._model or arguments.plant(None, None)
 
     @cached_property
     def _desk(self) -> Desk:

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from arboleda.app.simulate.words import told
 from arboleda.model.counting import counted
 from arboleda.simulator.invariants import Invariant
+from arboleda.simulator.judged_world import Broken, Watched
 from arboleda.simulator.run import Result
-from arboleda.simulator.watched import Broken, Watched
 from arboleda.views import view
 
 from .desk import Handle

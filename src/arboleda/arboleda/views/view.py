@@ -21,7 +21,7 @@ from arboleda.model.sentence import BOTH, Sentence
 from arboleda.model.task import Task
 from arboleda.trees.tree_run import step_of
 
-from . import forms, places, tree_view, twin_view
+from . import forms, geometry, tree_view, twin_view
 
 OF_ROBOTS = (Verb.CLEAR, Verb.RELEASE, Verb.HOME)
 OF_CELLS = (
@@ -84,7 +84,7 @@ def layout(model: PlantModel) -> dict[str, Any]:
         "zones": list(model.zones),
         "no_stop": [robot.name for robot in model.robots.values() if not robot.has_stop],
         "cells": [_cell_layout(cell) for cell in model.cells],
-        "places": places.places(model),
+        "places": geometry.places(model),
     }
 
 

@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from arboleda.model.messages import TaskChanged
 
-from ..asking import Asker
+from ..plant_queries import Asker
 from .execute_task import ExecuteTaskAction
 from .services import Services
 from .topics import Speak, Topics

@@ -13,7 +13,7 @@ from arboleda.model.messages import TaskState, Verb
 from arboleda.model.outside import quoted
 from arboleda.views import view
 
-from ..asking import Asker, NoAnswer
+from ..plant_queries import Asker, NoAnswer
 from . import values
 
 LOG = logging.getLogger("arboleda.ros")

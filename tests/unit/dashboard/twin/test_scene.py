@@ -14,7 +14,7 @@ from arboleda.dashboard.twin.hull import hull
 from arboleda.dashboard.twin.scene import MARGIN, scene
 from arboleda.model.plant_model import Cell, Crossing, PlantModel, Pose, Workspace
 from arboleda.testing import shipped
-from arboleda.views.places import places
+from arboleda.views.geometry import places
 
 
 def zoned() -> PlantModel:

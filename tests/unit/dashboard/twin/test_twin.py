@@ -15,7 +15,7 @@ from arboleda.model.messages import Report, TaskRequest, Verb
 from arboleda.model.plant_model import Cell, Evidence, MotionState, PlantModel
 from arboleda.testing import Rig, shipped
 from arboleda.views import twin_view
-from arboleda.views.places import places
+from arboleda.views.geometry import places
 
 from ...kinds import lab
 

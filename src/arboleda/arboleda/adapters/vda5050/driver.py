@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from arboleda.adapters.broker_login import address, login
 from arboleda.adapters.device_feed import taking
 from arboleda.adapters.mqtt import MqttClient, NotConnected
-from arboleda.adapters.seldom import Seldom
+from arboleda.adapters.rate_limit import Seldom
 from arboleda.drivers import Clock, Command, Hear, NotSent, Report, Robot, driver
 from arboleda.drivers.vda5050.machine import Message, Publish, Vehicle
 from arboleda.drivers.vda5050.settings import Settings

@@ -25,10 +25,10 @@ from arboleda.model.messages import Outcome, Verb
 from arboleda.model.outside import plain, quoted
 
 from ..task_rows import COMMAND, HTTP, TaskRow, answers_of, choice_of, table, unchecked_of
-from . import limits, listing, login, metrics, stream
+from . import limits, login, metrics, openapi, stream
 from .auth import SUBMIT, Forbidden, require
 from .limits import LATER_S
-from .nothing_else import NothingElse
+from .not_found import NothingElse
 from .plain_json import PlainJson, explained
 from .plant_side import COMMAND_LINE, PlantSide
 from .schema import (
@@ -101,7 +101,7 @@ def make_app(
     app.add_exception_handler(ArboledaError, refuse)
     app.add_exception_handler(HTTPException, refuse)
     app.add_exception_handler(Exception, own_up)
-    routers = [routes(side), stream.routes(side, streams), login.routes(), listing.routes(app)]
+    routers = [routes(side), stream.routes(side, streams), login.routes(), openapi.routes(app)]
     routers += [metrics.routes(counts)] if counts is not None else []
     for router in routers:
         app.include_router(router, responses=OTHERS)

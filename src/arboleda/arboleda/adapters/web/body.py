@@ -7,8 +7,8 @@ import asyncio
 from starlette.types import Message, Receive
 
 from . import limits
-from .asked import Asked
-from .turned import Gone, Turned
+from .http_errors import Gone, Turned
+from .request_head import Asked
 
 
 async def whole_body(asked: Asked, receive: Receive) -> Receive:

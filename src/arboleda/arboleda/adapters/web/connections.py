@@ -12,8 +12,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from .admission import Admission
-from .asked import READS
 from .auth import LOCAL
+from .request_head import READS
 
 REQUEST_S = 10.0  # to send the head of a request
 UNREAD_S = 20.0  # a client that reads nothing of what it asked for

@@ -10,15 +10,15 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from arboleda.model.outside import quoted
 
 from . import limits
-from .asked import LOGIN, PLANT, Asked
 from .auth import LOCAL, Door, Login
 from .body import whole_body
 from .headers import with_headers
+from .http_errors import Gone, Turned
 from .limits import Buckets
 from .names import Names
-from .one_by_one import OneByOne
+from .request_head import LOGIN, PLANT, Asked
+from .serial_requests import OneByOne
 from .sockets import Sockets
-from .turned import Gone, Turned
 
 IN_URL = {"token", "access_token", "bearer", "authorization"}
 NOT_OURS = "Only tools and pages of this plant may use this address."

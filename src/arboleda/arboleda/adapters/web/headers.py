@@ -5,7 +5,7 @@ from __future__ import annotations
 from starlette.datastructures import MutableHeaders
 from starlette.types import Message, Scope, Send
 
-from .asked import LOGIN, LOGOUT, is_api
+from .request_head import LOGIN, LOGOUT, is_api
 
 # NiceGUI's pages carry scripts in them, and Vue compiles templates in the browser.
 PAGE_POLICY = "; ".join(

@@ -8,9 +8,9 @@ from urllib.parse import parse_qsl
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
-from .asked import LOGIN, LOGOUT, Asked, cookie_name
 from .auth import SESSION_S
 from .plain_page import page
+from .request_head import LOGIN, LOGOUT, Asked, cookie_name
 
 WORDS = {
     "en": {

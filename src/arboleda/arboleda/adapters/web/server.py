@@ -16,7 +16,7 @@ from starlette.types import ASGIApp
 from arboleda.model.errors import StartError
 
 from .. import descriptors
-from ..seldom import Seldom
+from ..rate_limit import Seldom
 from . import limits
 from .admission import Admission
 from .connections import HEAD_BYTES, Connection, Socket

@@ -10,8 +10,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from . import limits
 from .auth import Login
+from .http_errors import Turned
 from .limits import Buckets
-from .turned import Turned
 
 LOGGED_OUT: Message = {"type": "websocket.close", "code": 1008, "reason": "logged out"}
 

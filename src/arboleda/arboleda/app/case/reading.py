@@ -15,7 +15,7 @@ from arboleda.recorder.reader import Record
 from arboleda.recorder.replay import plant_of
 from arboleda.recorder.troubles import Troubles
 from arboleda.simulator.faults import Fault
-from arboleda.simulator.told import Act, scopes
+from arboleda.simulator.scripted_people import Act, scopes
 
 from ..recorded_plant import model_of
 from ..simulate.plants import ELSEWHERE

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
-from arboleda.recorder.beginning import Beginning
+from arboleda.recorder.preamble import Beginning
 from arboleda.simulator.faults import KINDS, Fault
 from arboleda.simulator.faults.kind import NONE
-from arboleda.simulator.told import Act
+from arboleda.simulator.scripted_people import Act
 
 from ..plant_file.yaml_marks import LARGEST, MOST_VALUES
 from ..record_command import moment

@@ -9,7 +9,7 @@ from arboleda.wire.strict import UINT32
 from arboleda.wire.topics import Channel
 
 from .bench import Bench, Send, Steps, Wait
-from .ways import accepted, demand, refused, stop
+from .procedures import accepted, demand, refused, stop
 
 
 def beaten_off(bench: Bench[Any]) -> Steps:

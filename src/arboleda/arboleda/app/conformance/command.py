@@ -13,7 +13,7 @@ from arboleda.model.errors import StartError
 from arboleda.model.plant_model import Evidence, Link, PlantModel, Robot
 
 from .. import config
-from ..where import PlantFile
+from ..plant_options import PlantFile
 
 if TYPE_CHECKING:
     from .judge import Finding, Judge
@@ -78,7 +78,7 @@ def _deeds(robot: Robot) -> str:
 
 
 def _try(robot: Robot, broker: str, credentials: Credentials | None) -> int:
-    from .trial import Trial  # it takes a while to load, and only this command needs it
+    from .broker_bench import Trial  # it takes a while to load, and only this command needs it
 
     console = Console(highlight=False)
     try:

@@ -8,8 +8,8 @@ from arboleda.wire.topics import Channel
 
 from .bench import MOVING, NotTried, Send, Steps, Wait
 from .device_bench import DeviceBench, is_work
-from .device_ways import at_rest, carry_out, lasting, lead_to
-from .ways import ANSWER_S, accepted, demand, rest, stop, unmoved
+from .device_procedures import at_rest, carry_out, lasting, lead_to
+from .procedures import ANSWER_S, accepted, demand, rest, stop, unmoved
 
 HALT_S = 1.5
 

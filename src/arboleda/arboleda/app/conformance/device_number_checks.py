@@ -7,9 +7,9 @@ from arboleda.wire.topics import Channel
 
 from .bench import LATCHED, MOVING, NotTried, Send, Steps, Wait
 from .device_bench import DeviceBench, commands, is_work
-from .device_ways import LEAST_S, at_rest, carry_out, lasting, lead_to, named
+from .device_procedures import LEAST_S, at_rest, carry_out, lasting, lead_to, named
 from .number_checks import SILENCE_S
-from .ways import (
+from .procedures import (
     ANSWER_S,
     accepted,
     answer,

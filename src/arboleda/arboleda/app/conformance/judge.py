@@ -20,10 +20,10 @@ from . import device_number_checks as device_number
 from . import motion_checks as motion
 from . import number_checks as number
 from .arm_bench import ArmBench
-from .arm_ways import ready
+from .arm_procedures import ready
 from .bench import Bench, Jostle, NotTried, Send, Steps, Wait, Wrong
 from .device_bench import DeviceBench
-from .ways import settle
+from .procedures import settle
 
 BEAT_S = 0.25
 LEVELS = (Evidence.STATE, Evidence.JOINTS, Evidence.IDS)  # each includes those before it

@@ -11,9 +11,9 @@ from arboleda.wire.topics import Channel
 from arboleda.wire.units import to_wire
 
 from .arm_bench import ArmBench
-from .arm_ways import drive, set_off
+from .arm_procedures import drive, set_off
 from .bench import MOVING, Bench, Send, Steps, Wait
-from .ways import demand, rest, stop, unmoved
+from .procedures import demand, rest, stop, unmoved
 
 LISTEN_S = 2.0
 LONGEST_GAP_S = 1.0  # a plant calls a board stale after 1.5 s

@@ -5,9 +5,19 @@ from __future__ import annotations
 from arboleda.wire.topics import Channel
 
 from .arm_bench import ArmBench
-from .arm_ways import drive, set_off
+from .arm_procedures import drive, set_off
 from .bench import MOVING, NotTried, Send, Steps, Wait
-from .ways import accepted, answer, demand, only_in_time, refused, refused_as_retained, rest, stop, unmoved
+from .procedures import (
+    accepted,
+    answer,
+    demand,
+    only_in_time,
+    refused,
+    refused_as_retained,
+    rest,
+    stop,
+    unmoved,
+)
 
 SILENCE_S = 1.0
 RAMP_S = 1.5  # to come to rest after that, and to be heard

@@ -11,7 +11,7 @@ from arboleda.kinds.declared import Device
 from arboleda.model.plant_model import Link, PlantModel, Robot
 
 from .. import config
-from ..where import PlantFile
+from ..plant_options import PlantFile
 from .header import header
 from .resolving import tables
 

@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from arboleda.model.errors import ConfigError
 from arboleda.model.outside import plain
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.beginning import Beginning, PlantFiles
+from arboleda.recorder.preamble import Beginning, PlantFiles
 from arboleda.recorder.reader import Record
 
 from .. import user_file
@@ -18,7 +18,7 @@ from ..plant_file.own_recipes import LARGEST
 from ..record_command import changes, moment
 from ..recorded_plant import as_it_ran, loaded, model_of, with_content
 from .builders import builders_of
-from .happenings import TASK, Pair, beside
+from .plant_events import TASK, Pair, beside
 from .run import Asked, Forked
 from .settings import with_settings
 

@@ -13,8 +13,8 @@ from arboleda.model.errors import ConfigError
 from arboleda.model.messages import Event
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.model.recipe import Builders
-from arboleda.recorder.beginning import Beginning
 from arboleda.recorder.plain_data import plain
+from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.replay import Replayed, first_difference
 from arboleda.recorder.state import state_of
 from arboleda.recorder.steps import Recorded, hash_of, outcome
@@ -24,9 +24,9 @@ from arboleda.simulator.world import World
 
 from ..record_command import moment
 from ..simulate.plants import ELSEWHERE
-from . import again
+from . import device_replay
 from .builders import Switched
-from .happenings import Happening, Words, happenings
+from .plant_events import Happening, Words, happenings
 
 AFTER_S = 600.0  # after the end of the record, tasks have so long to end
 
@@ -162,9 +162,9 @@ def _go_on(
 ) -> World:
     world = taken_over(plant, asked.model.on_boards(*ELSEWHERE))
     for now, events in inputs:
-        again.ask(world, now, events)
+        device_replay.ask(world, now, events)
     if not asked.healthy:
-        again.befall(world, found.troubles)
+        device_replay.befall(world, found.troubles)
     world.watchers.append(lambda: found.fork.extend(happenings(world.now, _plain(world.moment.sent), words)))
     world.advance(found.until - world.now)
     world.advance(AFTER_S, lambda: _rests(plant))

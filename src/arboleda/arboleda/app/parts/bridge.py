@@ -10,7 +10,7 @@ from uuid import uuid4
 
 from arboleda.adapters import clock
 from arboleda.adapters.mqtt import MqttClient
-from arboleda.adapters.seldom import Seldom
+from arboleda.adapters.rate_limit import Seldom
 from arboleda.model.commands import Command
 from arboleda.model.messages import Heartbeat, Notice, Report
 from arboleda.model.plant_model import PlantModel

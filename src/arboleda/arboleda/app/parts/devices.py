@@ -18,7 +18,7 @@ from arboleda.wire.topics import Channel, topic
 from arboleda.wire.transport import Publication
 
 from ..loop import Loop
-from .lookout import Lookout
+from .broker_survey import Lookout
 from .part import BrokerAddress, Crash, not_sent
 
 

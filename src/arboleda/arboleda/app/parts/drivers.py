@@ -12,7 +12,7 @@ from traceback import walk_tb
 from typing import Any
 
 from arboleda.adapters import clock
-from arboleda.adapters.seldom import Seldom
+from arboleda.adapters.rate_limit import Seldom
 from arboleda.drivers import supervisor
 from arboleda.drivers.port import Driver, NotSent
 from arboleda.drivers.supervisor import (

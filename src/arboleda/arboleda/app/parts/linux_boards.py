@@ -15,7 +15,7 @@ from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Evidence, Link, PlantModel
 from arboleda.wire.units import to_wire
 
-from .lookout import Lookout
+from .broker_survey import Lookout
 from .part import BrokerAddress, Crash
 
 LOG = logging.getLogger(__name__)

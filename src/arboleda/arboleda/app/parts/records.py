@@ -13,8 +13,8 @@ from arboleda.dashboard.past.past import Past
 from arboleda.dashboard.past.side import Start
 from arboleda.model.sentence import Phrase
 from arboleda.recorder import files, reader
-from arboleda.recorder.beginning import Beginning
 from arboleda.recorder.errors import NoRecord
+from arboleda.recorder.preamble import Beginning
 from arboleda.recorder.views import Views
 
 FRESH_S = 5.0  # for so long nobody looks again how far a record is

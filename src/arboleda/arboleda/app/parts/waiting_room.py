@@ -13,13 +13,13 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from arboleda.adapters.web import limits, login
-from arboleda.adapters.web.asked import API
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import names_for
+from arboleda.adapters.web.request_head import API
 from arboleda.adapters.web.server import Server
 
 from .. import tokens
-from ..led import Led, said_of
+from ..leader import Led, said_of
 from ..web_options import WebOptions
 from .web import Announce
 

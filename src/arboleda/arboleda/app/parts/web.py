@@ -16,11 +16,11 @@ from fastapi import FastAPI
 from arboleda.adapters.oee_rows import OeeQuery
 from arboleda.adapters.task_rows import TaskQuery, TaskRow
 from arboleda.adapters.web import limits
-from arboleda.adapters.web.apart import Apart
 from arboleda.adapters.web.api import make_app
 from arboleda.adapters.web.guard import Guard
 from arboleda.adapters.web.names import DEFAULT_PORT, is_loopback, names_for
 from arboleda.adapters.web.plant_side import Snapshot
+from arboleda.adapters.web.second_loop import Apart
 from arboleda.adapters.web.server import Server
 from arboleda.model.errors import QueueFull
 from arboleda.model.facts import Value

@@ -16,11 +16,11 @@ from .arrays import arrays
 from .deadlines import ROUNDING_S, SHOWN_S
 from .document import Document, Place, choice, nearest, shown
 from .drivers import OF_DEVICES, link
+from .python_uses import KindInPython, Used
 from .registry import COME_WITH_IT, RESERVED
 from .robot_kind import RobotKind
 from .robots import check_absence
 from .shapes import NAME_RULE, DeviceCellShape, DeviceShape, RetryShape, is_name
-from .used import KindInPython, Used
 
 CELLS: Place = ("cells",)
 EVIDENCE = {"facts": Evidence.JOINTS}  # what joints are to an arm

@@ -17,8 +17,8 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from . import settings
 from .document import Document, Place, choice, nearest, shown
+from .python_uses import LONGEST, Spot, Used, refused, said
 from .shared import SECTION as SHARED
-from .used import LONGEST, Spot, Used, refused, said
 
 KEY, SHORT = "driver", "link"
 GROUP = "arboleda.drivers"

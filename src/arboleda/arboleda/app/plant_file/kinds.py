@@ -12,7 +12,7 @@ from arboleda.kinds.declared import DeviceKind, DeviceVerb, Effect, FactType, Sl
 from arboleda.kinds.rules import SLOT
 from arboleda.model.facts import Value
 from arboleda.recipes.handles import DeviceHandle
-from arboleda.wire import fit
+from arboleda.wire import mqtt_limits
 
 from .document import Document, Place, choice, nearest, shown
 from .registry import RESERVED
@@ -56,7 +56,7 @@ def _kind(document: Document, name: str) -> DeviceKind | None:
 
 def _fits(document: Document, place: Place, kind: DeviceKind) -> bool:
     """Whether a board can be told and can say all that the kind has, in messages as MQTT has them here."""
-    objections = fit.objections(kind)
+    objections = mqtt_limits.objections(kind)
     for each in objections:
         document.problem((*place, *each.place), each.sentence)
     return not objections

@@ -15,16 +15,16 @@ from arboleda.kinds.declared import DeviceKind
 from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, quoted
 from arboleda.model.plant_model import Robot
-from arboleda.wire import fit
+from arboleda.wire import mqtt_limits
 
 from .document import Document, Place, shown
 from .kinds import OF_FACTS, OF_STEPS, name_objection
+from .python_uses import LONGEST, KindInPython, Spot, Used, refused, said
 from .registry import COME_WITH_IT, IN_PYTHON, RESERVED
 from .robot_kind import RobotKind
 from .settings import TYPES, keys
 from .shapes import DeviceShape
 from .shared import SECTION
-from .used import LONGEST, KindInPython, Spot, Used, refused, said
 
 GROUP = "arboleda.kinds"
 
@@ -189,7 +189,7 @@ def _keep(document: Document, place: Place, spot: Spot, what: str, used: Used) -
 def _unusable(kind: DeviceKind) -> Iterator[str]:
     """What of a kind has a name that it cannot have, or cannot go over MQTT."""
     yield from _misnamed(kind)
-    yield from (each.sentence for each in fit.objections(kind))
+    yield from (each.sentence for each in mqtt_limits.objections(kind))
 
 
 def _misnamed(kind: DeviceKind) -> Iterator[str]:

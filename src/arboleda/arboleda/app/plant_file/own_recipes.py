@@ -28,9 +28,9 @@ from arboleda.recipes.storage import RECIPES
 
 from .. import tree_includes, user_file
 from .document import Document, Place, nearest, shown
+from .python_uses import LONGEST, Spot, Used, Watch, Written, said
 from .registry import IN_PYTHON, RESERVED
 from .shapes import NAME_RULE, WORDS, is_name
-from .used import LONGEST, Spot, Used, Watch, Written, said
 
 SECTION: Place = ("uses",)
 NODE = re.compile("[A-Za-z_][A-Za-z0-9_]*", re.ASCII)

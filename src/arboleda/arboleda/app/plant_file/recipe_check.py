@@ -26,7 +26,7 @@ from arboleda.views import tree_view
 
 from .document import Document, Place, choice, nearest, shown
 from .own_recipes import SECTION
-from .used import LONGEST, Used, Watch, said
+from .python_uses import LONGEST, Used, Watch, said
 
 MOST = 200  # combinations of parameters that are tried
 HOW_TO_CHOOSE = "; give it to a node that lists its values, or its port a type: int, double, bool"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from arboleda.kinds import WrittenKind
 from arboleda.kinds.shipped import SHIPPED
 
+from .python_uses import KindInPython
 from .robot_kind import RobotKind
 from .robots import arm_device, mobile_device, person_device
-from .used import KindInPython
 
 ROBOTS = (
     RobotKind(name="arm", read=arm_device, goes=True, has_twin=True),

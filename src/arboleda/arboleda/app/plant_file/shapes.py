@@ -12,7 +12,7 @@ from arboleda.kinds.declared import Effect
 from arboleda.model.commands import OnStop
 from arboleda.model.plant_model import Cell, Evidence, PlantModel, Retry, Timing
 from arboleda.recipes.storage_cell import StorageCell
-from arboleda.recorder.beginning import Limits
+from arboleda.recorder.preamble import Limits
 
 from .robot_models import Number, Pair, Positive, Shape, Triple
 

@@ -11,9 +11,9 @@ from arboleda.model.plant_model import Cell, Crossing, Interlock, Pose, Workspac
 from arboleda.recipes.storage import plan_problems
 from arboleda.recipes.storage_cell import StorageCell
 
-from .alike import alike_crossings, confusions
 from .document import Document, Place, choice, nearest, shown
 from .pickups import pickup_names
+from .pose_confusion import alike_crossings, confusions
 from .shapes import MAPPING, NAME_RULE, ZoneShape, is_name
 
 SECTION: Place = ("zones",)

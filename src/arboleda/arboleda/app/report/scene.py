@@ -9,7 +9,7 @@ from arboleda.dashboard.twin import bodies, kinematics
 from arboleda.model.errors import ArboledaError
 from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.incident import Incident
-from arboleda.views.places import places
+from arboleda.views.geometry import places
 
 from ..urdf import robot_urdf
 

@@ -10,7 +10,7 @@ from arboleda.model.plant_model import PlantModel
 from arboleda.recorder.incident import Incident
 from arboleda.recorder.troubles import SILENCE
 
-from ..fork.happenings import TASK, Happening
+from ..fork.plant_events import TASK, Happening
 from ..fork.run import Asked, forked
 from ..replay_command import sentence_of
 from .reading import Read

@@ -10,9 +10,9 @@ from rich.text import Text
 
 from arboleda.simulator.levels import CRASHES, LEVELS
 
+from ..plant_options import StoreAddress
 from ..stores import refuse_without_library
 from ..user_file import check_new, check_writable
-from ..where import StoreAddress
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
 
 HELP = f"""Run whole plants under virtual time, with faults drawn from a seed, and judge every step.
@@ -126,10 +126,10 @@ def simulate(
     store: StoreAddress = "",
     worker: Worker = False,
 ) -> None:
-    from . import one, screen  # the simulator takes a while to load, and only this command needs it
+    from . import screen, single_seed  # the simulator takes a while to load, and only this command needs it
     from .flight import SUFFIX
-    from .many import Many
     from .request import Request
+    from .seed_campaign import Many
     from .workers import processors
 
     alone = trace or record is not None
@@ -167,5 +167,5 @@ def simulate(
 
         raise typer.Exit(work(request, console, store, json))
     if alone:
-        raise typer.Exit(one.run(request, console, trace=trace, record=record, file=json))
+        raise typer.Exit(single_seed.run(request, console, trace=trace, record=record, file=json))
     raise typer.Exit(Many(request, console, json).run(jobs or processors()))

@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 from arboleda.model.counting import counted
 from arboleda.model.errors import ArboledaError
 from arboleda.recorder import copying, reader
-from arboleda.recorder.beginning import Limits
 from arboleda.recorder.files import parts_in
+from arboleda.recorder.preamble import Limits
 from arboleda.recorder.simulated import SimulatedRecorder, Unwritten
 from arboleda.recorder.tape import SECOND
 from arboleda.simulator.world import START_S

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, Protocol
 
 from arboleda.model.plant_model import Link, PlantModel
-from arboleda.recorder.beginning import NO_FILES, PlantFiles
+from arboleda.recorder.preamble import NO_FILES, PlantFiles
 
 ELSEWHERE = (Link.ROS, Link.NONE, Link.DRIVER)  # who has no board on MQTT, and gets a virtual one
 

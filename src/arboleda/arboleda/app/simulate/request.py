@@ -13,15 +13,15 @@ from pathlib import Path
 
 from arboleda.model.errors import ConfigError
 from arboleda.model.plant_model import PlantModel
-from arboleda.recorder.beginning import PlantFiles
+from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator.checks import BadFaults
 from arboleda.simulator.levels import LEVELS
 
 from .. import config
 from .defaults import CYCLES, LEVEL, SEED, SEEDS
-from .drawn import Drawn, loaded
 from .faults_file import Told, line_of, read
 from .plants import InTurn, Plant, Plants, notes
+from .random_plants import Drawn, loaded
 from .setting import Setting
 
 OF_DRAWN = "drawn plants: whatever link a robot declares, it is simulated with a virtual board on MQTT"

@@ -14,8 +14,8 @@ from arboleda.simulator.plants import smaller
 from arboleda.simulator.run import MINUTE_S, Plan, Result
 from arboleda.simulator.shrink import Progress, explicit, shrink
 
-from .drawn import loaded
 from .plants import Plant
+from .random_plants import loaded
 from .setting import Setting
 
 ATTEMPTS = 250  # runs on smaller plants, at most

@@ -13,7 +13,7 @@ from arboleda.simulator.climate import Climate
 from arboleda.simulator.faults import Fault
 from arboleda.simulator.judged import every
 from arboleda.simulator.run import NO_EXCEPTION, Broken, Plan, Result, Simulation
-from arboleda.simulator.told import Script, script_from
+from arboleda.simulator.scripted_people import Script, script_from
 
 from .plants import Plant, Plants
 

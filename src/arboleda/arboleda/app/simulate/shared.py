@@ -17,9 +17,9 @@ from arboleda.model.counting import counted
 from arboleda.model.errors import ArboledaError, StartError
 from arboleda.simulator.levels import LEVELS
 
-from .many import BROKEN, HELD, INTERRUPTED
 from .plants import InTurn
 from .request import Request
+from .seed_campaign import BROKEN, HELD, INTERRUPTED
 
 LOOK_S = 1.0  # between two looks for a seed that a worker has given back
 

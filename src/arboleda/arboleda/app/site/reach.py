@@ -12,7 +12,7 @@ from arboleda.model.errors import ArboledaError
 from arboleda.model.outside import plain, said_by
 from arboleda.model.sentence import Phrase
 
-from ..places import Place
+from ..endpoints import Place
 
 ANSWER_S = 2.5  # a browser gives a stop up after 3 s
 LONGEST = 300  # characters of what a plant says that are shown

@@ -18,7 +18,7 @@ from arboleda.dashboard.site import page
 from arboleda.model.errors import ArboledaError
 
 from .. import tokens
-from ..places import Find
+from ..endpoints import Find
 from ..waiting import interruptible, until, until_interrupted
 from ..web_options import WebOptions
 from .watch import Site

@@ -13,7 +13,7 @@ from arboleda.dashboard.site.side import Asked, PlantSeen
 from arboleda.model.errors import ArboledaError
 from arboleda.model.sentence import BOTH, Phrase, Sentence
 
-from ..places import Find, Place
+from ..endpoints import Find, Place
 from .choosing import EXAMPLE, FORM, LONGEST, NO_SUCH, Choice, Refused, chosen, names_plants
 from .reach import NO_PLANT, NOT_REACHED, Reach, Said, Silent
 

@@ -22,13 +22,13 @@ from arboleda.trees.context import Context
 from arboleda.trees.leaves import Act, Require, titled
 from arboleda.trees.steps import framed
 
+from .device_steps import Asking, Order, Telling, Told, can_be_renewed, example_of, value_of
 from .errors import TreeError
 from .memory import Scope
 from .node import Node
 from .own import Calculated, Within
 from .root import Forgiving
 from .scripts import ScriptError, spelled
-from .told import Asking, Order, Telling, Told, can_be_renewed, example_of, value_of
 
 ANSWER = leaves.ANSWER
 UNSAID = Phrase("xml.unsaid", "{robot} has said nothing of {fact}")

@@ -11,10 +11,10 @@ from arboleda.model.messages import Failure, Reason
 from arboleda.recipes.nodes import WrittenNode
 from arboleda.trees.context import Context
 
+from .device_steps import Order, as_variable
 from .leaves import Leaf
 from .node import FAILURE, SUCCESS, Node, Result
 from .root import FAILED
-from .told import Order, as_variable
 
 
 class Within(Node):

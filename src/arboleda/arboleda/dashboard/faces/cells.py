@@ -11,7 +11,7 @@ from arboleda.views.view import devices_once, standing
 from ..tree_drawing import drawing, label
 from ..tree_memory import FAILURE, HALTED, RUNNING, SUCCESS, EndedTree, TreeMemory, phases
 from ..wording import Words
-from . import Face, heard, links
+from . import Face, links
 from .moment import Moment, clock, seconds
 
 SHOWN_CHANGES = 12
@@ -80,7 +80,7 @@ def _heard(moment: Moment, cell: Row, devices: list[Row]) -> Face:
     if all(each["position"] for each in devices):
         return {}
     answers = cell["task"]["answers"] if cell["task"] else []
-    return heard.rows(moment.words, f"heard.{cell['name']}", answers, SHOWN_ANSWERS)
+    return answers.rows(moment.words, f"heard.{cell['name']}", answers, SHOWN_ANSWERS)
 
 
 def _cause(words: Words, cell: Row, task: Row | None, memory: TreeMemory) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 from arboleda.adapters.task_rows import TaskRow, answers_of, choice_of, sentence_of
 
 from ..tree_memory import EndedTree
-from . import Face, heard
+from . import Face, answers
 from .cells import failed_in, tree_face
 from .moment import Moment, dated, seconds
 from .tasks import why
@@ -37,7 +37,7 @@ def face(moment: Moment, id: str, tree: EndedTree | None, kept: TaskRow | None =
         "text/task.note": [words("task.past") if is_past else _note(moment, task, tree), ""],
         "text/task.record": [words("record.look") if _ended_here(task, kept=is_past) else "", ""],
         "text/task.report": [words("report.link"), id] if state[1] == "failed" else ["", ""],
-        **heard.rows(words, "task.heard", task["answers"] if task else []),
+        **answers.rows(words, "task.heard", task["answers"] if task else []),
         **tree_face(words, TREE, tree or EndedTree(task=id, rows=[], statuses={}), title=title),
     }
 

@@ -12,9 +12,9 @@ from ..shell import Parts
 from ..twin import pane, window
 from ..wording import words
 from . import bar
+from .frame_queue import Turns
 from .side import PastSide
 from .stills import Stills
-from .turns import Turns
 from .visitor import Arrival, Visitor
 
 KEY, OF_TASK, START = "at", "task", "record"  # of the page's address: which moment of which record

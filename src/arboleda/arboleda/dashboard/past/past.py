@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from typing import Any
 
-from arboleda.recorder.followed import followed
+from arboleda.recorder.cell_history import followed
 from arboleda.recorder.views import Views
 from arboleda.views.chronicle import is_failure
 
-from ..faces import Face, task, whole
+from ..faces import Face, task, whole_page
 from ..faces.moment import Moment
 from ..wording import words
 from . import still
 from .moments import moment_of, nanoseconds, until_ns
-from .trees_then import TreesThen
+from .tree_history import TreesThen
 
 SHOWN_EVENTS = 1000
 MARKS = 500  # on the slider, at most; more could not be told apart
@@ -87,7 +87,7 @@ class Past:
         with self._one:
             at_ns = until_ns(moment)
             then = self._then(at_ns, language)
-            found = still.without_acts(whole.face(then)) | still.of_record(then, moment)
+            found = still.without_acts(whole_page.face(then)) | still.of_record(then, moment)
             found |= still.with_links(found, then.events)
             return found if id is None else found | still.without_acts(self._task(then, at_ns, id))
 

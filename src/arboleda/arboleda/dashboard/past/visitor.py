@@ -15,10 +15,10 @@ from arboleda.views.changes import changed
 
 from ..faces import Face
 from ..wording import Words
+from .frame_queue import Turns
 from .moments import dated
 from .side import PastSide, Start
 from .stills import Stills
-from .turns import Turns
 
 if TYPE_CHECKING:  # a page of a plant without a record does without the libraries that read one
     from .past import Past

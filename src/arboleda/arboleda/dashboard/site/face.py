@@ -10,7 +10,7 @@ from arboleda.views.view import standing
 
 from ..faces import Face
 from ..faces.oee import UNKNOWN
-from ..faces.whole import WELL, WORST
+from ..faces.whole_page import WELL, WORST
 from ..wording import Words
 from .side import PlantSeen
 

@@ -15,9 +15,9 @@ from arboleda.model.facts import Value
 from arboleda.model.messages import Report
 from arboleda.model.plant_model import Robot
 
-from ..plc.alive import Alive
 from ..plc.numbers import Numbers
-from ..plc.shown import Question, Shown, report
+from ..plc.plc_snapshot import Question, Shown, report
+from ..plc.program_watch import Alive
 from ..port import DriverError, NotSent
 from .registers import Register, Write
 from .settings import Settings

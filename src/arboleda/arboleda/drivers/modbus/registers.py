@@ -12,7 +12,7 @@ from arboleda.drivers.port import DriverError
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 
-from ..plc.shown import Unreadable
+from ..plc.plc_snapshot import Unreadable
 
 Order = Literal["big", "little"]
 Form = Literal["uint16", "int16", "uint32", "int32", "float32", "uint64", "int64", "float64"]

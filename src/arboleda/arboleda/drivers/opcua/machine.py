@@ -16,10 +16,10 @@ from arboleda.model.messages import Report
 from arboleda.model.outside import quoted
 from arboleda.model.plant_model import Robot
 
-from ..plc.alive import Alive
 from ..plc.checks import answers
 from ..plc.numbers import Numbers
-from ..plc.shown import STATES, Question, Shown, Unreadable, report
+from ..plc.plc_snapshot import STATES, Question, Shown, Unreadable, report
+from ..plc.program_watch import Alive
 from ..port import DriverError, NotSent
 from .nodes import Method, Variable, number
 from .settings import Settings

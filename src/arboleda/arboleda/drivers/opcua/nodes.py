@@ -12,7 +12,7 @@ from arboleda.kinds.declared import FactType
 from arboleda.model.facts import Value
 from arboleda.model.outside import quoted
 
-from ..plc.shown import Unreadable
+from ..plc.plc_snapshot import Unreadable
 
 NODE = re.compile(r"(ns=\d+;)?(i=\d+|s=.+|g=[0-9a-fA-F-]{36}|b=.+)")
 Form = Literal[

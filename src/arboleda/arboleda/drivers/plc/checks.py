@@ -8,7 +8,7 @@ from arboleda.kinds.declared import Device, DeviceVerb, Effect, FactType
 from arboleda.model.outside import among
 from arboleda.model.plant_model import Evidence
 
-from .shown import STATES
+from .plc_snapshot import STATES
 
 Place = tuple[str | int, ...]
 Problem = tuple[Place, str]

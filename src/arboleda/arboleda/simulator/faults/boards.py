@@ -6,14 +6,14 @@ from arboleda.model.plant_model import PlantModel
 
 from ..network import keeps_its_place
 from ..world import World
-from . import whom
-from .hold import hold, stall, trouble
+from . import targets
 from .kind import End, Fault, kind, words
+from .shared_effects import hold, stall, trouble
 
 TOO_LATE_S = 10.0
 
 
-@kind(targets=whom.boards, words=words("will", "no will"))
+@kind(targets=targets.boards, words=words("will", "no will"))
 def reboot(world: World, fault: Fault) -> None:
     """A board loses power and has it back at once, before or after the broker told its last will."""
     if world.is_on(fault.target):
@@ -21,27 +21,27 @@ def reboot(world: World, fault: Fault) -> None:
         world.power_on(fault.target)
 
 
-@kind(targets=whom.boards, seconds=(0.2, 20.0), amount=(0.0, 10.0))
+@kind(targets=targets.boards, seconds=(0.2, 20.0), amount=(0.0, 10.0))
 def brown_out(world: World, fault: Fault) -> End:
     """A board is without power for a while; `amount` is how late the broker tells its last will, s."""
     world.power_off(fault.target, will_after_s=fault.amount)
     return hold(world, "dark", fault.target, lambda: world.power_on(fault.target))
 
 
-@kind(targets=whom.boards, seconds=(0.2, 10.0))
+@kind(targets=targets.boards, seconds=(0.2, 10.0))
 def mute(world: World, fault: Fault) -> End:
     """Nothing that a board publishes arrives, but that it is there."""
     line = world.broker.clients[fault.target].up
     return trouble(line, lambda message: (0.0,) if keeps_its_place(message) else ())
 
 
-@kind(targets=whom.boards, seconds=(0.005, 15.0))
+@kind(targets=targets.boards, seconds=(0.005, 15.0))
 def board_stall(world: World, fault: Fault) -> End:
     """A board's processor does nothing for a while; what reaches it waits."""
     return stall(world, fault.target, fault.seconds)
 
 
-@kind(targets=whom.boards, seconds=(0.2, 15.0), weight=0.7)
+@kind(targets=targets.boards, seconds=(0.2, 15.0), weight=0.7)
 def driver_alarm(world: World, fault: Fault) -> End:
     """A motor driver reports an alarm: the board ramps to a stop and moves nothing until it is repaired."""
     name, board = fault.target, world.boards[fault.target]
@@ -56,15 +56,15 @@ def driver_alarm(world: World, fault: Fault) -> End:
 
 
 def _joints(model: PlantModel, target: str) -> tuple[str, ...]:
-    robot = whom.robot_of(model, target)
+    robot = targets.robot_of(model, target)
     return tuple(f"q{number + 1}" for number in range(len(robot.joints))) if robot.has_joints else ()
 
 
-@kind(targets=whom.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)
+@kind(targets=targets.arms, words=_joints, amount=(-50.0, 50.0), weight=0.5)
 def lost_steps(world: World, fault: Fault) -> None:
     """An axis slips by `amount` motor steps and nobody notices; only homing finds it again."""
     steps = round(fault.amount) or 1
-    whom.arm_body(world, fault.target).lose_steps(int(fault.word[1:]) - 1, steps)
+    targets.arm_body(world, fault.target).lose_steps(int(fault.word[1:]) - 1, steps)
 
 
 def _now_us(world: World) -> int:

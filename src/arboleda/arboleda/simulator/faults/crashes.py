@@ -6,22 +6,22 @@ from collections.abc import Callable
 
 from ..chance import Dice
 from ..world import BRIDGE, PLANT, Fuse, Side, World
-from . import whom
-from .hold import hold
+from . import targets
 from .kind import End, Fault, kind, words
+from .shared_effects import hold
 
 SIDES = words(*(side.value for side in Side))
 IN_ONE_PROCESS = 0.3  # the share of plants that die together with their bridge
 
 
-@kind(targets=whom.plant, words=SIDES, seconds=(0.2, 12.0), amount=(1.0, 30.0), weight=0.0)
+@kind(targets=targets.plant, words=SIDES, seconds=(0.2, 12.0), amount=(1.0, 30.0), weight=0.0)
 def crash_in_step(world: World, fault: Fault) -> End:
     """The plant's process dies on one side of its `amount`th commit or message, and is back at the end."""
     with_bridge = Dice(fault.seed, "bridge").chance(IN_ONE_PROCESS)
     return _dies(world, fault, world.stop_plant, with_bridge=with_bridge)
 
 
-@kind(targets=whom.plant, words=SIDES, seconds=(0.5, 12.0), amount=(1.0, 30.0), weight=0.0)
+@kind(targets=targets.plant, words=SIDES, seconds=(0.5, 12.0), amount=(1.0, 30.0), weight=0.0)
 def power_cut(world: World, fault: Fault) -> End:
     """So does the whole machine of plant and bridge, and what it had not synced is gone, but for a part."""
 
@@ -31,7 +31,7 @@ def power_cut(world: World, fault: Fault) -> End:
     return _dies(world, fault, cut, with_bridge=True)
 
 
-@kind(targets=whom.plant, seconds=(0.5, 20.0), weight=0.0)
+@kind(targets=targets.plant, seconds=(0.5, 20.0), weight=0.0)
 def full_disk(world: World, fault: Fault) -> End:
     """Nothing can be kept: at its next commit the plant, at times the bridge too, ends till there is room."""
     with_bridge = Dice(fault.seed, "bridge").chance(IN_ONE_PROCESS)
@@ -62,7 +62,7 @@ def full_disk(world: World, fault: Fault) -> End:
     return end
 
 
-@kind(targets=whom.plant, seconds=(0.5, 20.0), amount=(0.1, 10.0), weight=0.0)
+@kind(targets=targets.plant, seconds=(0.5, 20.0), amount=(0.1, 10.0), weight=0.0)
 def slow_disk(world: World, fault: Fault) -> End:
     """Each synced commit takes `amount` s: the plant does nothing meanwhile, what hangs on it leaves late."""
     world.disk.slow.append(fault.amount)

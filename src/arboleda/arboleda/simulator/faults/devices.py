@@ -11,39 +11,39 @@ from arboleda.model.plant_model import PlantModel
 from ..chance import Dice
 from ..deceptions import begin_to_deceive
 from ..world import World
-from . import whom
-from .hold import hold
+from . import targets
+from .false_telemetry import Fields, deceive
 from .kind import End, Fault, kind, words
-from .telling import Fields, deceive
+from .shared_effects import hold
 
 FOR_EVER_S = 86_400.0
 
 
-@kind(targets=whom.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
+@kind(targets=targets.machines, words=words("atasco", "sin_aire"), seconds=(1.0, 60.0))
 def gives_up(world: World, fault: Fault) -> End:
     """A device ends every order that it has carried out as failed, with this word."""
     return _behave(world, fault, "fails", lambda goal: fault.word)
 
 
-@kind(targets=whom.machines, words=words("ocupado", "condicion"), seconds=(1.0, 30.0))
+@kind(targets=targets.machines, words=words("ocupado", "condicion"), seconds=(1.0, 30.0))
 def refuses(world: World, fault: Fault) -> End:
     """A device takes no order, and says so with this word."""
     return _behave(world, fault, "refuses", lambda goal: fault.word)
 
 
-@kind(targets=whom.machines, seconds=(1.0, 60.0))
+@kind(targets=targets.machines, seconds=(1.0, 60.0))
 def never_ends(world: World, fault: Fault) -> End:
     """A device goes on and on with whatever it begins, and answers nothing, until this is over."""
     return _be_late(world, fault, FOR_EVER_S)
 
 
-@kind(targets=whom.machines, seconds=(1.0, 60.0), amount=(0.1, 60.0))
+@kind(targets=targets.machines, seconds=(1.0, 60.0), amount=(0.1, 60.0))
 def ends_late(world: World, fault: Fault) -> End:
     """A device takes `amount` s longer for whatever it begins, and for its answers."""
     return _be_late(world, fault, fault.amount)
 
 
-@kind(targets=whom.machines, seconds=(1.0, 30.0))
+@kind(targets=targets.machines, seconds=(1.0, 30.0))
 def only_says_done(world: World, fault: Fault) -> End:
     """A device says that it has done what it was told, and does nothing."""
     truth = begin_to_deceive(world, fault.target, ("done",))
@@ -56,44 +56,44 @@ def only_says_done(world: World, fault: Fault) -> End:
     return stop
 
 
-@kind(targets=whom.askable, seconds=(1.0, 60.0), amount=(0.05, 10.0))
+@kind(targets=targets.askable, seconds=(1.0, 60.0), amount=(0.05, 10.0))
 def answers_twice(world: World, fault: Fault) -> End:
     """A device answers every question once more after `amount` s, and perhaps otherwise."""
     return _behave(world, fault, "repeats", lambda goal: fault.amount)
 
 
-@kind(targets=whom.machines)
+@kind(targets=targets.machines)
 def forgets(world: World, fault: Fault) -> None:
     """A device boots, and what was switched is as it was in the beginning."""
     if world.is_on(fault.target):
         world.power_off(fault.target)
-        whom.machine_body(world, fault.target).forget_settings()
+        targets.machine_body(world, fault.target).forget_settings()
         world.power_on(fault.target)
 
 
-@kind(targets=whom.holders)
+@kind(targets=targets.holders)
 def opened_device(world: World, fault: Fault) -> None:
     """Somebody takes out what a device holds, and it says so."""
-    held = whom.robot_of(world.model, fault.target).held_fact
+    held = targets.robot_of(world.model, fault.target).held_fact
     if held is not None and world.is_on(fault.target):
         world.set_by_hand(fault.target, ((held, False),))
 
 
 def _facts_of(model: PlantModel, target: str) -> tuple[str, ...]:
-    return tuple(whom.robot_of(model, target).fact_names)
+    return tuple(targets.robot_of(model, target).fact_names)
 
 
-@kind(targets=whom.tellers, words=_facts_of, seconds=(0.5, 15.0))
+@kind(targets=targets.tellers, words=_facts_of, seconds=(0.5, 15.0))
 def stale_fact(world: World, fault: Fault) -> End:
     """A device says of a fact what was so when this began, whatever becomes of it."""
-    kept = whom.machine_body(world, fault.target).facts[fault.word]
+    kept = targets.machine_body(world, fault.target).facts[fault.word]
     return _lie(world, fault, kept)
 
 
-@kind(targets=whom.tellers, words=_facts_of, seconds=(0.3, 10.0))
+@kind(targets=targets.tellers, words=_facts_of, seconds=(0.3, 10.0))
 def lying_fact(world: World, fault: Fault) -> End:
     """A device says of a fact what is not so."""
-    body = whom.machine_body(world, fault.target)
+    body = targets.machine_body(world, fault.target)
     other = _another(body.kind.facts[fault.word], body.facts[fault.word], Dice(fault.seed, "fact"))
     return _lie(world, fault, other)
 
@@ -118,14 +118,14 @@ def _lie(world: World, fault: Fault, value: Value) -> End:
 
 def _behave(world: World, fault: Fault, how: str, does: Any) -> End:
     """A device behaves so, each fault of this kind in its own way, until the last of them ends."""
-    body = whom.machine_body(world, fault.target)
+    body = targets.machine_body(world, fault.target)
     usual = getattr(type(body)(body.kind), how)
     setattr(body, how, does)
     return hold(world, how, fault.target, lambda: setattr(body, how, usual))
 
 
 def _be_late(world: World, fault: Fault, late_s: float) -> End:
-    body = whom.machine_body(world, fault.target)
+    body = targets.machine_body(world, fault.target)
     end = _behave(world, fault, "lasts", lambda goal: late_s)
 
     def stop() -> None:

@@ -3,43 +3,43 @@
 from __future__ import annotations
 
 from ..world import World
-from . import whom
-from .hold import hold
+from . import targets
 from .kind import End, Fault, kind
+from .shared_effects import hold
 
 
-@kind(targets=whom.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.arms, seconds=(1.0, 30.0))
 def no_grip(world: World, fault: Fault) -> End:
     """An effector closes beside the part."""
     return _keep(world, fault, "grips", False)
 
 
-@kind(targets=whom.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.arms, seconds=(1.0, 30.0))
 def stuck_effector(world: World, fault: Fault) -> End:
     """An effector does not follow its switch."""
     return _keep(world, fault, "stuck", True)
 
 
-@kind(targets=whom.arms, seconds=(1.0, 30.0))
+@kind(targets=targets.arms, seconds=(1.0, 30.0))
 def no_part(world: World, fault: Fault) -> End:
     """Nothing lies at the pick-up."""
     return _keep(world, fault, "supplied", False)
 
 
-@kind(targets=whom.arms)
+@kind(targets=targets.arms)
 def lost_part(world: World, fault: Fault) -> None:
     """The part falls out of an effector, which does not notice."""
-    whom.arm_body(world, fault.target).lose_piece()
+    targets.arm_body(world, fault.target).lose_piece()
 
 
-@kind(targets=whom.arms)
+@kind(targets=targets.arms)
 def opened_effector(world: World, fault: Fault) -> None:
     """Somebody else opens an effector, and its board says that it is off."""
     world.open_effector(fault.target)
 
 
 def _keep(world: World, fault: Fault, attribute: str, value: bool) -> End:
-    body = whom.arm_body(world, fault.target)
+    body = targets.arm_body(world, fault.target)
     setattr(body, attribute, value)
     return hold(world, attribute, fault.target, lambda: setattr(body, attribute, not value))
 

@@ -21,10 +21,10 @@ from arboleda.wire.transport import Delivery, Publication
 
 from ..chance import Dice
 from ..world import BRIDGE, World
-from . import whom
-from .hold import hold
+from . import targets
 from .kind import End, Fault, kind, words
 from .orchestrators import ORDERS
+from .shared_effects import hold
 
 OF_ALL = (Channel.STOP, Channel.HOME, Channel.BEAT, Channel.TELEMETRY, Channel.PRESENCE)
 OF_ARMS, OF_MOBILES, OF_DEVICES = (Channel.JOINTS, Channel.EFFECTOR), (Channel.PATH,), (Channel.ORDER,)
@@ -51,12 +51,12 @@ GARBAGE = (
 
 
 def _channels(model: PlantModel, target: str) -> tuple[str, ...]:
-    robot = whom.robot_of(model, target)
+    robot = targets.robot_of(model, target)
     own = OF_ARMS if robot.has_joints else OF_MOBILES if robot.on_grid else OF_DEVICES
     return tuple(channel.value for channel in (*own, *OF_ALL))
 
 
-@kind(targets=whom.boards, words=_channels)
+@kind(targets=targets.boards, words=_channels)
 def foreign_garbage(world: World, fault: Fault) -> None:
     """A stranger publishes what makes no sense on a topic of a board."""
     payload = Dice(fault.seed, "garbage").pick(GARBAGE)
@@ -70,14 +70,14 @@ NEWEST = 4_000_000_000  # a telemetry number above that of any board
 
 
 def _foreign(model: PlantModel, target: str) -> tuple[str, ...]:
-    is_arm = whom.robot_of(model, target).has_joints
+    is_arm = targets.robot_of(model, target).has_joints
     return tuple(FOREIGN_TO_ARMS if is_arm else FOREIGN_TO_MOBILES)
 
 
-@kind(targets=whom.goers, words=_foreign, weight=0.5)
+@kind(targets=targets.goers, words=_foreign, weight=0.5)
 def foreign_report(world: World, fault: Fault) -> None:
     """A stranger publishes telemetry in which a board says what its kind of robot cannot."""
-    robot = whom.robot_of(world.model, fault.target)
+    robot = targets.robot_of(world.model, fault.target)
     own = {f"q{number + 1}_mov": 0.0 for number in range(len(robot.joints))} if robot.has_joints else {}
     foreign = {**FOREIGN_TO_ARMS, **FOREIGN_TO_MOBILES}[fault.word]
     said = {**(own or {"nodo": 6}), "estado": 0, "seq": NEWEST, "arranque": 1, fault.word: foreign}
@@ -85,7 +85,7 @@ def foreign_report(world: World, fault: Fault) -> None:
     world.publish(Publication(topic=topic(fault.target, Channel.TELEMETRY), payload=payload))
 
 
-@kind(targets=whom.boards, seconds=(0.5, 10.0), weight=0.7)
+@kind(targets=targets.boards, seconds=(0.5, 10.0), weight=0.7)
 def foreign_repeat(world: World, fault: Fault) -> End:
     """The broker was told to keep what a board says, and says it to the bridge once more, as retained."""
     address = topic(fault.target, Channel.TELEMETRY)
@@ -105,7 +105,7 @@ def foreign_repeat(world: World, fault: Fault) -> End:
     return lambda: world.carriers.remove(carry)
 
 
-@kind(targets=whom.boards, words=words("no board", "no channel", "too long", "too deep"), weight=0.5)
+@kind(targets=targets.boards, words=words("no board", "no channel", "too long", "too deep"), weight=0.5)
 def foreign_stray(world: World, fault: Fault) -> None:
     """A stranger publishes on a topic that belongs to nobody, or far more than fits."""
     world.publish(STRAYS[fault.word](fault.target))
@@ -123,13 +123,13 @@ STRAYS: dict[str, Callable[[str], Publication]] = {
 
 def _goals(model: PlantModel, target: str) -> tuple[str, ...]:
     """What can be ordered of a robot; a stop counts whoever says it and is a kind of its own."""
-    robot = whom.robot_of(model, target)
+    robot = targets.robot_of(model, target)
     if robot.has_joints:
         return ("move", "effector on", "effector off", "home", "clear")
     return ("path", "home", "clear") if robot.on_grid else ("order", "clear")
 
 
-@kind(targets=whom.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)
+@kind(targets=targets.boards, words=_goals, seconds=(1.0, 60.0), weight=0.7)
 def foreign_retained(world: World, fault: Fault) -> End | None:
     """A stranger has the broker keep an old command for whoever subscribes, until somebody takes it away."""
     old = _old(world, fault)
@@ -139,7 +139,7 @@ def foreign_retained(world: World, fault: Fault) -> End | None:
     return hold(world, "retained", old.topic, lambda: world.broker.retained.pop(old.topic, None))
 
 
-@kind(targets=whom.boards, words=lambda model, target: ("again", *_goals(model, target)))
+@kind(targets=targets.boards, words=lambda model, target: ("again", *_goals(model, target)))
 def foreign_old(world: World, fault: Fault) -> None:
     """A stranger repeats the last command, or sends one of an older number, epoch or bridge."""
     old = _again(world, fault) if fault.word == "again" else _old(world, fault)
@@ -147,7 +147,7 @@ def foreign_old(world: World, fault: Fault) -> None:
         world.publish(old)
 
 
-@kind(targets=whom.boards, weight=0.5)
+@kind(targets=targets.boards, weight=0.5)
 def foreign_halt(world: World, fault: Fault) -> None:
     """A stranger of an older epoch halts a board, which obeys a stop whoever says it."""
     numbers = _older(world, fault)
@@ -167,7 +167,7 @@ def _old(world: World, fault: Fault) -> Publication | None:
     numbers = _older(world, fault)
     if numbers is None:
         return None
-    robot: Robot = whom.robot_of(world.model, fault.target)
+    robot: Robot = targets.robot_of(world.model, fault.target)
     order = ORDERS[fault.word](world.model, robot.name, "", Dice(fault.seed, "order"))
     channel, goal = goal_of(robot, order, epoch=numbers[0], seq=numbers[1])
     return _published(fault, channel, goal)

@@ -10,9 +10,9 @@ from ..checks import BadFaults
 from ..hosts.hosts import NAMES, Hosts
 from ..hosts.process import Way
 from ..world import BRIDGE, PLANT, World
-from . import whom
-from .hold import stall, trouble
+from . import targets
 from .kind import End, Fault, kind, words
+from .shared_effects import stall, trouble
 
 LATE_S = 0.05  # after a process is thawed, what it had written to its socket leaves
 SLOWEST, FASTEST = 0.965, 1.035  # of clocks beside the store's
@@ -29,7 +29,7 @@ def _hosts(world: World) -> Hosts:
     return world.hosts
 
 
-@kind(targets=whom.plant, weight=0.0)
+@kind(targets=targets.plant, weight=0.0)
 def leader_killed(world: World, fault: Fault) -> None:
     """The process that leads dies, its bridge with it; some time later it is started again, to wait."""
     _hosts(world).kill()
@@ -38,7 +38,7 @@ def leader_killed(world: World, fault: Fault) -> None:
 LATE = words("", "last packets late")
 
 
-@kind(targets=whom.plant, words=LATE, seconds=(0.3, 20.0), amount=(0.01, 0.6), weight=0.0)
+@kind(targets=targets.plant, words=LATE, seconds=(0.3, 20.0), amount=(0.01, 0.6), weight=0.0)
 def leader_frozen(world: World, fault: Fault) -> End:
     """The leader is frozen; at times its last packets, of `amount` s, lie in its socket until it goes on."""
     ends: list[End] = []
@@ -76,7 +76,7 @@ def store_cut(world: World, fault: Fault) -> End:
     return end
 
 
-@kind(targets=whom.store, seconds=(0.2, 6.0), weight=0.0)
+@kind(targets=targets.store, seconds=(0.2, 6.0), weight=0.0)
 def store_away(world: World, fault: Fault) -> End:
     """The store is away for everybody, as while it starts again; what it took it has."""
     hosts = _hosts(world).hosts.values()
@@ -102,7 +102,7 @@ def store_slow(world: World, fault: Fault) -> End:
     return end
 
 
-@kind(targets=whom.store, weight=0.0)
+@kind(targets=targets.store, weight=0.0)
 def store_answer_lost(world: World, fault: Fault) -> None:
     """A connection breaks after the store has taken something: it is sent once more, and taken once more."""
     _hosts(world).disk.forgets += 1
@@ -124,7 +124,7 @@ def clock_step(world: World, fault: Fault) -> None:
     host.wall_s += fault.amount if fault.word == "ahead" else -fault.amount
 
 
-@kind(targets=whom.plant, weight=0.0)
+@kind(targets=targets.plant, weight=0.0)
 def handover(world: World, fault: Fault) -> None:
     """Somebody asks for a planned change of leaders."""
     _hosts(world).hand_over()

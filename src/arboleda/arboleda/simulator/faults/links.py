@@ -12,9 +12,9 @@ from typing import Any
 from ..chance import Dice
 from ..network import Line, Trouble, keeps_its_place
 from ..world import World
-from . import whom
-from .hold import trouble
+from . import targets
 from .kind import End, Fault, kind, words
+from .shared_effects import trouble
 
 AT_ONCE = (0.0,)
 WAYS = ("up", "down")
@@ -26,14 +26,14 @@ def _cut(ways: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{way}, {cut}" for way in ways for cut in CUTS)
 
 
-@kind(targets=whom.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.3))
+@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.3))
 def loss(world: World, fault: Fault) -> End:
     """A share of `amount` of the messages is lost one way."""
     dice = Dice(fault.seed, "loss")
     return trouble(_line(world, fault), _sparing(lambda _: () if dice.chance(fault.amount) else AT_ONCE))
 
 
-@kind(targets=whom.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.5))
+@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.01, 0.5))
 def duplicate(world: World, fault: Fault) -> End:
     """A share of `amount` of the messages comes twice one way, as QoS 1 allows."""
     dice = Dice(fault.seed, "duplicate")
@@ -44,7 +44,7 @@ def duplicate(world: World, fault: Fault) -> End:
     return trouble(_line(world, fault), _sparing(twice))
 
 
-@kind(targets=whom.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.02, 0.5))
+@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 30.0), amount=(0.02, 0.5))
 def reorder(world: World, fault: Fault) -> End:
     """Messages overtake each other one way: each is up to `amount` s late."""
     dice, line = Dice(fault.seed, "reorder"), _line(world, fault)
@@ -58,32 +58,32 @@ def reorder(world: World, fault: Fault) -> End:
     return end
 
 
-@kind(targets=whom.clients, words=words(*WAYS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
+@kind(targets=targets.clients, words=words(*WAYS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
 def delay(world: World, fault: Fault) -> End:
     """Every message is `amount` s late one way."""
     return trouble(_line(world, fault), lambda _: (fault.amount,))
 
 
-@kind(targets=whom.clients, words=words(*_cut(WAYS)), seconds=(0.2, 10.0))
+@kind(targets=targets.clients, words=words(*_cut(WAYS)), seconds=(0.2, 10.0))
 def partition(world: World, fault: Fault) -> End:
     """Nothing gets through one way; what is sent meanwhile is held until the end, or lost."""
     return trouble(_line(world, fault), _sparing(_lose) if _loses(fault) else _hold(world, fault))
 
 
-@kind(targets=whom.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
+@kind(targets=targets.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.005, 5.0))
 def hop_delay(world: World, fault: Fault) -> End:
     """Every message between plant and bridge is `amount` s late one way."""
     return trouble(_line(world, fault), lambda _: (fault.amount,))
 
 
-@kind(targets=whom.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.02, 1.0))
+@kind(targets=targets.plant, words=words(*HOPS), seconds=(1.0, 20.0), amount=(0.02, 1.0))
 def hop_reorder(world: World, fault: Fault) -> End:
     """Topics between plant and bridge overtake each other one way: each message is up to `amount` s late."""
     dice = Dice(fault.seed, "hop_reorder")
     return trouble(_line(world, fault), lambda _: (dice.between(0.0, fault.amount),))
 
 
-@kind(targets=whom.plant, words=words(*_cut(HOPS)), seconds=(0.2, 10.0))
+@kind(targets=targets.plant, words=words(*_cut(HOPS)), seconds=(0.2, 10.0))
 def hop_partition(world: World, fault: Fault) -> End:
     """Nothing gets through one way between plant and bridge; what is sent meanwhile is held, or lost."""
     return trouble(_line(world, fault), _lose if _loses(fault) else _hold(world, fault))

@@ -14,7 +14,7 @@ from arboleda.recipes.storage_cell import StorageCell
 from ..chance import Dice
 from ..people import any_text
 from ..world import World
-from . import whom
+from . import targets
 from .kind import Fault, Kind, Words, kind, no_words, words
 
 WHOLE_PLANT, NOWHERE = "", "nowhere"
@@ -30,7 +30,7 @@ WEIGHTS = {Verb.STOP: 0.3, Verb.HOLD: 0.6, Verb.CANCEL: 0.8}
 
 
 def _scopes(model: PlantModel) -> tuple[str, ...]:
-    return (WHOLE_PLANT, *whom.cells(model), *model.robots, NOWHERE)
+    return (WHOLE_PLANT, *targets.cells(model), *model.robots, NOWHERE)
 
 
 def _zones(model: PlantModel) -> tuple[str, ...]:
@@ -44,12 +44,12 @@ def _homings(model: PlantModel, target: str) -> tuple[str, ...]:
 
 
 def _cancellings(model: PlantModel, target: str) -> tuple[str, ...]:
-    return ("", *OF_THE_CELL) if target in whom.cells(model) else ("",)
+    return ("", *OF_THE_CELL) if target in targets.cells(model) else ("",)
 
 
 def _unloadings(model: PlantModel, target: str) -> tuple[str, ...]:
     """A whole rack, one of its stations, and one that there is not."""
-    stations = len(model.cell(target).stations) if target in whom.cells(model) else 0
+    stations = len(model.cell(target).stations) if target in targets.cells(model) else 0
     return ("", *map(str, range(stations + 1))) if stations else ("",)
 
 
@@ -94,7 +94,7 @@ def _verb(verb: Verb) -> Kind:
     )
 
 
-@kind(targets=whom.cells, words=words("text", "id", "other text", "known id"), weight=0.5)
+@kind(targets=targets.cells, words=words("text", "id", "other text", "known id"), weight=0.5)
 def double_submit(world: World, fault: Fault) -> None:
     """Somebody asks twice for a task: by its text, by its id, or by an id that was given to another."""
     for text in AGAIN[fault.word](world, fault):
@@ -154,13 +154,13 @@ BAD_TEXTS: dict[str, Callable[[StorageCell], str]] = {
 }
 
 
-@kind(targets=whom.cells, words=words(*BAD_TEXTS))
+@kind(targets=targets.cells, words=words(*BAD_TEXTS))
 def bad_task(world: World, fault: Fault) -> None:
     """Somebody asks for a task in words that mean none."""
     world.request_task(BAD_TEXTS[fault.word](world.model.cell(fault.target)))
 
 
-@kind(targets=whom.cells, weight=0.0)
+@kind(targets=targets.cells, weight=0.0)
 def flood_of_tasks(world: World, fault: Fault) -> None:
     """Somebody asks for more tasks than a plant remembers, and takes each back; never drawn: it is slow."""
     for number in range(HISTORY + SPARE):

@@ -16,7 +16,7 @@ from arboleda.wire.strict import UINT32
 
 from ..chance import Dice
 from ..world import BRIDGE, World
-from . import whom
+from . import targets
 from .kind import Fault, kind, words
 
 LATEST = 5  # how many epochs it may be behind
@@ -29,7 +29,7 @@ def _orders(model: PlantModel, target: str) -> tuple[str, ...]:
     return (*_own(model, target), *(word for word in OF_ALL if _knows(model, target, word)), *RARE)
 
 
-@kind(targets=whom.robots, words=_orders)
+@kind(targets=targets.robots, words=_orders)
 def second_orchestrator(world: World, fault: Fault) -> None:
     """An orchestrator that was superseded speaks to the bridge; only its stops count."""
     dice = Dice(fault.seed, "second")
@@ -41,7 +41,7 @@ def second_orchestrator(world: World, fault: Fault) -> None:
         world.broker.clients[BRIDGE].inbox.append(FromPlant(at=world.now, message=message))
 
 
-@kind(targets=whom.bridge, words=words("just too far", "the last number"), weight=0.5)
+@kind(targets=targets.bridge, words=words("just too far", "the last number"), weight=0.5)
 def foreign_beat(world: World, fault: Fault) -> None:
     """A stranger beats as a plant that can only start in the far future; the bridge goes on with ours."""
     unix_s = world.plant.epoch
@@ -68,7 +68,7 @@ def _knows(model: PlantModel, target: str, word: str) -> bool:
     return word != "home" or model.robots[target].homes
 
 
-@kind(targets=whom.robots, words=_strange)
+@kind(targets=targets.robots, words=_strange)
 def foreign_command(world: World, fault: Fault) -> None:
     """A node of somebody else commands a robot on its plain topic; only its stops count."""
     # where the bridge hears no plant it would obey, as it does those who have no other orchestrator

@@ -6,20 +6,20 @@ from typing import Any
 
 from ..chance import Dice
 from ..world import World
-from . import whom
+from . import targets
+from .false_telemetry import deceive
 from .kind import End, Fault, kind, words
-from .telling import deceive
 
 SEES = {"a piece": 1, "nothing": 0}
 
 
-@kind(targets=whom.feelers, words=words(*SEES), seconds=(0.5, 15.0))
+@kind(targets=targets.feelers, words=words(*SEES), seconds=(0.5, 15.0))
 def piece_false(world: World, fault: Fault) -> End:
     """A piece sensor sees the same whatever is there."""
     return deceive(world, fault.target, ("piece",), lambda said: {**said, "pieza": SEES[fault.word]})
 
 
-@kind(targets=whom.feelers, seconds=(0.5, 15.0), amount=(0.1, 0.9))
+@kind(targets=targets.feelers, seconds=(0.5, 15.0), amount=(0.1, 0.9))
 def piece_flicker(world: World, fault: Fault) -> End:
     """A piece sensor is wrong now and then; `amount` is the share of wrong values."""
     dice = Dice(fault.seed, "flicker")

@@ -12,9 +12,9 @@ from arboleda.wire.units import to_wire
 
 from ..chance import Dice
 from ..world import World
-from . import whom
+from . import targets
+from .false_telemetry import Fields, alter, deceive, retold
 from .kind import End, Fault, kind, words
-from .telling import Fields, alter, deceive, retold
 
 ABOUT = {
     "nodo": ("node",),
@@ -36,7 +36,7 @@ Lie = Callable[[Fields], Any]  # the telemetry as it should be -> the value that
 
 def fields_of(model: PlantModel, target: str) -> tuple[str, ...]:
     """The keys of a board's telemetry that are evidence, at its robot's level."""
-    robot = whom.robot_of(model, target)
+    robot = targets.robot_of(model, target)
     place = tuple(_keys(robot)) if robot.has_joints else ("nodo",) if robot.on_grid else ()
     if robot.evidence is not Evidence.IDS:
         return (*place, "estado")
@@ -44,7 +44,7 @@ def fields_of(model: PlantModel, target: str) -> tuple[str, ...]:
     return (*place, "estado", *NUMBERED, *homed, *(HELD if robot.has_joints else ()))
 
 
-@kind(targets=whom.boards, words=fields_of, seconds=(0.5, 15.0))
+@kind(targets=targets.boards, words=fields_of, seconds=(0.5, 15.0))
 def stuck_bit(world: World, fault: Fault) -> End:
     """A field of a board's telemetry keeps the value it has."""
     kept: Fields = {}
@@ -61,7 +61,7 @@ def _lies_of(model: PlantModel, target: str) -> tuple[str, ...]:
     return tuple(word for word in fields_of(model, target) if word[0] == "q" or word in LIES)
 
 
-@kind(targets=whom.boards, words=_lies_of, seconds=(0.3, 10.0), amount=(2.0, 40.0))
+@kind(targets=targets.boards, words=_lies_of, seconds=(0.3, 10.0), amount=(2.0, 40.0))
 def lying_telemetry(world: World, fault: Fault) -> End:
     """A field of a board's telemetry is not true; `amount` is how many tolerances a joint is told off."""
     word = fault.word
@@ -76,7 +76,7 @@ def lying_telemetry(world: World, fault: Fault) -> End:
 
 
 @kind(
-    targets=whom.boards,
+    targets=targets.boards,
     words=words("half", "no number", "a truth value", "too long", "incomplete"),
     seconds=(0.2, 10.0),
     amount=(0.1, 1.0),
@@ -99,7 +99,7 @@ def _keys(arm: Arm) -> dict[str, tuple[Joint, float]]:
 
 
 def _off(world: World, fault: Fault) -> Lie:
-    arm = whom.robot_of(world.model, fault.target)
+    arm = targets.robot_of(world.model, fault.target)
     assert arm.has_joints
     joint, tolerance = _keys(arm)[fault.word]
     sign = Dice(fault.seed, "sign").pick((-1.0, 1.0))
@@ -113,13 +113,13 @@ def _another(fault: Fault, now: int, choices: Sequence[int]) -> Lie:
 
 
 def _other_code(world: World, fault: Fault) -> Lie:
-    homes = whom.robot_of(world.model, fault.target).homes
+    homes = targets.robot_of(world.model, fault.target).homes
     codes = [code for code in CODES if homes or code != MotionState.NOT_HOMED.value]
     return _another(fault, world.boards[fault.target].state.value, codes)
 
 
 def _other_node(world: World, fault: Fault) -> Lie:
-    robot = whom.robot_of(world.model, fault.target)
+    robot = targets.robot_of(world.model, fault.target)
     assert robot.on_grid
     told = world.boards[fault.target].body.tell().node
     return _another(fault, -1 if told is None else told, range(robot.grid.size))

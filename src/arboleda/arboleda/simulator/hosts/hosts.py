@@ -8,7 +8,7 @@ from arboleda.model.messages import Heartbeat, OperatorRequest, Verb
 
 from ..world import BRIDGE, PLANT, World
 from .database import Away, Refused, SharedDisk
-from .former import Former
+from .former_leader import Former
 from .process import Host, Process
 
 NAMES = ("host_a", "host_b")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from .advice import ADVICE
 from .beliefs import BELIEFS
-from .books import BOOKS
 from .bridge import BRIDGE
 from .choices import CHOICES
 from .commands import COMMANDS
@@ -12,6 +11,7 @@ from .grip import GRIP
 from .invariant import Invariant
 from .liveness import LIVENESS
 from .memory import MEMORY
+from .memory_bounds import BOOKS
 from .motion import MOTION
 from .oee import OEE
 from .proofs import PROOFS

@@ -11,7 +11,7 @@ from arboleda.model.plant_model import Evidence
 
 from ..truth import Truth
 from ..truth.arm import ArmTruth
-from ..truth.books import Booked
+from ..truth.ended_commands import Booked
 from ..truth.mobile import MobileTruth
 from ..truth.robot import RobotTruth
 from .invariant import Look, When, invariant

@@ -17,7 +17,7 @@ from arboleda.model.errors import PayloadError
 from arboleda.model.messages import OperatorRequest
 from arboleda.model.plant_model import Evidence
 from arboleda.model.sentence import OWN
-from arboleda.views import diagnostics, places, twin_view, view
+from arboleda.views import diagnostics, geometry, twin_view, view
 from arboleda.wire import status
 
 from ..recorded.cells import KnownCell
@@ -395,7 +395,7 @@ def plans_show_the_model(look: Look) -> Iterator[str]:
     """What never changes is shown as the plant file says it."""
     model = look.world.model
     shown = {row["name"]: row for row in view.layout(model)["cells"]}
-    placed = places.places(model)
+    placed = geometry.places(model)
     stand = {row["name"]: row for row in placed["robots"]}
     around = {row["name"]: row for row in placed["cells"]}
     without_stop = [robot.name for robot in model.robots.values() if not robot.has_stop]

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from .draw import NOT_DRAWN, draw
-from .smaller import smaller
+from .reductions import smaller
 
 __all__ = ["NOT_DRAWN", "draw", "smaller"]

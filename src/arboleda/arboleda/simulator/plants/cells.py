@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from arboleda.kinds.arm import Joint
 
 from ..chance import Dice
+from .mobile_paths import draw_paths
 from .poses import Poses, Section
 from .robots import DrawnArm, draw_arm, draw_mobile
-from .ways import draw_paths
 
 ZONE_WAITS_S = (0.5, 5.0, 30.0)
 PICKUPS = 0.2  # how often exits have pick-ups of their own

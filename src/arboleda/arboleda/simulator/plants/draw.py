@@ -8,9 +8,9 @@ from arboleda.kinds.arm import Joint
 
 from ..chance import Dice
 from .cells import DrawnCell, draw_cell
+from .mobile_paths import draw_paths
 from .poses import Section, draw_rack, may_have_rack
 from .timing import draw_timing, hasten
-from .ways import draw_paths
 from .zones import draw_zones
 
 CELLS = (1, 1, 1, 1, 1, 2, 2, 2, 3, 4)  # how many; many are simulated slower and find little more

@@ -12,7 +12,7 @@ from arboleda.wire.topics import Channel, parse
 from arboleda.wire.transport import Publication
 
 from ..hosts.database import Write
-from ..hosts.former import Said
+from ..hosts.former_leader import Said
 from ..hosts.hosts import Hosts
 from ..world import World
 from .boards import Boards

@@ -11,9 +11,9 @@ from arboleda.model.plant_model import Evidence, Robot
 
 from ..world import BRIDGE, World
 from .arm import ArmTruth
-from .books import CALM_S, Books
 from .boots import Boots
 from .deeds import CellTruth
+from .ended_commands import CALM_S, Books
 from .machine import MachineTruth
 from .mobile import MobileTruth
 from .robot import BEATS, Act, RobotTruth

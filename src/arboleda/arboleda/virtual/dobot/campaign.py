@@ -14,7 +14,7 @@ from arboleda.recipes.storage_cell import StorageCell
 
 from ..campaign import EPOCH, Hear, Trial
 from .faults import FAULTS
-from .joined import Joined
+from .loopback import Joined
 from .machine import VirtualDobot
 
 FRAME_S = 0.04  # a fifth of a real one's frames is enough to see every state

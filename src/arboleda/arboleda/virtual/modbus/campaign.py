@@ -14,7 +14,7 @@ from arboleda.model.plant_model import PlantModel
 
 from ..campaign import Causes
 from ..plc.campaign import NO_LINK, BeltTrial
-from ..plc.joined import Broken
+from ..plc.loopback import Broken
 from .memory import FAULTS, BeltMemory
 
 CAUSES: Causes = {

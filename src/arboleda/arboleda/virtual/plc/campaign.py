@@ -12,7 +12,7 @@ from arboleda.model.messages import Reason
 from arboleda.model.plant_model import PlantModel, Robot
 
 from ..campaign import START_S, Causes, Hear, Trial
-from .joined import Joined, Wire
+from .loopback import Joined, Wire
 from .machine import CLOSED, ENTRY, EXIT, OPEN, Belt
 
 NO_LINK = {Reason.LINK_LOST}

@@ -13,7 +13,7 @@ from arboleda.model.plant_model import Cell, PlantModel, Robot
 
 from ..campaign import Causes, Hear, Trial
 from ..faults import Faults
-from .joined import Joined
+from .loopback import Joined
 from .machine import Body, VirtualServer
 
 MEASURE_S = 0.05  # less often than by default: a campaign has to see every state, and no more

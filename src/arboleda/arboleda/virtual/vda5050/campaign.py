@@ -11,7 +11,7 @@ from arboleda.model.plant_model import PlantModel, Robot
 
 from ..campaign import Hear, Trial
 from .faults import FAULTS
-from .joined import Joined
+from .loopback import Joined
 from .machine import VirtualAgv
 
 SILENT_S = 3.0  # the shortest silence that states of each second allow

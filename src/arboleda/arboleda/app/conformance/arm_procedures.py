@@ -6,7 +6,7 @@ from arboleda.wire.topics import Channel
 
 from .arm_bench import ArmBench
 from .bench import MOVING, NOT_HOMED, Steps, Wait
-from .ways import ANSWER_S, demand, rest
+from .procedures import ANSWER_S, demand, rest
 
 
 def drive(bench: ArmBench, steps: tuple[int, ...]) -> Steps:

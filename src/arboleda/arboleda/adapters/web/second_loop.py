@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from .asked import Asked
+from .request_head import Asked
 
 Result = TypeVar("Result")
 Call = Callable[..., Awaitable[Result]]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from arboleda.drivers import Report, lost
-from arboleda.drivers.plc.shown import Unreadable
+from arboleda.drivers.plc.plc_snapshot import Unreadable
 from arboleda.model.commands import Command
 
 from ..campaign import Hear

@@ -7,10 +7,10 @@ from typing import Any
 
 from arboleda.views.view import standing, waited_for
 
-from . import Face, asked, cells, links, panel, stop, tasks, timeline
+from . import Face, cells, links, panel, questions, stop, tasks, timeline
 from .moment import Moment
 
-PARTS = (stop.face, cells.face, asked.face, tasks.face, panel.face, links.face, timeline.face)
+PARTS = (stop.face, cells.face, questions.face, tasks.face, panel.face, links.face, timeline.face)
 WORST = (
     "aborted",
     "aborting",

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from arboleda.recorder.followed import Looked
+from arboleda.recorder.cell_history import Looked
 
 from ..tree_memory import EndedTree, TreeMemory
 from .moments import BESIDE_NS, nanoseconds

@@ -11,7 +11,7 @@ from rich.text import Text
 from arboleda.model.counting import counted
 from arboleda.simulator.run import Result
 
-from . import report, story, summary
+from . import breach_text, report, summary
 from .campaign import Campaign
 from .request import Request
 from .screen import progress
@@ -116,10 +116,10 @@ class Many:
     def _story(self, shrunk: Shrunk, injected: int) -> None:
         told = shrunk.result
         self._say("")
-        story.breach(self._console, told, shrunk.plant.name)
-        story.faults(self._console, told, injected)
-        story.plant(self._console, shrunk.plant)
-        story.timeline(self._console, told)
+        breach_text.breach(self._console, told, shrunk.plant.name)
+        breach_text.faults(self._console, told, injected)
+        breach_text.plant(self._console, shrunk.plant)
+        breach_text.timeline(self._console, told)
         self._say(f"  replay     {self._request.replay(told.seed)}", "bold")
         if self._file:
             self._say(f"             {self._request.replay_shrunk(self._file, told.seed)}", "bold")

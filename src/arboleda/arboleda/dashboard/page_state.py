@@ -8,7 +8,7 @@ from typing import Any
 from arboleda.adapters.task_rows import TaskRow
 from arboleda.views.chronicle import Chronicle, is_failure
 
-from .faces import Face, task, whole
+from .faces import Face, task, whole_page
 from .faces.moment import Moment
 from .tree_memory import EndedTree, TreeMemory
 from .wording import words
@@ -52,7 +52,7 @@ class Story:
     def face(self, language: str, links: Row) -> Face:
         """What a page in this language shows now; empty before the first snapshot."""
         moment = self._moment(language, links)
-        return {} if moment is None else whole.face(moment)
+        return {} if moment is None else whole_page.face(moment)
 
     def task_face(self, id: str, language: str, kept: TaskRow | None = None) -> Face:
         """What a page in this language shows of one task, known or not; empty before the first snapshot.

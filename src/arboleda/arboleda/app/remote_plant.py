@@ -12,9 +12,9 @@ from arboleda.adapters.web.auth import Role
 from arboleda.model.errors import ArboledaError
 
 from . import tokens
-from .led import Led, of_leader
+from .endpoints import Place, with_tokens
+from .leader import Led, of_leader
 from .line import FarLine
-from .places import Place, with_tokens
 from .stores import leadership_of
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from arboleda.model.errors import ConfigError
-from arboleda.recorder.beginning import PlantFiles
+from arboleda.recorder.preamble import PlantFiles
 from arboleda.simulator import plants
 
 from .. import config

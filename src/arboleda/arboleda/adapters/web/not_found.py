@@ -8,7 +8,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, Match
 from starlette.types import Receive, Scope, Send
 
-from .asked import is_api
+from .request_head import is_api
 
 
 class NothingElse(BaseRoute):

@@ -9,7 +9,7 @@ from arboleda.model.commands import OnStop
 
 from .bench import MOVING, NotTried, Steps, Wait
 from .device_bench import DeviceBench, is_work
-from .ways import ANSWER_S, demand
+from .procedures import ANSWER_S, demand
 
 LEAST_S = 0.4  # what takes less cannot be caught in the middle
 

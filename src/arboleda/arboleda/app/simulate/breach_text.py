@@ -10,8 +10,8 @@ from rich.text import Text
 from arboleda.model.counting import counted
 from arboleda.simulator.run import Result
 
-from .drawn import as_yaml
 from .plants import Plant, notes
+from .random_plants import as_yaml
 from .setting import rules
 from .words import told
 

@@ -10,17 +10,17 @@ from rich.text import Text
 
 from arboleda.simulator.run import Result
 
-from . import flight, report, story, summary
-from .many import BROKEN, HELD, INTERRUPTED
+from . import breach_text, flight, report, summary
+from .line_output import Teller, Unheard
 from .request import Request
+from .seed_campaign import BROKEN, HELD, INTERRUPTED
 from .tally import Tally
-from .told import Teller, Unheard
 
 
 def run(request: Request, console: Console, *, trace: bool, record: Path | None, file: Path | None) -> int:
     """Runs the first seed; the exit status."""
     if trace:
-        story.plant(console, request.plants.of(request.first))
+        breach_text.plant(console, request.plants.of(request.first))
     flown: list[str] = []
     try:
         if record is not None and record.suffix == flight.SUFFIX:
@@ -36,7 +36,7 @@ def run(request: Request, console: Console, *, trace: bool, record: Path | None,
     tally.add(result)
     if file is not None:
         summary.write(file, request, tally, None, complete=True)
-    story.breach(console, result, request.setting.plant(result.seed).name)
+    breach_text.breach(console, result, request.setting.plant(result.seed).name)
     for line in flown:
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"digest {result.digest}: {report.amount(tally)}"), soft_wrap=True)

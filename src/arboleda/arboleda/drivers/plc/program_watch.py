@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .shown import Unreadable
+from .plc_snapshot import Unreadable
 
 
 class Alive:

@@ -13,8 +13,8 @@ from arboleda.model.outside import plain
 
 from . import config
 from .client import PlantClient
-from .elsewhere import Elsewhere
-from .places import tokens_of
+from .endpoints import tokens_of
+from .remote_plant import Elsewhere
 from .state import default_state, find_running, last_run, plants_of_databases, running_plants
 from .stores import history_of, leadership_of
 
